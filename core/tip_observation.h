@@ -1,0 +1,22 @@
+// What a tip sensor says at one instant: vision produces it, recordings keep it, control uses it.
+#pragma once
+
+#include <Eigen/Dense>
+#include <optional>
+
+namespace flextip {
+
+enum class TipStatus {
+  kOk,         ///< measured in this frame
+  kPredicted,  ///< carried on from earlier frames
+  kLost,       ///< not known: position and covariance mean nothing
+};
+
+struct TipObservation {
+  TipStatus status = TipStatus::kLost;
+  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();               ///< m
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();      ///< of p_RE, in R
+  std::optional<Eigen::Vector3d> d_RE;                          ///< the shaft's direction at E, unit
+};
+
+}  // namespace flextip

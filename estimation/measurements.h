@@ -1,0 +1,46 @@
+// What the sensors say of the instrument at one instant, in R; what is absent was not measured.
+#pragma once
+
+#include <Eigen/Dense>
+#include <optional>
+
+#include "core/pose.h"
+#include "core/tip_observation.h"
+
+namespace flextip {
+
+struct EmMeasurement {
+  Pose T_RS;                       ///< sensor on the shaft, its x along the shaft
+  double distance_from_tip_m = 0.0;
+  double position_noise_m = 0.0;   ///< standard deviation per axis
+  double orientation_noise_rad = 0.0;
+};
+
+/// Moments m1_y, m1_z, m2_y, m2_z of the part beyond on the part before, about the wrist frame's
+/// y and z carried along the shaft without twist.
+struct StrainMeasurement {
+  Eigen::Vector4d moments_Nm = Eigen::Vector4d::Zero();
+  double station_from_wrist_m[2] = {0.0, 0.0};
+  double moment_noise_Nm = 0.0;
+};
+
+struct LoadMeasurement {
+  Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
+  double force_noise_N = 0.0;
+};
+
+struct Measurements {
+  Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();
+  double wrist_position_noise_m = 0.0;
+  std::optional<Eigen::Matrix3d> R_RW;      ///< measured orientation of the free wrist joint
+  double wrist_orientation_noise_rad = 0.0;
+  std::optional<TipObservation> tip;        ///< by vision; its d_RE where the direction was seen
+  double tip_direction_noise_rad = 0.0;
+  std::optional<EmMeasurement> em;
+  std::optional<Eigen::Vector3d> port_direction;  ///< the shaft's direction at the port (em1), unit
+  double port_direction_noise_rad = 0.0;
+  std::optional<StrainMeasurement> strain;
+  std::optional<LoadMeasurement> load;
+};
+
+}  // namespace flextip

@@ -1,0 +1,91 @@
+// The exact statics of an inextensible Kirchhoff rod with a circular section: pinned at the wrist,
+// sliding through a frictionless port that pushes only sideways, loaded at the tip by a force and
+// along its length by its weight (docs/models.md, model 3):
+//   p' = t,  t' = kappa x t,  n' = -q,  m' = n x t,  kappa = m / EI.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+
+namespace flextip {
+
+/// One equilibrium problem, in R and SI units.
+struct RodProblem {
+  double length_m = 0.0;
+  double bending_stiffness_Nm2 = 0.0;
+  Eigen::Vector3d p_wrist = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_port = Eigen::Vector3d::Zero();
+  Eigen::Vector3d f_tip = Eigen::Vector3d::Zero();     ///< force on the tip (N)
+  Eigen::Vector3d q_weight = Eigen::Vector3d::Zero();  ///< force per length on the shaft (N/m)
+};
+
+enum class RodStatus : std::uint8_t {
+  kOk,
+  kBadInput,      ///< not finite, or length or stiffness not positive
+  kUnreachable,   ///< the port is at or beyond the shaft's length, or on the wrist
+  kNotConverged,  ///< no equilibrium found near the straight shaft (buckled, load too high)
+};
+const char* Name(RodStatus status);
+
+/// Derivatives of a vector with respect to wrist position, port position and tip force.
+using RodDerivative = Eigen::Matrix<double, 3, 9>;  // columns: d/dp_wrist, d/dp_port, d/df_tip
+
+/// The rod at one place: position, unit tangent, internal moment of the part beyond on the part
+/// before (Nm), and their derivatives.
+struct RodSection {
+  double s_m = 0.0;  ///< from the wrist along the shaft
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  Eigen::Vector3d t = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d m = Eigen::Vector3d::Zero();
+  RodDerivative dp = RodDerivative::Zero();
+  RodDerivative dt = RodDerivative::Zero();
+  RodDerivative dm = RodDerivative::Zero();
+};
+
+struct RodState {
+  RodStatus status = RodStatus::kNotConverged;
+  int iterations = 0;
+  double residual = 0.0;                                   ///< of the scaled conditions
+  RodSection wrist, tip;                                   ///< at s = 0 and s = length
+  double s_port_m = 0.0;
+  Eigen::Vector3d t_port = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d f_port = Eigen::Vector3d::Zero();        ///< of the port on the shaft (N)
+  Eigen::Vector3d f_wrist = Eigen::Vector3d::Zero();       ///< of the wrist on the shaft (N)
+
+  bool IsUsable() const { return status == RodStatus::kOk; }
+  /// d tip / d wrist with the tip force held constant.
+  Eigen::Matrix3d J_tip_wrist() const { return tip.dp.leftCols<3>(); }
+  /// d tip / d wrist when the load follows the tip: `stiffness` = df_tip/dp_tip (N/m, negative
+  /// definite for tissue that pushes back).
+  Eigen::Matrix3d J_tip_wrist(const Eigen::Matrix3d& stiffness) const;
+};
+
+/// Solves rod problems one after the other and starts each from the last equilibrium it found.
+/// Allocates nothing.
+class RodSolver {
+ public:
+  /// The equilibrium with its derivatives. Tries a warm start, then a cold one with the load
+  /// applied in steps; `RodState::status` says how it ended.
+  RodState Solve(const RodProblem& problem);
+
+  /// The last solved rod at `s_m` from the wrist (0 <= s_m <= length); needs IsUsable().
+  RodSection Section(double s_m) const;
+
+  /// Forget the last equilibrium: the next solve starts from the straight shaft.
+  void Reset() { warm_ = false; }
+
+ private:
+  struct Unknowns {  // in units of length L and force EI / L^2
+    Eigen::Vector3d t_tip = Eigen::Vector3d::UnitX();
+    double sigma_port = 0.5;  // from the tip
+    Eigen::Vector3d r = Eigen::Vector3d::Zero();  // port on the shaft
+  };
+  friend class RodNewton;
+
+  bool warm_ = false;
+  RodProblem problem_;
+  Unknowns x_;
+  Eigen::Matrix<double, 6, 9> dx_ = Eigen::Matrix<double, 6, 9>::Zero();
+};
+
+}  // namespace flextip

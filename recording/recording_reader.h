@@ -1,0 +1,27 @@
+// Reads a recording's folder and rejects what cannot be trusted.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "recording/recording.h"
+
+namespace flextip {
+
+/// A recording with what had to be skipped to read it.
+struct ReadResult {
+  Recording recording;
+  std::vector<std::string> warnings;  ///< one line each: a torn last line, a dropped frame, ...
+};
+
+struct ReadOptions {
+  bool check_frames = true;  ///< that the frames of cam0 exist and have the stated size
+};
+
+/// Reads every stream present in `folder` (docs/formats.md). Throws InputError with file and line
+/// for missing or extra columns, NaN or infinite values, time running backwards, quaternions off
+/// unit length by more than 1e-3, frames missing or of another size, unknown versions.
+ReadResult ReadRecording(const std::filesystem::path& folder, const ReadOptions& options = {});
+
+}  // namespace flextip
