@@ -1,0 +1,38 @@
+// The commands of the program and what they share. A command is one file, apps/<name>.cpp, that
+// reads its options, composes the libraries and writes its results; it is registered in main.cpp.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace flextip {
+
+/// What every command is given. It outlives the parsing and the work.
+struct AppContext {
+  bool quiet = false;          ///< no progress and no chatter; errors still go to stderr
+  std::string command_line;    ///< as it was typed, for summaries
+  std::function<void()> work;  ///< set by the command that was chosen, run after parsing
+};
+
+/// Makes `work` what the program does when `command` is chosen. It returns on success, throws
+/// InputError (exit 2) for input it cannot use and WorkError (exit 1) where the work failed.
+inline void OnRun(CLI::App& command, AppContext& context, std::function<void()> work) {
+  command.callback([&context, work = std::move(work)] { context.work = work; });
+}
+
+// Each adds one subcommand to `app`, with its options and an example in its footer:
+//   CLI::App& command = *app.add_subcommand("track", "Localise tags and the tip in frames");
+//   auto options = std::make_shared<TrackOptions>();
+//   command.add_option(...);
+//   command.footer("Example:\n  flextip track RECORDING -o OUT");
+//   OnRun(command, context, [options, &context] { RunTrack(*options, context); });
+void AddCalibrate(CLI::App& app, AppContext& context);
+void AddDetect(CLI::App& app, AppContext& context);
+void AddEstimate(CLI::App& app, AppContext& context);
+void AddShape(CLI::App& app, AppContext& context);
+void AddSimulate(CLI::App& app, AppContext& context);
+void AddTrack(CLI::App& app, AppContext& context);
+
+}  // namespace flextip

@@ -1,0 +1,70 @@
+// flextip: the program. Exit codes: 0 done, 1 the work failed, 2 wrong usage or unreadable input.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "apps/commands.h"
+#include "core/error.h"
+#include "core/version.h"
+
+namespace flextip {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kWorkFailed = 1;
+constexpr int kBadUsage = 2;
+
+std::string Typed(int argc, char** argv) {
+  std::string line = "flextip";
+  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
+  return line;
+}
+
+int Complain(const std::string& message, int code) {
+  fmt::print(stderr, "flextip: {}\n", message);
+  return code;
+}
+
+void AddCommands(CLI::App& app, AppContext& context) {
+  static_cast<void>(app);
+  static_cast<void>(context);
+}
+
+int Run(int argc, char** argv) {
+  AppContext context;
+  context.command_line = Typed(argc, argv);
+  CLI::App app("Control of thin, bending surgical instruments by sight", "flextip");
+  app.set_version_flag("--version", std::string("flextip ") + kVersion);
+  app.add_flag("-q,--quiet", context.quiet, "No progress bar and no remarks, only errors");
+  app.footer("Every command explains itself: flextip COMMAND --help\n");
+  app.require_subcommand(1);
+  app.fallthrough();
+  AddCommands(app, context);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& done) {  // --help, --version
+    return app.exit(done);
+  } catch (const CLI::ParseError& e) {
+    return Complain(fmt::format("{} (see flextip --help)", e.what()), kBadUsage);
+  }
+  context.work();
+  return kDone;
+}
+
+}  // namespace
+}  // namespace flextip
+
+int main(int argc, char** argv) {
+  using namespace flextip;
+  try {
+    return Run(argc, argv);
+  } catch (const InputError& e) {
+    return Complain(e.what(), kBadUsage);
+  } catch (const std::exception& e) {
+    return Complain(e.what(), kWorkFailed);
+  } catch (...) {
+    return Complain("stopped by an error of unknown kind", kWorkFailed);
+  }
+}
