@@ -1,0 +1,61 @@
+// The one adapter over the AprilTag library: its pixel origin, corner order and corner bias end
+// here.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+
+namespace flextip {
+
+/// A tag seen in an image. The corners are those of the black border's outer edge (tag36h11), in
+/// the order (-,+), (+,+), (+,-), (-,-) of the tag frame G (x right, y down as it is read): bottom
+/// left, bottom right, top right, top left of the upright tag.
+struct TagDetection {
+  int id = 0;
+  int hamming = 0;               ///< corrected bits
+  double decision_margin = 0.0;  ///< mean distance of a bit's grey value from the threshold
+  std::array<Eigen::Vector2d, 4> corners_px;      ///< pixel (0,0) is a pixel's centre
+  std::array<Eigen::Vector2d, 4> raw_corners_px;  ///< the library's, in its origin (centres at .5)
+  bool refined = false;  ///< corners_px come from the edges fitted here, not the library
+};
+
+struct TagDetectorOptions {
+  std::string family = "tag36h11";  ///< or tag25h9, tag16h5, tagStandard41h12
+  double quad_decimate = 1.0;       ///< quads are searched at 1/this of the resolution; >= 1
+  double quad_sigma_px = 0.0;       ///< Gaussian blur before the search
+  bool refine_edges = true;         ///< the library's own refinement
+  double decode_sharpening = 0.25;
+  int threads = 1;
+  int max_hamming = 1;                ///< detections with more corrected bits are dropped
+  double min_decision_margin = 10.0;  ///< and those with less contrast
+  bool refine_corners = true;         ///< fit the four edges to the image again (edge_refiner.h)
+};
+
+/// Not for use by two threads at once.
+class TagDetector {
+ public:
+  /// Throws InputError where an option is out of range or the family unknown.
+  explicit TagDetector(const TagDetectorOptions& options = {});
+  ~TagDetector();
+  TagDetector(TagDetector&&) noexcept;
+  TagDetector& operator=(TagDetector&&) noexcept;
+
+  /// Tags in a grey or colour image, sorted by id; none is an ordinary result. Throws InputError
+  /// for an empty image or one that has neither 1 nor 3 channels.
+  std::vector<TagDetection> Detect(const Image& image);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Grey values of an image with 1 or 3 channels (blue, green, red; Rec. 601 weights). Throws
+/// InputError for anything else or an empty image.
+Image ToGrey(const Image& image);
+
+}  // namespace flextip
