@@ -60,6 +60,9 @@ struct RodState {
   Eigen::Matrix3d J_tip_wrist(const Eigen::Matrix3d& stiffness) const;
 };
 
+template <int C>
+struct RodFlow;
+
 /// Solves rod problems one after the other and starts each from the last equilibrium it found.
 /// Allocates nothing.
 class RodSolver {
@@ -77,15 +80,30 @@ class RodSolver {
  private:
   struct Unknowns {  // in units of length L and force EI / L^2
     Eigen::Vector3d t_tip = Eigen::Vector3d::UnitX();
-    double sigma_port = 0.5;  // from the tip
+    double sigma_port = 0.5;                      // from the tip
     Eigen::Vector3d r = Eigen::Vector3d::Zero();  // port on the shaft
   };
-  friend class RodNewton;
+  struct Scaled;
+  struct Evaluation;
 
+  static Unknowns StraightGuess(const Scaled& scaled);
+  static void Evaluate(const Scaled& scaled, const Unknowns& x, Evaluation& e);
+  /// The number of evaluations it took; 0 where it did not converge.
+  static int Newton(const Scaled& scaled, Unknowns& x, Evaluation& e);
+  static int SolveCold(const Scaled& scaled, Unknowns& x, Evaluation& e);
+  int SolveWarm(const RodProblem& problem, const Scaled& scaled, Unknowns& x, Evaluation& e) const;
+  void Keep(const RodProblem& problem, const Unknowns& x, const Evaluation& e);
+  void FillState(const Evaluation& e, RodState& state);
+  /// From scaled to SI; `tip` is null for the tip itself.
+  RodSection MakeSection(const RodFlow<9>& flow, const RodSection* tip, double s_m) const;
+
+  // The last equilibrium: a warm start for the next, and what Section() walks along.
   bool warm_ = false;
   RodProblem problem_;
   Unknowns x_;
-  Eigen::Matrix<double, 6, 9> dx_ = Eigen::Matrix<double, 6, 9>::Zero();
+  Eigen::Matrix<double, 3, 2> turn_basis_ = Eigen::Matrix<double, 3, 2>::Zero();
+  Eigen::Matrix<double, 6, 9> dx_ = Eigen::Matrix<double, 6, 9>::Zero();  // by wrist, port, force
+  RodSection tip_;
 };
 
 }  // namespace flextip
