@@ -34,9 +34,6 @@ struct ShaftModel {
   BeamFit beam;                                            ///< the thesis's parameters (flexion)
 };
 
-/// Which load the flexion Jacobian holds constant.
-enum class BeamLoadLaw { kPortForce, kTipForce };
-
 struct ControllerOptions {
   ControllerKind kind = ControllerKind::kRodTrack;
   BeamLoadLaw beam_load_law = BeamLoadLaw::kTipForce;
