@@ -2,6 +2,10 @@
 # Targets are flextip_<name>, used and exported as flextip::<name>. What is PUBLIC shows in the
 # folder's headers; foreign libraries are PRIVATE.
 set(FLEXTIP_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+# g++ 12 warns of overlapping copies inside std::string where there are none (GCC bug 105651).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  list(APPEND FLEXTIP_WARNINGS -Wno-restrict)
+endif()
 
 function(flextip_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
