@@ -1,0 +1,171 @@
+#include "report/page_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+
+namespace flextip {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ReadSummary(const std::filesystem::path& folder) {
+  const auto path = folder / "summary.json";
+  try {
+    auto json = Json::parse(ReadBytes(path));
+    if (!json.is_object()) throw InputError::At(path.string(), 0, "not an object");
+    return json;
+  } catch (const Json::exception& e) {
+    throw InputError::At(path.string(), 0, e.what());
+  }
+}
+
+/// A value as people read it; what is neither number nor text is shown as JSON.
+std::string Shown(const std::string& key, const Json& value) {
+  if (value.is_number()) return SpokenValue(key, value.get<double>());
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  return value.is_null() ? "–" : value.dump();
+}
+
+bool IsScalar(const Json& value) { return value.is_number() || value.is_boolean(); }
+
+/// A list or a map whose items are all maps is a table: their keys are its columns.
+bool IsTable(const Json& value) {
+  return value.is_structured() && !value.empty() &&
+         std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_object(); });
+}
+
+std::vector<std::string> ColumnKeys(const Json& items) {
+  std::vector<std::string> keys;
+  for (const auto& item : items) {
+    for (const auto& [key, value] : item.items()) {
+      if (value.is_structured()) continue;
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    }
+  }
+  return keys;
+}
+
+void AddJsonTable(Report& report, const std::string& name, const Json& items) {
+  const auto keys = ColumnKeys(items);
+  Table table;
+  table.title = SpokenName(name);
+  if (items.is_object()) table.header.emplace_back("");
+  for (const auto& key : keys) table.header.push_back(SpokenName(key));
+  for (const auto& [label, item] : items.items()) {
+    std::vector<std::string> row;
+    if (items.is_object()) row.push_back(label);
+    for (const auto& key : keys) row.push_back(item.contains(key) ? Shown(key, item[key]) : "–");
+    table.rows.push_back(std::move(row));
+  }
+  report.AddTable(table);
+}
+
+/// "p_RE_x [m]" -> {"p_RE [m]", "x"}; a name without such an ending is a group of its own.
+std::pair<std::string, std::string> GroupOf(const std::string& name) {
+  const auto bracket = name.find(" [");
+  const auto bare = name.substr(0, bracket);
+  const auto unit = bracket == std::string::npos ? "" : name.substr(bracket);
+  const auto cut = bare.rfind('_');
+  if (cut == std::string::npos || bare.size() - cut > 3 || cut == 0) return {bare + unit, bare};
+  const auto ending = bare.substr(cut + 1);
+  if (ending.find_first_not_of("xyzw") != std::string::npos) return {bare + unit, bare};
+  return {bare.substr(0, cut) + unit, ending};
+}
+
+bool HasNumbers(const std::vector<double>& column) {
+  return std::any_of(column.begin(), column.end(), [](double v) { return std::isfinite(v); });
+}
+
+}  // namespace
+
+Report BeginPage(const std::filesystem::path& folder, const std::string& title) {
+  const Json summary = ReadSummary(folder);
+  const auto text = [&](const char* key) {
+    return summary.contains(key) ? Shown(key, summary[key]) : std::string();
+  };
+  Report report(title, fmt::format("{}   (flextip {})", text("command"), text("version")));
+  std::vector<std::pair<std::string, std::string>> figures;
+  for (const auto& [key, value] : summary.items()) {
+    if (IsScalar(value)) figures.emplace_back(SpokenName(key), Shown(key, value));
+  }
+  report.AddFigures(figures);
+  std::vector<std::string> warnings;
+  if (summary.contains("warnings")) {
+    for (const auto& w : summary["warnings"]) warnings.push_back(Shown("", w));
+  }
+  report.AddWarnings(warnings);
+  for (const auto& [key, value] : summary.items()) {
+    if (key != "warnings" && IsTable(value)) {
+      report.AddHeading("Results");
+      AddJsonTable(report, key, value);
+    }
+  }
+  return report;
+}
+
+void AddPictureFiles(Report& report, const std::string& heading,
+                     const std::vector<std::filesystem::path>& files) {
+  if (files.empty()) return;
+  report.AddHeading(heading);
+  std::vector<std::pair<std::string, std::string>> pictures;
+  for (const auto& file : files) pictures.emplace_back(ReadBytes(file), file.filename().string());
+  report.AddPictures(pictures);
+}
+
+std::vector<double> SecondsOf(const ResultTable& table) {
+  std::vector<double> seconds;
+  if (table.texts.empty() || table.texts.front().empty()) return seconds;
+  const long long first = std::atoll(table.texts.front().front().c_str());
+  for (const auto& stamp : table.texts.front()) {
+    seconds.push_back(static_cast<double>(std::atoll(stamp.c_str()) - first) * 1e-9);
+  }
+  return seconds;
+}
+
+std::vector<double> Scaled(const ResultTable& table, const std::string& column, double factor) {
+  const auto* numbers = table.Column(column);
+  if (numbers == nullptr) return {};
+  std::vector<double> scaled = *numbers;
+  for (double& v : scaled) v *= factor;
+  return scaled;
+}
+
+PlotTrace PathTrace(const ResultTable& table, const std::string& prefix, const std::string& name) {
+  constexpr double kMmPerM = 1000.0;
+  PlotTrace trace;
+  trace.name = name;
+  trace.x = Scaled(table, prefix + "_x", kMmPerM);
+  trace.y = Scaled(table, prefix + "_y", kMmPerM);
+  trace.z = Scaled(table, prefix + "_z", kMmPerM);
+  if (trace.x.size() != trace.y.size() || trace.x.size() != trace.z.size()) {
+    trace.x = trace.y = trace.z = {};
+  }
+  return trace;
+}
+
+void AddColumnsOverTime(Report& report, const ResultTable& table) {
+  const auto seconds = SecondsOf(table);
+  std::vector<Plot> plots;
+  for (std::size_t i = 1; i < table.names.size(); ++i) {
+    if (!HasNumbers(table.numbers[i])) continue;
+    const auto [group, ending] = GroupOf(table.names[i]);
+    auto plot = std::find_if(plots.begin(), plots.end(),
+                             [&group = group](const Plot& p) { return p.title == group; });
+    if (plot == plots.end()) {
+      plots.push_back({.title = group, .x_label = "time (s)", .y_label = group});
+      plot = plots.end() - 1;
+    }
+    plot->traces.push_back({.name = ending, .x = seconds, .y = table.numbers[i]});
+  }
+  for (const auto& plot : plots) report.AddPlot(plot);
+}
+
+}  // namespace flextip

@@ -1,0 +1,238 @@
+#include "report/pages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "report/page_parts.h"
+#include "report/report.h"
+#include "report/result_files.h"
+
+namespace flextip {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMmPerM = 1000.0;
+constexpr std::size_t kPictures = 6;
+constexpr const char* kX = "x (mm)";
+constexpr const char* kY = "y (mm)";
+constexpr const char* kZ = "z (mm)";
+
+/// One controller's run.
+struct Run {
+  std::string name;  ///< empty where there is one run only
+  fs::path folder;
+  ResultTable deviation;
+};
+
+std::vector<Run> ReadRuns(const fs::path& folder) {
+  std::vector<Run> runs;
+  if (fs::exists(folder / "deviation.csv")) {
+    runs.push_back({"", folder, ReadResultTable(folder / "deviation.csv")});
+  }
+  for (const auto& sub : FoldersWith(folder, "deviation.csv")) {
+    runs.push_back({sub.filename().string(), sub, ReadResultTable(sub / "deviation.csv")});
+  }
+  return runs;
+}
+
+/// One colour a model; what is calculated rather than seen is dashed.
+void StyleController(PlotTrace& trace) {
+  const std::pair<const char*, const char*> colors[] = {
+      {"straight", "#d55e00"}, {"flex", "#0072b2"}, {"rod", "#009e73"}};
+  for (const auto& [model, color] : colors) {
+    if (trace.name.starts_with(model)) trace.color = color;
+  }
+  trace.dashed = trace.name.find("calculate") != std::string::npos;
+}
+
+void AddDeviations(Report& report, const std::vector<Run>& runs) {
+  Plot plot{.title = "Deviation from the desired path",
+            .caption =
+                "How far the true tip was from where it was wanted. Solid: the tip is "
+                "measured; dashed: it is calculated from the model.",
+            .x_label = "time (s)",
+            .y_label = "deviation (mm)"};
+  for (const auto& run : runs) {
+    PlotTrace trace{.name = run.name,
+                    .x = SecondsOf(run.deviation),
+                    .y = Scaled(run.deviation, "deviation", kMmPerM)};
+    if (trace.y.size() != trace.x.size()) continue;
+    StyleController(trace);
+    plot.traces.push_back(std::move(trace));
+  }
+  if (!plot.traces.empty()) report.AddPlot(plot);
+}
+
+void AddPaths(Report& report, const std::vector<Run>& runs) {
+  Plot plot{
+      .title = "Path of the tip",
+      .caption = "In the robot's frame. Drag to turn, scroll to zoom, click a name to hide it.",
+      .x_label = kX,
+      .y_label = kY,
+      .z_label = kZ};
+  for (const auto& run : runs) {
+    auto trace = PathTrace(run.deviation, "p_RE", run.name.empty() ? "tip" : run.name);
+    if (trace.x.empty()) continue;
+    StyleController(trace);
+    plot.traces.push_back(std::move(trace));
+  }
+  if (!runs.empty()) {
+    auto desired = PathTrace(runs.front().deviation, "p_desired", "desired");
+    desired.color = "#1d2733";
+    if (!desired.x.empty()) plot.traces.push_back(std::move(desired));
+  }
+  if (!plot.traces.empty()) report.AddPlot(plot);
+}
+
+/// The last frame that each run's camera took; of a single run, frames from all of it.
+void AddFrames(Report& report, const std::vector<Run>& runs) {
+  std::vector<std::pair<std::string, std::string>> pictures;
+  for (const auto& run : runs) {
+    auto files = PicturesIn(run.folder / "overlay", kPictures);
+    if (files.empty()) files = PicturesIn(run.folder / "cam0" / "data", kPictures);
+    if (files.empty()) continue;
+    if (run.name.empty()) return AddPictureFiles(report, "Through the laparoscope", files);
+    pictures.emplace_back(ReadBytes(files.back()),
+                          run.name + ", " + files.back().filename().string());
+  }
+  if (pictures.empty()) return;
+  report.AddHeading("Through the laparoscope, at the end of each run");
+  report.AddPictures(pictures);
+}
+
+/// How sure the tip's position is: the square root of the covariance's trace.
+PlotTrace Uncertainty(const ResultTable& table) {
+  PlotTrace trace{.name = "standard deviation", .x = SecondsOf(table)};
+  const auto xx = Scaled(table, "cov_xx", 1.0), yy = Scaled(table, "cov_yy", 1.0),
+             zz = Scaled(table, "cov_zz", 1.0);
+  if (xx.empty() || yy.empty() || zz.empty()) return {};
+  for (std::size_t i = 0; i < xx.size(); ++i) {
+    trace.y.push_back(kMmPerM * std::sqrt(xx[i] + yy[i] + zz[i]));
+  }
+  return trace;
+}
+
+/// The path of the tip, one trace for each status it had.
+void AddSeenPath(Report& report, const ResultTable& table) {
+  Plot plot{.title = "Path of the tip as seen", .x_label = kX, .y_label = kY, .z_label = kZ};
+  const auto path = PathTrace(table, "p_RE", "");
+  const auto* status = table.Texts("status");
+  if (path.x.empty()) return;
+  plot.traces.push_back(
+      {.name = "path", .x = path.x, .y = path.y, .z = path.z, .color = "#0072b2"});
+  for (const auto& [name, color] :
+       {std::pair{"ok", "#009e73"}, std::pair{"predicted", "#d55e00"}}) {
+    PlotTrace trace{.name = name, .color = color, .markers = true};
+    for (std::size_t i = 0; status != nullptr && i < status->size(); ++i) {
+      if ((*status)[i] != name) continue;
+      trace.x.push_back(path.x[i]);
+      trace.y.push_back(path.y[i]);
+      trace.z.push_back(path.z[i]);
+    }
+    if (!trace.x.empty()) plot.traces.push_back(std::move(trace));
+  }
+  report.AddPlot(plot);
+}
+
+void AddSeenTip(Report& report, const fs::path& data) {
+  if (!fs::exists(data)) return;
+  const auto table = ReadResultTable(data);
+  if (table.Rows() == 0) return;
+  report.AddHeading("The tip");
+  AddSeenPath(report, table);
+  Plot coordinates{.title = "Coordinates of the tip",
+                   .caption = "In the robot's frame. Gaps: the tip was lost.",
+                   .x_label = "time (s)",
+                   .y_label = "position (mm)"};
+  for (const char* axis : {"x", "y", "z"}) {
+    const auto y = Scaled(table, std::string("p_RE_") + axis, kMmPerM);
+    if (!y.empty()) coordinates.traces.push_back({.name = axis, .x = SecondsOf(table), .y = y});
+  }
+  report.AddPlot(coordinates);
+  const auto uncertainty = Uncertainty(table);
+  if (uncertainty.y.empty()) return;
+  report.AddPlot({.title = "How sure the position is",
+                  .caption = "Standard deviation of the position, all three axes together.",
+                  .x_label = "time (s)",
+                  .y_label = "standard deviation (mm)",
+                  .traces = {uncertainty}});
+}
+
+/// A file of numbers as it is, for tables that are short enough to be read.
+void AddShortTable(Report& report, const fs::path& file, const std::string& title) {
+  constexpr std::size_t kRows = 60;
+  if (!fs::exists(file)) return;
+  const auto table = ReadResultTable(file);
+  const std::size_t shown = std::min(kRows, table.Rows());
+  Table out{.title = title, .header = table.names};
+  if (shown < table.Rows()) {
+    out.caption = "The first " + std::to_string(shown) + " of " + std::to_string(table.Rows()) +
+                  " rows; all are in " + file.filename().string() + ".";
+  }
+  for (std::size_t r = 0; r < shown; ++r) {
+    std::vector<std::string> row;
+    for (const auto& column : table.texts) row.push_back(column[r]);
+    out.rows.push_back(std::move(row));
+  }
+  report.AddTable(out);
+}
+
+void WriteWithPictures(const fs::path& folder, const std::string& title,
+                       const std::string& heading) {
+  Report report = BeginPage(folder, title);
+  auto pictures = PicturesIn(folder / "overlay", kPictures);
+  const auto beside = PicturesIn(folder, kPictures);
+  pictures.insert(pictures.end(), beside.begin(), beside.end());
+  AddPictureFiles(report, heading, pictures);
+  AddShortTable(report, folder / "shapes.csv", "Shapes");
+  AddShortTable(report, folder / "residuals.csv", "Residuals");
+  report.Write(folder / "report.html");
+}
+
+}  // namespace
+
+void WriteSimulateReport(const fs::path& folder) {
+  Report report = BeginPage(folder, "Simulated closed loop");
+  const auto runs = ReadRuns(folder);
+  if (!runs.empty()) report.AddHeading("Which controller keeps the tip where it is wanted");
+  AddDeviations(report, runs);
+  AddPaths(report, runs);
+  AddFrames(report, runs);
+  report.Write(folder / "report.html");
+}
+
+void WriteTrackReport(const fs::path& folder) {
+  Report report = BeginPage(folder, "Tip tracked in frames");
+  AddPictureFiles(report, "What was found in the frames",
+                  PicturesIn(folder / "overlay", kPictures));
+  AddSeenTip(report, folder / "vision0" / "data.csv");
+  report.Write(folder / "report.html");
+}
+
+void WriteEstimateReport(const fs::path& folder) {
+  Report report = BeginPage(folder, "Instrument fitted to the sensors");
+  const auto data = folder / "state0" / "data.csv";
+  if (fs::exists(data)) {
+    report.AddHeading("State over time");
+    AddColumnsOverTime(report, ReadResultTable(data));
+  }
+  report.Write(folder / "report.html");
+}
+
+void WriteShapeReport(const fs::path& folder) {
+  WriteWithPictures(folder, "Shape of the shaft", "The shaft");
+}
+
+void WriteDetectReport(const fs::path& folder) {
+  WriteWithPictures(folder, "Tags found in pictures", "What was found");
+}
+
+void WriteCalibrateReport(const fs::path& folder) {
+  WriteWithPictures(folder, "Calibration", "Views");
+}
+
+}  // namespace flextip

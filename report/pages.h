@@ -1,0 +1,26 @@
+// The report.html of each command, made from the files in its result folder and nothing else.
+#pragma once
+
+#include <filesystem>
+
+namespace flextip {
+
+// Each reads FOLDER/summary.json and what else is there (docs/formats.md), and writes
+// FOLDER/report.html. What is absent is left out. They throw InputError where a file that is there
+// cannot be read and WorkError where the page cannot be written.
+
+/// Per controller: deviation over time and the tip's path against the desired one, from
+/// FOLDER/deviation.csv (one run) or FOLDER/CONTROLLER/deviation.csv (several); frames of cam0.
+void WriteSimulateReport(const std::filesystem::path& folder);
+/// Overlays, the tip's path and its coordinates over time, from vision0/data.csv.
+void WriteTrackReport(const std::filesystem::path& folder);
+/// Every column of state0/data.csv over time.
+void WriteEstimateReport(const std::filesystem::path& folder);
+/// The picture of a shape, or the table shapes.csv of a batch.
+void WriteShapeReport(const std::filesystem::path& folder);
+/// Overlays of the detected tags.
+void WriteDetectReport(const std::filesystem::path& folder);
+/// Figures, pictures and residuals.csv of a calibration.
+void WriteCalibrateReport(const std::filesystem::path& folder);
+
+}  // namespace flextip

@@ -1,0 +1,45 @@
+// Reads what the commands write: summary.json, tables of numbers, pictures. The report knows
+// nothing else of the program.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace flextip {
+
+/// A CSV file by columns. The header's leading '#' and spaces around names are dropped. A cell that
+/// is empty or not a number is NaN in `numbers`.
+struct ResultTable {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> numbers;     ///< one list a column
+  std::vector<std::vector<std::string>> texts;  ///< the same cells as written
+
+  std::size_t Rows() const { return numbers.empty() ? 0 : numbers.front().size(); }
+  /// The column whose name is `name`, with or without its unit in brackets; nullptr where absent.
+  const std::vector<double>* Column(const std::string& name) const;
+  const std::vector<std::string>* Texts(const std::string& name) const;
+};
+
+/// Throws InputError where the file is missing or a line has another number of cells.
+ResultTable ReadResultTable(const std::filesystem::path& path);
+
+/// A file's bytes. Throws InputError where it cannot be read.
+std::string ReadBytes(const std::filesystem::path& path);
+
+/// The pictures (PNG, JPEG) directly in `folder`, by name; at most `limit`, spread evenly over all.
+std::vector<std::filesystem::path> PicturesIn(const std::filesystem::path& folder,
+                                              std::size_t limit);
+
+/// The sub-folders of `folder` that hold the file `name`, by name.
+std::vector<std::filesystem::path> FoldersWith(const std::filesystem::path& folder,
+                                               const std::string& name);
+
+/// "max_deviation_m" -> "max deviation", "frames_per_second" -> "frames per second".
+std::string SpokenName(const std::string& key);
+/// The number behind `key` in the unit people read: metres as mm, N, px, s; 4 significant digits.
+std::string SpokenValue(const std::string& key, double value);
+
+}  // namespace flextip
