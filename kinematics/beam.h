@@ -16,20 +16,45 @@ enum class BeamLoadLaw : std::uint8_t {
 
 enum class BeamStatus : std::uint8_t {
   kOk,
-  kStraight,      ///< no flexion to be seen: `a` is not observable, the beam is a straight line
-  kBadInput,      ///< not finite, or lengths that are not positive
-  kNoPort,        ///< no port between wrist and tip fits: the measurements contradict the beam
+  kStraight,  ///< no flexion to be seen: `a` is not observable, the beam is a straight line
+  kBadInput,  ///< not finite, or lengths that are not positive
+  kNoPort,    ///< no port between wrist and tip fits: the measurements contradict the beam
 };
 
 /// A beam fitted to measurements, in R.
 struct BeamFit {
   BeamStatus status = BeamStatus::kBadInput;
-  double F_p_over_EI = 0.0;                                ///< 1/m^2, along -y_M where positive (3.1)
-  double a = 0.0;                                          ///< port's place along x_M (m)
+  double F_p_over_EI = 0.0;  ///< 1/m^2, along -y_M where positive (3.1)
+  double a = 0.0;            ///< port's place along x_M (m)
   double length_m = 0.0;
-  Eigen::Matrix3d R_RM = Eigen::Matrix3d::Identity();      ///< columns v_x, v_y, v_z (5.29)
+  Eigen::Matrix3d R_RM = Eigen::Matrix3d::Identity();  ///< columns v_x, v_y, v_z (5.29)
   /// Of (F_p/EI, a), from the stated noise; zero where no noise was stated.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+
+  bool IsUsable() const { return status == BeamStatus::kOk; }
 };
+
+const char* Name(BeamStatus status);
+
+/// The beam through a known wrist and port under a known tip force (all in R), of which the beam
+/// feels the part across its chord. Registered as (5.4)-(5.7) would: v_y against the force, so that
+/// F_p/EI <= 0. Without a force across, kStraight with `a` known.
+BeamFit SolveBeam(const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_RP,
+                  const Eigen::Vector3d& f_tip, double bending_stiffness_Nm2,
+                  double length_m) noexcept;
+
+/// d tip / d wrist in R (5.28), with the in-plane part corrected; the port stays where it is and
+/// `law` says what the load does. Out of the plane the shaft swings about the port. Needs
+/// 0 < a < length; at F_p/EI = 0 it is the lever's Jacobian for a port at `a`.
+Eigen::Matrix3d BeamJacobian(const BeamFit& fit, BeamLoadLaw law) noexcept;
+
+/// The tip in R by (5.13)-(5.22): along v_x, at the distance the bent shaft leaves.
+Eigen::Vector3d BeamTip(const BeamFit& fit, const Eigen::Vector3d& p_RW) noexcept;
+
+/// The port in R by (3.8).
+Eigen::Vector3d BeamPort(const BeamFit& fit, const Eigen::Vector3d& p_RW) noexcept;
+
+/// The tip's load over EI, a vector in R (1/m^2): times EI, the force on the tip (5.15).
+Eigen::Vector3d BeamTipLoad(const BeamFit& fit) noexcept;
 
 }  // namespace flextip
