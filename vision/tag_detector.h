@@ -31,7 +31,7 @@ struct TagDetectorOptions {
   bool refine_edges = true;         ///< the library's own refinement
   double decode_sharpening = 0.25;
   int threads = 1;
-  int max_hamming = 1;                ///< detections with more corrected bits are dropped
+  int max_hamming = 2;                ///< detections with more corrected bits are dropped
   double min_decision_margin = 10.0;  ///< and those with less contrast
   bool refine_corners = true;         ///< fit the four edges to the image again (edge_refiner.h)
 };
