@@ -26,7 +26,7 @@ struct WristSample {
 struct WristStream {
   std::string comment;
   double rate_hz = 0.0;
-  double position_noise_m = 0.0;       ///< standard deviation per axis, as all noises here
+  double position_noise_m = 0.0;  ///< standard deviation per axis, as all noises here
   double orientation_noise_rad = 0.0;
   Series<WristSample> samples;
 };
@@ -79,9 +79,9 @@ struct LoadStream {
 struct CameraStream {
   std::string comment;
   CameraCalibration calibration;
-  std::string video;                   ///< file name inside cam0/, empty for image files
-  Series<std::string> filenames;       ///< image files
-  Series<int> frame_numbers;           ///< frames of `video`
+  std::string video;              ///< file name inside cam0/, empty for image files
+  Series<std::string> filenames;  ///< image files
+  Series<int> frame_numbers;      ///< frames of `video`
 };
 
 struct VisionStream {
@@ -96,9 +96,9 @@ struct VisionStream {
 
 struct Recording {
   Instrument instrument;
-  Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();           ///< the port as registered
+  Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();  ///< the port as registered
   Eigen::Vector3d gravity_m_s2{0.0, 0.0, -9.81};
-  std::map<std::string, std::vector<double>> tolerances;    ///< "effect.parameter": values
+  std::map<std::string, std::vector<double>> tolerances;  ///< "effect.parameter": values
   std::optional<WristStream> wrist0;
   std::optional<CommandStream> command0;
   std::optional<EmStream> em0, em1;

@@ -13,6 +13,8 @@ namespace flextip {
 struct ReadResult {
   Recording recording;
   std::vector<std::string> warnings;  ///< one line each: a torn last line, a dropped frame, ...
+  long torn_lines = 0;                ///< skipped, of a crashed recorder
+  long dropped_frames = 0;            ///< rows without a file name, and gaps in the frames' time
 };
 
 struct ReadOptions {

@@ -1,0 +1,86 @@
+// Comma-separated tables, read strictly: every error names the file, the line, what was found and
+// what was expected. No quoting: no table of flextip needs a comma inside a field.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "core/time_series.h"
+#include "recording/read_log.h"
+
+namespace flextip {
+
+struct CsvOptions {
+  /// A recorder's table: the header starts with '#', a torn last line is skipped and reported. A
+  /// last line is torn where the line break after it or some of its fields are missing. Otherwise
+  /// the '#' may be absent, the line break after the last line too, and every line must be whole.
+  bool from_recorder = true;
+  bool allow_other_columns = false;  ///< ignore columns that were not asked for
+};
+
+/// Reads a table row by row. Columns are found by their names, in any order. Spaces around names
+/// and fields do not matter.
+class CsvReader {
+ public:
+  /// Throws InputError for an unreadable file, an absent header, and missing, extra or repeated
+  /// columns.
+  CsvReader(const std::filesystem::path& file, const std::vector<std::string>& columns,
+            ReadLog& log, const CsvOptions& options = {});
+
+  /// Goes to the next row; false after the last. Throws InputError for a wrong number of fields.
+  bool Next();
+
+  /// Fields of the current row; `column` counts as in the constructor's `columns`.
+  std::string_view Text(std::size_t column) const;
+  bool Empty(std::size_t column) const { return Text(column).empty(); }
+  /// Finite; throws InputError for anything else.
+  double Number(std::size_t column) const;
+  TimeNs Integer(std::size_t column) const;
+
+  long line() const { return line_; }
+  /// An error at the current line.
+  InputError Error(const std::string& what) const;
+
+ private:
+  bool TakeLine(std::string_view& line, bool& terminated);
+  void ReadHeader(bool allow_other_columns);
+  bool IsTorn(std::size_t fields, bool terminated) const;
+  InputError FieldError(std::size_t column, const std::string& expected) const;
+
+  std::string file_;
+  std::vector<std::string> columns_;
+  CsvOptions options_;
+  ReadLog* log_;
+  std::string text_;
+  std::size_t position_ = 0;  ///< of the next line in text_
+  long line_ = 0;
+  std::size_t width_ = 0;                 ///< fields in a row
+  std::vector<std::size_t> place_;        ///< of each wanted column in a row
+  std::vector<std::string_view> fields_;  ///< of the current row, views into text_
+};
+
+/// Builds a table in memory, every number exact.
+class CsvWriter {
+ public:
+  explicit CsvWriter(const std::vector<std::string>& columns, bool from_recorder = true);
+
+  CsvWriter& Add(double value);  ///< throws WorkError for NaN and infinities: never written
+  CsvWriter& Add(TimeNs value);
+  CsvWriter& Add(const std::string& text);
+  CsvWriter& AddEmpty(int count = 1);
+  void EndRow();  ///< the row must be full
+
+  const std::string& text() const { return text_; }
+
+ private:
+  void Separate();
+
+  std::size_t width_;
+  std::size_t fields_ = 0;
+  std::string text_;
+};
+
+}  // namespace flextip

@@ -1,0 +1,20 @@
+// An image file's size, from its first bytes: checking a recording of thousands of frames must not
+// take as long as decoding them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace flextip {
+
+struct ImageHead {
+  int width_px = 0, height_px = 0;
+  std::string
+      problem;  ///< empty where the file looks whole: "is missing", "is empty", "is cut off"
+};
+
+/// PNG and JPEG by their first and last bytes; other kinds by decoding them. Damage between the
+/// first and the last bytes shows only when the image is decoded.
+ImageHead ReadImageHead(const std::filesystem::path& file);
+
+}  // namespace flextip

@@ -1,0 +1,69 @@
+#include "recording/recording_reader.h"
+
+#include <set>
+#include <system_error>
+
+#include "core/error.h"
+#include "recording/recording_file.h"
+#include "recording/sensor_streams.h"
+
+namespace flextip {
+namespace {
+
+const std::set<std::string> kKnownFolders = {"wrist0", "command0", "em0",   "em1",     "strain0",
+                                             "load0",  "cam0",     "tags0", "vision0", "truth0"};
+
+void WarnOfUnknownFolders(const std::filesystem::path& folder, ReadLog& log) {
+  std::set<std::string> unknown;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_directory() || name.starts_with('.') || kKnownFolders.contains(name)) continue;
+    unknown.insert(name);
+  }
+  for (const auto& name : unknown) {
+    log.warnings.push_back(
+        fmt::format("{}: not a known sensor, ignored", (folder / name).string()));
+  }
+}
+
+void ReadStreams(const std::filesystem::path& folder, const ReadOptions& options,
+                 Recording& recording, ReadLog& log) {
+  const double length_m = recording.instrument.length_m;
+  const auto has = [&](const char* sensor) {
+    return std::filesystem::is_directory(folder / sensor);
+  };
+  if (has("wrist0")) recording.wrist0 = ReadWrist(folder / "wrist0", log);
+  if (has("command0")) recording.command0 = ReadCommand(folder / "command0", log);
+  if (has("em0")) recording.em0 = ReadEm(folder / "em0", length_m, false, log);
+  if (has("em1")) recording.em1 = ReadEm(folder / "em1", length_m, true, log);
+  if (has("strain0")) recording.strain0 = ReadStrain(folder / "strain0", length_m, log);
+  if (has("load0")) recording.load0 = ReadLoad(folder / "load0", log);
+  if (has("cam0")) recording.cam0 = ReadCamera(folder / "cam0", options.check_frames, log);
+  if (has("tags0")) recording.tags0 = ReadTags(folder / "tags0", log);
+  if (has("vision0")) recording.vision0 = ReadVision(folder / "vision0", log);
+}
+
+}  // namespace
+
+ReadResult ReadRecording(const std::filesystem::path& folder, const ReadOptions& options) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw InputError::At(folder.string(), 0, "no such folder, expected a recording");
+  }
+  ReadLog log;
+  ReadResult result;
+  try {
+    result.recording = ReadRecordingFile(folder / "recording.yaml", log);
+    ReadStreams(folder, options, result.recording, log);
+    WarnOfUnknownFolders(folder, log);
+  } catch (const std::filesystem::filesystem_error& problem) {
+    throw InputError::At(problem.path1().string(), 0,
+                         fmt::format("cannot be read: {}", problem.code().message()));
+  }
+  result.warnings = std::move(log.warnings);
+  result.torn_lines = log.torn_lines;
+  result.dropped_frames = log.dropped_frames;
+  return result;
+}
+
+}  // namespace flextip
