@@ -2,9 +2,10 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
+#include <string_view>
 
-#include "core/instrument.h"
-#include "kinematics/beam.h"
+#include "estimation/shaft_model.h"
 #include "kinematics/rod.h"
 
 namespace flextip {
@@ -21,25 +22,16 @@ inline constexpr int kControllerKinds = 6;
 
 /// "straight-calculate", "straight-track", ... as in scenario files and summaries.
 const char* Name(ControllerKind kind);
+/// Empty for a name that is none of them.
+std::optional<ControllerKind> ControllerKindNamed(std::string_view name);
 bool UsesTipMeasurement(ControllerKind kind);
-
-/// What the controllers know of the instrument now: fixed data and what estimation last found.
-struct ShaftModel {
-  Instrument instrument;
-  Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();          ///< port
-  Eigen::Vector3d weight_N_m = Eigen::Vector3d::Zero();    ///< self-weight per length
-  Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();       ///< force on the tip (rod)
-  Eigen::Matrix3d tissue_stiffness_N_m = Eigen::Matrix3d::Zero();  ///< df_tip/dp_tip (rod)
-  bool force_known = false;                                ///< f_tip_N was estimated or measured
-  BeamFit beam;                                            ///< the thesis's parameters (flexion)
-};
 
 struct ControllerOptions {
   ControllerKind kind = ControllerKind::kRodTrack;
   BeamLoadLaw beam_load_law = BeamLoadLaw::kTipForce;
-  double gain = 1.0;                  ///< k of (2.1)
-  double max_step_m = 0.01;           ///< bound on the wrist's motion in one step
-  double min_singular_value = 0.05;   ///< of J_tip_wrist; below it the inverse is damped
+  double gain = 1.0;                 ///< k of (2.1)
+  double max_step_m = 0.01;          ///< bound on the wrist's motion in one step
+  double min_singular_value = 0.05;  ///< of J_tip_wrist; below it the inverse is damped
 };
 
 /// One cycle's input. Everything in R.
@@ -47,24 +39,27 @@ struct ControlInput {
   Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_RE_measured = Eigen::Vector3d::Zero();
-  bool tip_measured = false;          ///< p_RE_measured is valid in this cycle
+  bool tip_measured = false;  ///< p_RE_measured is valid in this cycle
   ShaftModel model;
 };
 
 enum class ControlStatus {
   kOk,
-  kNoTip,           ///< the kind needs a measured tip and there is none: the wrist holds still
-  kNoModel,         ///< the shaft model cannot be evaluated (port out of reach): holds still
-  kStraightInstead, ///< flexion not observable now: the straight shaft's Jacobian was used
+  kBadInput,         ///< a position is not finite: the wrist holds still
+  kNoTip,            ///< the kind needs a measured tip and there is none: the wrist holds still
+  kNoModel,          ///< the shaft model cannot be evaluated (port out of reach): holds still
+  kStraightInstead,  ///< flexion not observable now: the straight shaft's Jacobian was used
 };
+
+const char* Name(ControlStatus status);
 
 struct ControlOutput {
   ControlStatus status = ControlStatus::kNoModel;
-  bool step_limited = false;          ///< the step was shortened to max_step_m
-  bool damped = false;                ///< the Jacobian was near singular
+  bool step_limited = false;  ///< shortened to max_step_m, or to keep its distance from the port
+  bool damped = false;        ///< the Jacobian was near singular
   Eigen::Vector3d p_RW_command = Eigen::Vector3d::Zero();
-  Eigen::Vector3d p_RE_used = Eigen::Vector3d::Zero();   ///< the tip the step started from
-  Eigen::Matrix3d J_tip_wrist = Eigen::Matrix3d::Zero(); ///< the Jacobian the step used
+  Eigen::Vector3d p_RE_used = Eigen::Vector3d::Zero();    ///< the tip the step started from
+  Eigen::Matrix3d J_tip_wrist = Eigen::Matrix3d::Zero();  ///< the Jacobian the step used
   double smallest_singular_value = 0.0;
 };
 

@@ -1,0 +1,154 @@
+#include "control/controller.h"
+
+#include <algorithm>
+#include <array>
+
+#include "kinematics/straight.h"
+
+namespace flextip {
+namespace {
+
+constexpr std::array<const char*, kControllerKinds> kNames = {
+    "straight-calculate", "straight-track", "flex-calculate",
+    "flex-track",         "rod-calculate",  "rod-track"};
+
+/// The wrist is kept between these distances from the port, as parts of the shaft's length: at
+/// either end the lever degenerates.
+constexpr double kNearest = 0.02, kFarthest = 0.98;
+
+/// What a kinematic model says of the instrument now.
+struct Prediction {
+  ControlStatus status = ControlStatus::kNoModel;
+  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d J_tip_wrist = Eigen::Matrix3d::Zero();
+};
+
+Prediction PredictStraight(const ControlInput& input) {
+  const StraightShaft shaft =
+      SolveStraight(input.p_RW, input.model.p_RP, input.model.instrument.length_m);
+  if (!shaft.IsUsable()) return {};
+  return {ControlStatus::kOk, shaft.p_tip, shaft.J_tip_wrist};
+}
+
+Prediction StraightInstead(const ControlInput& input) {
+  Prediction prediction = PredictStraight(input);
+  if (prediction.status == ControlStatus::kOk) prediction.status = ControlStatus::kStraightInstead;
+  return prediction;
+}
+
+Prediction PredictFlex(const ControlInput& input, BeamLoadLaw law) {
+  const BeamFit& beam = input.model.beam;
+  if (!beam.IsUsable()) return StraightInstead(input);
+  return {ControlStatus::kOk, BeamTip(beam, input.p_RW), BeamJacobian(beam, law)};
+}
+
+Prediction PredictRod(const ControlInput& input, RodSolver& solver) {
+  const ShaftModel& model = input.model;
+  const RodState rod =
+      solver.Solve({model.instrument.length_m, model.instrument.bending_stiffness_Nm2, input.p_RW,
+                    model.p_RP, model.f_tip_N, model.weight_N_m});
+  if (!rod.IsUsable()) return StraightInstead(input);
+  return {model.force_known ? ControlStatus::kOk : ControlStatus::kStraightInstead, rod.tip.p,
+          rod.J_tip_wrist(model.tissue_stiffness_N_m)};
+}
+
+Prediction Predict(const ControlInput& input, const ControllerOptions& options, RodSolver& solver) {
+  switch (options.kind) {
+    case ControllerKind::kStraightCalculate:
+    case ControllerKind::kStraightTrack:
+      return PredictStraight(input);
+    case ControllerKind::kFlexCalculate:
+    case ControllerKind::kFlexTrack:
+      return PredictFlex(input, options.beam_load_law);
+    case ControllerKind::kRodCalculate:
+    case ControllerKind::kRodTrack:
+      return PredictRod(input, solver);
+  }
+  return {};
+}
+
+/// J^-1 dx, damped where the smallest singular value falls below `options.min_singular_value`
+/// (Nakamura and Hanafusa 1986): the damping grows from nothing at that bound.
+Eigen::Vector3d SolveDamped(const Eigen::Vector3d& dx, const ControllerOptions& options,
+                            ControlOutput& output) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(output.J_tip_wrist,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Vector3d sigma = svd.singularValues();
+  output.smallest_singular_value = sigma[2];
+  const double bound = options.min_singular_value;
+  const double missing = 1.0 - std::min(1.0, sigma[2] / bound);
+  const double damping2 = missing * bound * bound;
+  output.damped = damping2 > 0.0;
+  const Eigen::Vector3d inverse = sigma.array() / (sigma.array().square() + damping2);
+  return svd.matrixV() * inverse.cwiseProduct(svd.matrixU().transpose() * dx);
+}
+
+/// Shortens the step to the bound and so that the wrist keeps its distance from the port.
+Eigen::Vector3d Bound(const Eigen::Vector3d& step, const ControlInput& input,
+                      const ControllerOptions& options, ControlOutput& output) {
+  Eigen::Vector3d bounded = step;
+  const double size = bounded.norm();
+  if (size > options.max_step_m) bounded *= options.max_step_m / size;
+  const double L = input.model.instrument.length_m;
+  const Eigen::Vector3d from_port = input.p_RW + bounded - input.model.p_RP;
+  const double distance = from_port.norm();
+  const double allowed = std::clamp(distance, kNearest * L, kFarthest * L);
+  if (distance > 0.0 && allowed != distance) bounded += (allowed / distance - 1.0) * from_port;
+  output.step_limited = bounded != step;
+  return bounded;
+}
+
+}  // namespace
+
+const char* Name(ControllerKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+
+std::optional<ControllerKind> ControllerKindNamed(std::string_view name) {
+  const auto found = std::find(kNames.begin(), kNames.end(), name);
+  if (found == kNames.end()) return {};
+  return static_cast<ControllerKind>(found - kNames.begin());
+}
+
+bool UsesTipMeasurement(ControllerKind kind) {
+  return kind == ControllerKind::kStraightTrack || kind == ControllerKind::kFlexTrack ||
+         kind == ControllerKind::kRodTrack;
+}
+
+const char* Name(ControlStatus status) {
+  switch (status) {
+    case ControlStatus::kOk:
+      return "ok";
+    case ControlStatus::kBadInput:
+      return "bad_input";
+    case ControlStatus::kNoTip:
+      return "no_tip";
+    case ControlStatus::kNoModel:
+      return "no_model";
+    case ControlStatus::kStraightInstead:
+      return "straight_instead";
+  }
+  return "";
+}
+
+ControlOutput TipController::Step(const ControlInput& input) {
+  ControlOutput output;
+  output.p_RW_command = input.p_RW;
+  const bool tracks = UsesTipMeasurement(options_.kind);
+  output.status = ControlStatus::kBadInput;
+  if (!input.p_RW.allFinite() || !input.p_RE_desired.allFinite()) return output;
+  if (tracks && input.tip_measured && !input.p_RE_measured.allFinite()) return output;
+  output.status = ControlStatus::kNoTip;
+  if (tracks && !input.tip_measured) return output;
+
+  const Prediction model = Predict(input, options_, rod_);
+  output.status = model.status;
+  if (model.status == ControlStatus::kNoModel) return output;
+  output.J_tip_wrist = model.J_tip_wrist;
+  output.p_RE_used = tracks ? input.p_RE_measured : model.p_RE;
+
+  const Eigen::Vector3d dx = options_.gain * (input.p_RE_desired - output.p_RE_used);  // (2.1)
+  const Eigen::Vector3d step = SolveDamped(dx, options_, output);                      // (5.1)
+  output.p_RW_command += Bound(step, input, options_, output);
+  return output;
+}
+
+}  // namespace flextip

@@ -1,0 +1,73 @@
+// From any set of sensors at one instant to the instrument's load, port and shape.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+
+#include "core/instrument.h"
+#include "estimation/measurements.h"
+#include "estimation/shaft_model.h"
+#include "kinematics/rod.h"
+
+namespace flextip {
+
+struct EstimatorOptions {
+  Instrument instrument;
+  Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();  ///< the port as registered
+  Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();
+  double port_prior_m = 0.0003;    ///< standard deviation per axis of the registration
+  double force_prior_units = 4.0;  ///< standard deviation of the tip force in units of EI / L^2
+  /// False: only what a system without tip tracking has (orientations, strain, load, no tip or EM
+  /// position), for the controllers that calculate the tip.
+  bool use_positions = true;
+  bool estimate_tissue = true;  ///< df_tip/dp_tip from how the load changed with the tip
+};
+
+enum class EstimateStatus : std::uint8_t {
+  kOk,
+  kUnobservable,  ///< the sensors say nothing of the load across the shaft: taken as unloaded
+  kNotConverged,  ///< no rod fits: the straight shaft is handed on
+  kBadInput,      ///< a measurement is not finite
+};
+const char* Name(EstimateStatus status);
+
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+
+struct ShaftEstimate {
+  EstimateStatus status = EstimateStatus::kBadInput;
+  ShaftModel model;                                ///< for the controllers
+  Matrix9d covariance = Matrix9d::Zero();          ///< of wrist, port, tip force
+  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();  ///< the tip by the fitted rod
+  Eigen::Matrix3d p_RE_covariance_m2 = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d d_RE = Eigen::Vector3d::UnitX();  ///< its direction, unit
+  double s_port_m = 0.0;                            ///< inserted from the wrist
+  double chi2 = 0.0;                                ///< of the measurements and priors
+  int measurements = 0;                             ///< scalar measurements used
+};
+
+/// Fits the exact rod (unknowns: wrist, port, tip force; priors: encoder noise, registration, a
+/// wide one on the force) by Levenberg-Marquardt with analytic derivatives, and the thesis's beam
+/// by the closed forms where their sensors are present, else from the fitted force. Starts from the
+/// last estimate; a call allocates nothing.
+class ShaftEstimator {
+ public:
+  explicit ShaftEstimator(const EstimatorOptions& options);
+
+  ShaftEstimate Update(const Measurements& measurements);
+
+  /// Forget the past: warm start and tissue.
+  void Reset();
+
+ private:
+  void UpdateTissue(const ShaftEstimate& estimate);
+
+  EstimatorOptions options_;
+  RodSolver solver_;
+  Eigen::Vector3d last_force_N_ = Eigen::Vector3d::Zero();
+  bool has_reference_ = false;  // of the tissue's secant
+  Eigen::Vector3d reference_tip_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d reference_force_N_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d tissue_stiffness_N_m_ = Eigen::Matrix3d::Zero();
+};
+
+}  // namespace flextip

@@ -1,0 +1,22 @@
+// What estimation hands to control: the instrument as it is believed to be now.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "core/instrument.h"
+#include "kinematics/beam.h"
+
+namespace flextip {
+
+/// Fixed data and what estimation last found. Everything in R; fixed size.
+struct ShaftModel {
+  Instrument instrument;
+  Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();                  ///< port
+  Eigen::Vector3d weight_N_m = Eigen::Vector3d::Zero();            ///< self-weight per length
+  Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();               ///< force on the tip (rod)
+  Eigen::Matrix3d tissue_stiffness_N_m = Eigen::Matrix3d::Zero();  ///< df_tip/dp_tip (rod)
+  bool force_known = false;  ///< f_tip_N was estimated or measured
+  BeamFit beam;              ///< the thesis's parameters (flexion)
+};
+
+}  // namespace flextip
