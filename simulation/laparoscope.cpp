@@ -1,25 +1,132 @@
 #include "simulation/laparoscope.h"
 
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <cassert>
+#include <cmath>
+
+#include "core/error.h"
+#include "simulation/render_film.h"
+#include "simulation/render_raster.h"
+#include "simulation/render_rays.h"
+#include "simulation/render_scene.h"
+#include "simulation/tissue_texture.h"
+#include "vision/camera_model.h"
+
 namespace flextip {
+namespace {
+
+constexpr double kDistanceWithoutTissue_m = 0.1;
+constexpr std::size_t kMaxOccluders = 24;
+
+void Require(bool condition, const char* name, double found, const char* expected) {
+  if (condition) return;
+  throw InputError(fmt::format("laparoscope: {}: found {}, expected {}", name, found, expected));
+}
+
+void Check(const CameraCalibration& camera, const LaparoscopeOptions& o) {
+  Require(camera.width_px > 0 && camera.height_px > 0, "image width", camera.width_px, "> 0");
+  Require(std::isfinite(o.exposure) && o.exposure > 0, "exposure", o.exposure, "> 0");
+  Require(o.exposure_distance_m >= 0, "exposure distance", o.exposure_distance_m, ">= 0");
+  Require(o.vignetting >= 0, "vignetting", o.vignetting, ">= 0");
+  Require(o.blur_sigma_px >= 0 && o.blur_sigma_px < 50, "blur", o.blur_sigma_px, "0 to 50 px");
+  Require(o.full_well_electrons >= 0, "full well", o.full_well_electrons, ">= 0");
+  Require(o.read_noise_electrons >= 0, "read noise", o.read_noise_electrons, ">= 0");
+  const double gamma = camera.gamma.value_or(o.gamma);
+  Require(gamma > 0.1 && gamma < 10, "gamma", gamma, "0.1 to 10");
+  Require(o.tissue.normal_R.norm() > 0, "tissue normal's length", o.tissue.normal_R.norm(), "> 0");
+  Require(o.tissue.relief_m >= 0, "tissue relief", o.tissue.relief_m, ">= 0");
+  Require(o.tissue.texture_scale_m > 0, "texture scale", o.tissue.texture_scale_m, "> 0");
+  Require(o.occluders.size() <= kMaxOccluders, "number of occluders",
+          static_cast<double>(o.occluders.size()), "24 at most");
+  for (const Occluder& occluder : o.occluders) {
+    Require(occluder.radius_m > 0, "occluder radius", occluder.radius_m, "> 0");
+    const double length = (occluder.b_R - occluder.a_R).norm();
+    Require(length > 0, "occluder: distance of a and b", length, "> 0");
+  }
+}
+
+// The light's strength that gives the exposure asked for.
+render::Light MakeLight(const CameraCalibration& camera, const LaparoscopeOptions& o) {
+  double distance_m = o.exposure_distance_m;
+  if (distance_m == 0) {
+    const double along = o.tissue.normal_R.dot(camera.T_RC.R.col(2));
+    const double away = o.tissue.normal_R.dot(o.tissue.point_R - camera.T_RC.p);
+    distance_m = along * away > 0 ? away / along : kDistanceWithoutTissue_m;
+  }
+  return {o.exposure * distance_m * distance_m, o.vignetting};
+}
+
+LinearImage ToGrey(const LinearImage& colour) {
+  LinearImage grey{colour.width_px, colour.height_px, 1, {}};
+  grey.data.resize(colour.data.size() / 3);
+  for (std::size_t i = 0; i < grey.data.size(); ++i) {
+    const float* bgr = &colour.data[3 * i];
+    grey.data[i] = 0.0722f * bgr[0] + 0.7152f * bgr[1] + 0.2126f * bgr[2];  // ITU-R BT.709
+  }
+  return grey;
+}
+
+}  // namespace
 
 struct Laparoscope::Impl {
-  CameraCalibration camera;
+  Impl(const CameraCalibration& calibration, const TagCollar& tags, const LaparoscopeOptions& o)
+      : options((Check(calibration, o), o)),
+        camera(calibration),
+        collar(tags),
+        rays(calibration),
+        light(MakeLight(calibration, o)),
+        film(o, calibration.gamma.value_or(o.gamma)) {
+    DrawTissue();
+  }
+
+  void DrawTissue() {
+    const TissueTexture texture(options.tissue, camera.Calibration().T_RC, options.seed);
+    tissue = {rays.WidthPx(), rays.HeightPx(), 3, {}};
+    tissue.data.assign(static_cast<std::size_t>(tissue.width_px) * tissue.height_px * 3, 0.0f);
+    tbb::parallel_for(0, tissue.height_px, [&](int y) {
+      for (int x = 0; x < tissue.width_px; ++x) {
+        if (!rays.Valid(x, y)) continue;
+        double depth = 0;
+        Eigen::Map<Eigen::Vector3f> colour(tissue.At(x, y));
+        colour = texture.Radiance(rays.At(x, y).Centre(), light, depth);
+      }
+    });
+  }
+
   LaparoscopeOptions options;
+  CameraModel camera;
+  render::CollarBody collar;
+  render::PixelRays rays;
+  render::Light light;
+  render::Film film;
+  LinearImage tissue;
 };
 
-Laparoscope::Laparoscope(const CameraCalibration& camera, const TagCollar&,
+Laparoscope::Laparoscope(const CameraCalibration& camera, const TagCollar& collar,
                          const LaparoscopeOptions& options)
-    : impl_(new Impl{camera, options}) {}
+    : impl_(std::make_unique<Impl>(camera, collar, options)) {}
 Laparoscope::~Laparoscope() = default;
 Laparoscope::Laparoscope(Laparoscope&&) noexcept = default;
 Laparoscope& Laparoscope::operator=(Laparoscope&&) noexcept = default;
 
-Image Laparoscope::Render(const ShaftCurve&, int) const {
-  return Image(impl_->camera.width_px, impl_->camera.height_px, impl_->options.grey ? 1 : 3);
+LinearImage Laparoscope::RenderLinear(const ShaftCurve& curve, int frame_number) const {
+  assert(curve.points.size() >= 2 && curve.diameter_m > 0);
+  const render::Scene scene(impl_->camera, impl_->collar, impl_->options.occluders, curve,
+                            frame_number);
+  LinearImage image = impl_->tissue;
+  render::Raster(impl_->rays, scene, impl_->light).Draw(image);
+  return impl_->options.grey ? ToGrey(image) : image;
 }
 
-LinearImage Laparoscope::RenderLinear(const ShaftCurve&, int) const { return {}; }
+Image Laparoscope::Render(const ShaftCurve& curve, int frame_number) const {
+  LinearImage light = RenderLinear(curve, frame_number);
+  return impl_->film.Develop(light, frame_number);
+}
 
-double Laparoscope::Gamma() const { return impl_->camera.gamma.value_or(impl_->options.gamma); }
+double Laparoscope::Gamma() const {
+  return impl_->camera.Calibration().gamma.value_or(impl_->options.gamma);
+}
 
 }  // namespace flextip

@@ -1,0 +1,198 @@
+#include "simulation/render_scene.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/rotation.h"
+
+namespace flextip::render {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kMargin_px = 4.0;
+constexpr double kNear_m = 1e-3;
+
+Material Steel() {
+  Material steel;
+  steel.albedo = {0.36f, 0.35f, 0.34f};
+  steel.gloss_wide = 0.16f;
+  steel.gloss_narrow = 0.42f;
+  return steel;
+}
+
+Material Print() {
+  Material print;
+  print.albedo = {0.86f, 0.87f, 0.87f};
+  print.albedo_black = {0.035f, 0.035f, 0.035f};
+  return print;
+}
+
+}  // namespace
+
+Scene::Scene(const CameraModel& camera, const CollarBody& collar,
+             const std::vector<Occluder>& occluders, const ShaftCurve& curve, int frame_number)
+    : width_px_(camera.Calibration().width_px),
+      height_px_(camera.Calibration().height_px),
+      tiles_across_((width_px_ + kTile_px - 1) / kTile_px),
+      tiles_down_((height_px_ + kTile_px - 1) / kTile_px),
+      tiles_(static_cast<std::size_t>(tiles_across_) * tiles_down_, 0) {
+  const Pose T_CR = camera.Calibration().T_RC.Inverse();
+  std::vector<Vector3d> points;
+  for (const Vector3d& p : curve.points) points.push_back(T_CR * p);
+  AddTube(Tube(points, T_CR.R * curve.T_RE.R.col(0), 0.5 * curve.diameter_m, {}), Steel());
+  for (const Face& face : collar.FacesSeen(T_CR * curve.T_RE)) AddFace(face, Print());
+  for (const Occluder& o : occluders) {
+    if (frame_number >= o.first_frame && frame_number <= o.last_frame) {
+      AddOccluder(o, T_CR, frame_number);
+    }
+  }
+  materials_.insert(materials_.end(), face_materials_.begin(), face_materials_.end());
+  assert(materials_.size() <= kMaxObjects + 1);
+  spans_.assign(tubes_.size(), std::vector<Span>(tiles_.size()));
+  for (std::size_t i = 0; i < tubes_.size(); ++i) MarkTube(camera, i);
+  for (std::size_t i = 0; i < faces_.size(); ++i) MarkFace(camera, i);
+}
+
+void Scene::AddTube(Tube tube, const Material& material) {
+  tubes_.push_back(std::move(tube));
+  materials_.push_back(material);
+}
+
+void Scene::AddFace(Face face, const Material& material) {
+  faces_.push_back(std::move(face));
+  face_materials_.push_back(material);
+}
+
+void Scene::AddOccluder(const Occluder& o, const Pose& T_CR, int frame_number) {
+  const Vector3d moved_R = o.velocity_R * static_cast<double>(frame_number - o.first_frame);
+  const Vector3d a = T_CR * (o.a_R + moved_R), b = T_CR * (o.b_R + moved_R);
+  Material material;
+  material.albedo = o.albedo_bgr.cast<float>();
+  material.gloss_wide = static_cast<float>(0.16 * o.specular);
+  material.gloss_narrow = static_cast<float>(0.42 * o.specular);
+  const Vector3d axis = (b - a).normalized();
+  if (o.kind == Occluder::Kind::kCapsule) {
+    const Vector3d reach = o.radius_m * axis;  // a and b are the centres of the round ends
+    AddTube(Tube({a - reach, b + reach}, axis, o.radius_m, {true, true}), material);
+    return;
+  }
+  Face disc;
+  const Eigen::Matrix<double, 3, 2> basis = NormalBasis(axis);
+  disc.origin = a;
+  disc.normal = axis;
+  disc.ex = basis.col(0);
+  disc.ey = basis.col(1);
+  disc.two_sided = true;
+  disc.disc_radius_m = o.radius_m;
+  const double bound = 1.16 * o.radius_m;
+  disc.polygon = {{-bound, -bound}, {bound, -bound}, {bound, bound}, {-bound, bound}};
+  disc.Prepare();
+  AddFace(disc, material);
+}
+
+void Scene::MarkBox(Vector2d low, Vector2d high, int object, std::size_t tube, float s) {
+  const auto tile = [](double px, int count) {
+    return static_cast<int>(
+        std::clamp(std::floor(px / kTile_px), -1.0, static_cast<double>(count)));
+  };
+  const int x0 = std::max(tile(low.x(), tiles_across_), 0),
+            y0 = std::max(tile(low.y(), tiles_down_), 0);
+  const int x1 = std::min(tile(high.x(), tiles_across_), tiles_across_ - 1);
+  const int y1 = std::min(tile(high.y(), tiles_down_), tiles_down_ - 1);
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * tiles_across_ + x;
+      tiles_[i] |= Bit(object);
+      if (tube >= tubes_.size()) continue;
+      spans_[tube][i].low = std::min(spans_[tube][i].low, s);
+      spans_[tube][i].high = std::max(spans_[tube][i].high, s);
+    }
+  }
+}
+
+void Scene::MarkTube(const CameraModel& camera, std::size_t index) {
+  const Tube& tube = tubes_[index];
+  const CameraCalibration& c = camera.Calibration();
+  const double focal_px = std::max(c.fu_px, c.fv_px);
+  const int steps = static_cast<int>(std::lround(tube.LengthM() / tube.StepM()));
+  Vector2d last(-1e9, -1e9);
+  for (int k = 0; k <= steps; ++k) {
+    Vector3d x, t;
+    tube.Curve(k * tube.StepM(), x, t);
+    if (x.z() < std::max(kNear_m, 1.5 * tube.RadiusM())) continue;
+    const auto px = camera.Project(x);
+    if (!px) continue;
+    const double jump = (*px - last).norm();
+    if (jump < 3.0 && k != steps) continue;
+    // A sphere of the tube's radius, seen off the axis, is stretched by 1/cos^2 at most.
+    const double stretch = x.squaredNorm() / (x.z() * x.z());
+    const double radius_px = 1.1 * stretch * focal_px * tube.RadiusM() / (x.z() - tube.RadiusM());
+    const double reach = radius_px + kMargin_px + std::min(jump, 100.0);
+    MarkBox(px->array() - reach, px->array() + reach, static_cast<int>(index) + 1, index,
+            static_cast<float>(k * tube.StepM()));
+    last = *px;
+  }
+}
+
+void Scene::MarkFace(const CameraModel& camera, std::size_t index) {
+  const Face& face = faces_[index];
+  const int object = static_cast<int>(tubes_.size() + index) + 1;
+  Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  bool whole_image = false;
+  constexpr int kPieces = 8;  // the lens bends the sides
+  for (std::size_t i = 0; i < face.polygon.size(); ++i) {
+    const Vector2d a = face.polygon[i], b = face.polygon[(i + 1) % face.polygon.size()];
+    for (int k = 0; k < kPieces; ++k) {
+      const Vector2d at = a + (b - a) * k / kPieces;
+      const Vector3d x = face.origin + at.x() * face.ex + at.y() * face.ey;
+      const auto px = x.z() > kNear_m ? camera.Project(x) : std::nullopt;
+      whole_image |= !px;
+      if (!px) continue;
+      low = low.cwiseMin(*px);
+      high = high.cwiseMax(*px);
+    }
+  }
+  if (whole_image) {
+    low.setZero();
+    high = {static_cast<double>(width_px_), static_cast<double>(height_px_)};
+  }
+  MarkBox(low.array() - kMargin_px, high.array() + kMargin_px, object, tubes_.size(), 0);
+}
+
+void Scene::SetGuesses(int tile, Guesses& guesses) const {
+  for (std::size_t i = 0; i < tubes_.size(); ++i) {
+    guesses[i] = 0.5 * (spans_[i][tile].low + spans_[i][tile].high);
+  }
+}
+
+const Face* Scene::FaceOf(int object) const {
+  const auto i = static_cast<std::size_t>(object);
+  return i > tubes_.size() ? &faces_[i - tubes_.size() - 1] : nullptr;
+}
+
+int Scene::Trace(const Vector3d& ray, ObjectMask candidates, Guesses& guesses,
+                 Meeting& nearest) const {
+  int found = 0;
+  nearest.depth = 1e30;
+  for (ObjectMask rest = candidates & ~ObjectMask{1}; rest != 0; rest &= rest - 1) {
+    const int object = __builtin_ctzll(rest);
+    if (const Face* face = FaceOf(object)) {
+      double depth = 0;
+      Vector2d at;
+      if (!face->Intersect(ray, depth, at) || depth >= nearest.depth) continue;
+      nearest = {depth, face->normal, face->White(at)};
+    } else {
+      Tube::Hit hit;
+      if (!tubes_[object - 1].Intersect(ray, guesses[object - 1], hit)) continue;
+      if (hit.depth >= nearest.depth) continue;
+      nearest = {hit.depth, hit.normal, true};
+    }
+    found = object;
+  }
+  return found;
+}
+
+}  // namespace flextip::render

@@ -1,0 +1,74 @@
+// What stands before the tissue in one frame, and where in the image it may be.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+#include <vector>
+
+#include "simulation/laparoscope.h"
+#include "simulation/render_collar.h"
+#include "simulation/render_face.h"
+#include "simulation/render_light.h"
+#include "simulation/render_tube.h"
+#include "vision/camera_model.h"
+
+namespace flextip::render {
+
+/// Objects are numbered from 1; 0 is the tissue. A set of objects is a mask of bits.
+using ObjectMask = std::uint64_t;
+constexpr int kMaxObjects = 63;
+inline ObjectMask Bit(int object) { return ObjectMask{1} << object; }
+
+/// Where a ray meets an object.
+struct Meeting {
+  double depth = 0;
+  Eigen::Vector3d normal;
+  bool white = true;  ///< of a tag's cell
+};
+
+/// The objects of one frame in the camera's frame, and for each tile of the image those that may
+/// be seen in it (with some pixels to spare).
+class Scene {
+ public:
+  static constexpr int kTile_px = 8;
+
+  Scene(const CameraModel& camera, const CollarBody& collar, const std::vector<Occluder>& occluders,
+        const ShaftCurve& curve, int frame_number);
+
+  /// Places along the tubes from which to search; one a tube.
+  using Guesses = std::vector<double>;
+  Guesses NewGuesses() const { return Guesses(tubes_.size(), 0.0); }
+  void SetGuesses(int tile, Guesses& guesses) const;
+
+  int TilesAcross() const { return tiles_across_; }
+  int TilesDown() const { return tiles_down_; }
+  ObjectMask InTile(int tile) const { return tiles_[tile]; }
+
+  /// The nearest of `candidates` along the ray, 0 where it meets none.
+  int Trace(const Eigen::Vector3d& ray, ObjectMask candidates, Guesses& guesses,
+            Meeting& nearest) const;
+
+  /// The flat face that an object is, or null.
+  const Face* FaceOf(int object) const;
+  const Material& MaterialOf(int object) const { return materials_[object]; }
+
+ private:
+  struct Span {
+    float low = 1e9f, high = -1e9f;
+  };
+  void AddTube(Tube tube, const Material& material);
+  void AddFace(Face face, const Material& material);
+  void AddOccluder(const Occluder& occluder, const Pose& T_CR, int frame_number);
+  void MarkTube(const CameraModel& camera, std::size_t tube);
+  void MarkFace(const CameraModel& camera, std::size_t face);
+  void MarkBox(Eigen::Vector2d low, Eigen::Vector2d high, int object, std::size_t tube, float s);
+
+  int width_px_, height_px_, tiles_across_, tiles_down_;
+  std::vector<Tube> tubes_;  // objects 1 to tubes_.size()
+  std::vector<Face> faces_;  // objects from tubes_.size() + 1
+  std::vector<Material> materials_ = {{}}, face_materials_;
+  std::vector<ObjectMask> tiles_;
+  std::vector<std::vector<Span>> spans_;  // of each tube in each tile, along the tube (m)
+};
+
+}  // namespace flextip::render
