@@ -15,7 +15,7 @@ constexpr double kMinBand_px = 1.2, kMaxBand_px = 3.5;
 constexpr double kBandOfCell = 0.6;    // the next cell's edge is at 1.0 and blurred
 constexpr double kMinContrast = 12.0;  // grey levels
 constexpr double kMinBlur_px = 0.25, kMaxBlur_px = 3.0;
-constexpr int kMinPixels = 24;
+constexpr int kMinPixels = 14;
 
 // An edge's own axes: s along it from its middle, d across it, away from the tag.
 struct EdgeFrame {
