@@ -45,6 +45,9 @@ struct ShaftEstimate {
   int measurements = 0;                             ///< scalar measurements used
 };
 
+class RodFit;
+using RodParameters = Eigen::Matrix<double, 9, 1>;
+
 /// Fits the exact rod (unknowns: wrist, port, tip force; priors: encoder noise, registration, a
 /// wide one on the force) by Levenberg-Marquardt with analytic derivatives, and the thesis's beam
 /// by the closed forms where their sensors are present, else from the fitted force. Starts from the
@@ -59,6 +62,10 @@ class ShaftEstimator {
   void Reset();
 
  private:
+  bool Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
+  void Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
+  void FillModel(const RodFit& fit, const RodParameters& x, const Measurements& z,
+                 ShaftEstimate& estimate);
   void UpdateTissue(const ShaftEstimate& estimate);
 
   EstimatorOptions options_;

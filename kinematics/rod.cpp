@@ -10,11 +10,13 @@ namespace flextip {
 namespace {
 
 constexpr double kConverged = 1e-12;   // of the scaled conditions
+constexpr double kNearlyThere = 1e-9;  // from here one linear correction reaches rounding error
+constexpr double kMaxLinear = 1e-6;    // largest change of the unknowns such a correction may make
 constexpr int kMaxNewton = 20;
 constexpr int kMaxLoadSteps = 60;
-constexpr double kMaxTurn = 0.4;       // of the tip tangent in one Newton step (rad)
-constexpr double kLoadStep = 0.7;      // scaled load applied in one step of a cold start
-constexpr double kMinStretch = 1e-6;   // shortest stretch on either side of the port, of the length
+constexpr double kMaxTurn = 0.4;      // of the tip tangent in one Newton step (rad)
+constexpr double kLoadStep = 0.7;     // scaled load applied in one step of a cold start
+constexpr double kMinStretch = 1e-6;  // shortest stretch on either side of the port, of the length
 
 // Columns of the derivatives: the unknowns (two turns of the tip tangent, the port's place, the
 // port's force), then the tip force.
@@ -51,6 +53,8 @@ struct RodSolver::Evaluation {
   Vector6 residual;
   Eigen::Matrix<double, 6, 9> derivative;
   bool ok = false;
+
+  void Correct(const Vector6& dx);
 };
 
 namespace {
@@ -104,10 +108,14 @@ bool IsFinite(const RodProblem& p) {
 
 const char* Name(RodStatus status) {
   switch (status) {
-    case RodStatus::kOk: return "ok";
-    case RodStatus::kBadInput: return "bad_input";
-    case RodStatus::kUnreachable: return "unreachable";
-    case RodStatus::kNotConverged: return "not_converged";
+    case RodStatus::kOk:
+      return "ok";
+    case RodStatus::kBadInput:
+      return "bad_input";
+    case RodStatus::kUnreachable:
+      return "unreachable";
+    case RodStatus::kNotConverged:
+      return "not_converged";
   }
   return "";
 }
@@ -148,6 +156,26 @@ void RodSolver::Evaluate(const Scaled& scaled, const Unknowns& x, Evaluation& e)
   e.ok = e.residual.allFinite() && e.derivative.allFinite();
 }
 
+/// The states follow the unknowns to first order: what is left out is of the order of the squared
+/// correction, below rounding where the residual is below kNearlyThere.
+void RodSolver::Evaluation::Correct(const Vector6& dx) {
+  for (RodFlow<9>* flow : {&port, &wrist}) {
+    const Eigen::Vector3d dt_dsigma = flow == &port
+                                          ? Eigen::Vector3d(flow->t.cross(flow->m) * dx[kPlace])
+                                          : Eigen::Vector3d::Zero();
+    flow->t = (flow->t + flow->dt.leftCols<6>() * dx + dt_dsigma).normalized();
+    flow->m += flow->dm.leftCols<6>() * dx;
+    flow->P += flow->dP.leftCols<6>() * dx;
+  }
+  residual += derivative.leftCols<6>() * dx;
+}
+
+void RodSolver::Unknowns::Move(const Eigen::Matrix<double, 3, 2>& turn_basis, const Vector6& dx) {
+  t_tip = (t_tip + turn_basis * dx.head<2>()).normalized();
+  sigma_port += dx[kPlace];
+  r += dx.tail<3>();
+}
+
 int RodSolver::Newton(const Scaled& scaled, Unknowns& x, Evaluation& e) {
   double last = 1e300;
   for (int i = 1; i <= kMaxNewton; ++i) {
@@ -162,12 +190,14 @@ int RodSolver::Newton(const Scaled& scaled, Unknowns& x, Evaluation& e) {
     const double turn = dx.head<2>().norm();
     if (turn > kMaxTurn) dx *= kMaxTurn / turn;
     // The port stays on the shaft: at most half of the way to either end in one step.
-    const double room = 0.5 * (dx[2] > 0 ? 1.0 - x.sigma_port : x.sigma_port);
-    if (std::abs(dx[2]) > room) dx *= room / std::abs(dx[2]);
-    x.t_tip = (x.t_tip + e.turn_basis * dx.head<2>()).normalized();
-    x.sigma_port += dx[2];
-    x.r += dx.tail<3>();
+    const double room = 0.5 * (dx[kPlace] > 0 ? 1.0 - x.sigma_port : x.sigma_port);
+    if (std::abs(dx[kPlace]) > room) dx *= room / std::abs(dx[kPlace]);
+    x.Move(e.turn_basis, dx);
     if (x.sigma_port < kMinStretch || x.sigma_port > 1.0 - kMinStretch) return 0;
+    if (size < kNearlyThere && dx.norm() < kMaxLinear) {
+      e.Correct(dx);
+      return i;
+    }
   }
   return 0;
 }
@@ -199,7 +229,8 @@ int RodSolver::SolveCold(const Scaled& scaled, Unknowns& x, Evaluation& e) {
 RodState RodSolver::Solve(const RodProblem& problem) {
   RodState state;
   state.status = RodStatus::kBadInput;
-  if (!IsFinite(problem) || problem.length_m <= 0 || problem.bending_stiffness_Nm2 <= 0) return state;
+  if (!IsFinite(problem) || problem.length_m <= 0 || problem.bending_stiffness_Nm2 <= 0)
+    return state;
   const Scaled scaled(problem);
   const double reach = scaled.span.norm();
   state.status = RodStatus::kUnreachable;
@@ -226,11 +257,9 @@ int RodSolver::SolveWarm(const RodProblem& problem, const Scaled& scaled, Unknow
   const Vector6 dx = dx_ * moved;
   x = x_;
   // A prediction to first order, where the step is small enough for it to mean something.
-  if (dx.head<2>().norm() < kMaxTurn && x.sigma_port + dx[2] > kMinStretch &&
-      x.sigma_port + dx[2] < 1.0 - kMinStretch) {
-    x.t_tip = (x.t_tip + turn_basis_ * dx.head<2>()).normalized();
-    x.sigma_port += dx[2];
-    x.r += dx.tail<3>();
+  if (dx.head<2>().norm() < kMaxTurn && x.sigma_port + dx[kPlace] > kMinStretch &&
+      x.sigma_port + dx[kPlace] < 1.0 - kMinStretch) {
+    x.Move(turn_basis_, dx);
   }
   const int used = Newton(scaled, x, e);
   // Far from where it started, Newton may have found another branch.
@@ -288,6 +317,9 @@ void RodSolver::FillState(const Evaluation& e, RodState& state) {
   state.residual = e.residual.norm();
   state.s_port_m = (1.0 - x_.sigma_port) * L;
   state.t_port = e.port.t;
+  // The port's place on the shaft moves too.
+  const Eigen::Vector3d dt_dsigma = e.port.t.cross(e.port.m);
+  state.dt_port = MakeSection(e.port, &tip_, state.s_port_m).dt + dt_dsigma * dx_.row(kPlace);
   state.f_port = x_.r * unit;
   state.f_wrist = -(problem_.f_tip + problem_.q_weight * L + state.f_port);
 }

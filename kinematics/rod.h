@@ -45,12 +45,13 @@ struct RodSection {
 struct RodState {
   RodStatus status = RodStatus::kNotConverged;
   int iterations = 0;
-  double residual = 0.0;                                   ///< of the scaled conditions
-  RodSection wrist, tip;                                   ///< at s = 0 and s = length
+  double residual = 0.0;  ///< of the scaled conditions
+  RodSection wrist, tip;  ///< at s = 0 and s = length
   double s_port_m = 0.0;
   Eigen::Vector3d t_port = Eigen::Vector3d::UnitX();
-  Eigen::Vector3d f_port = Eigen::Vector3d::Zero();        ///< of the port on the shaft (N)
-  Eigen::Vector3d f_wrist = Eigen::Vector3d::Zero();       ///< of the wrist on the shaft (N)
+  RodDerivative dt_port = RodDerivative::Zero();      ///< of t_port
+  Eigen::Vector3d f_port = Eigen::Vector3d::Zero();   ///< of the port on the shaft (N)
+  Eigen::Vector3d f_wrist = Eigen::Vector3d::Zero();  ///< of the wrist on the shaft (N)
 
   bool IsUsable() const { return status == RodStatus::kOk; }
   /// d tip / d wrist with the tip force held constant.
@@ -82,6 +83,8 @@ class RodSolver {
     Eigen::Vector3d t_tip = Eigen::Vector3d::UnitX();
     double sigma_port = 0.5;                      // from the tip
     Eigen::Vector3d r = Eigen::Vector3d::Zero();  // port on the shaft
+
+    void Move(const Eigen::Matrix<double, 3, 2>& turn_basis, const Eigen::Matrix<double, 6, 1>& dx);
   };
   struct Scaled;
   struct Evaluation;

@@ -40,8 +40,9 @@ inline Eigen::Vector3d Vector(const ReferenceRow& row, const std::string& name) 
 }
 
 inline RodProblem Problem(const ReferenceRow& row) {
-  return {row.at("length_m"),          row.at("bending_stiffness_Nm2"), Vector(row, "p_wrist_m"),
-          Vector(row, "p_port_m"),     Vector(row, "f_tip_N"),          Vector(row, "q_weight_N_per_m")};
+  return {row.at("length_m"),       row.at("bending_stiffness_Nm2"),
+          Vector(row, "p_wrist_m"), Vector(row, "p_port_m"),
+          Vector(row, "f_tip_N"),   Vector(row, "q_weight_N_per_m")};
 }
 
 }  // namespace flextip

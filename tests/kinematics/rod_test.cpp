@@ -46,8 +46,9 @@ TEST(RodReference, EveryRowFromAColdStart) {
     moment.Add((solver.Section(0.5 * s).m - m1).norm() / m1.norm(), i);
     moment.Add((solver.Section(0.5 * (s + L)).m - m2).norm() / m2.norm(), i);
   }
-  std::printf("tip %.1e m, tangents %.1e, s_port %.1e m, forces %.1e, moments %.1e, %d evaluations\n",
-              tip.value, tangent.value, place.value, force.value, moment.value, iterations);
+  std::printf(
+      "tip %.1e m, tangents %.1e, s_port %.1e m, forces %.1e, moments %.1e, %d evaluations\n",
+      tip.value, tangent.value, place.value, force.value, moment.value, iterations);
   EXPECT_LT(tip.value, 1e-8) << "row " << tip.row + 2;
   EXPECT_LT(tangent.value, 1e-7) << "row " << tangent.row + 2;
   EXPECT_LT(place.value, 1e-8) << "row " << place.row + 2;
@@ -110,6 +111,11 @@ TEST(RodDerivatives, TipWristAndSectionsAgainstDifferences) {
       const Eigen::MatrixXd numeric = NumericJacobian(f, Parameters(problem), 1e-4);
       EXPECT_LT((J - numeric).norm(), 1e-7 * numeric.norm()) << "s = " << s << "\n" << J - numeric;
     }
+    const auto port_tangent = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+      return RodSolver().Solve(Moved(problem, x)).t_port;
+    };
+    const Eigen::MatrixXd numeric = NumericJacobian(port_tangent, Parameters(problem), 1e-4);
+    EXPECT_LT((state.dt_port - numeric).norm(), 1e-7 * numeric.norm());
     EXPECT_LT((solver.Section(0.0).p - problem.p_wrist).norm(), 1e-11);
     EXPECT_LT((solver.Section(state.s_port_m).p - problem.p_port).norm(), 1e-11);
     EXPECT_LT((solver.Section(0.0).dp.leftCols<3>() - Eigen::Matrix3d::Identity()).norm(), 1e-10);
@@ -157,8 +163,9 @@ TEST(Rod, ForcesAndMomentsBalance) {
     const int n = 200;
     for (int i = 0; i <= n; ++i) {
       const double w = (i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2) / (3.0 * n) * problem.length_m;
-      weight += w * (solver.Section(problem.length_m * i / n).p - problem.p_wrist)
-                        .cross(problem.q_weight);
+      weight +=
+          w *
+          (solver.Section(problem.length_m * i / n).p - problem.p_wrist).cross(problem.q_weight);
     }
     const Eigen::Vector3d moment = (problem.p_port - problem.p_wrist).cross(state.f_port) +
                                    (state.tip.p - problem.p_wrist).cross(problem.f_tip) + weight;

@@ -1,0 +1,136 @@
+#include "estimation/rod_fit.h"
+
+#include <algorithm>
+
+#include "core/rotation.h"
+
+namespace flextip {
+namespace {
+
+// No sensor is believed beyond these, so that noise-free simulated data keep a finite weight.
+constexpr double kLeastPosition_m = 1e-6, kLeastAngle_rad = 1e-6, kLeastMoment_Nm = 1e-6,
+                 kLeastForce_N = 1e-5;
+
+/// W with W^T W the inverse of the covariance, its variances floored.
+Eigen::Matrix3d Whitening(const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d floored =
+      covariance + kLeastPosition_m * kLeastPosition_m * Eigen::Matrix3d::Identity();
+  const Eigen::LLT<Eigen::Matrix3d> cholesky(floored);
+  return cholesky.matrixL().solve(Eigen::Matrix3d::Identity());
+}
+
+Eigen::Matrix3d Whitening(double noise_m) {
+  return Eigen::Matrix3d::Identity() / std::max(noise_m, kLeastPosition_m);
+}
+
+}  // namespace
+
+RodFit::RodFit(const RodProblem& shaft, const Measurements& measurements, const RodPrior& prior,
+               bool use_positions, RodSolver& solver)
+    : shaft_(shaft),
+      measurements_(measurements),
+      prior_(prior),
+      use_positions_(use_positions),
+      solver_(solver),
+      force_unit_(shaft.bending_stiffness_Nm2 / (shaft.length_m * shaft.length_m)) {}
+
+RodProblem RodFit::ProblemAt(const RodParameters& parameters) const {
+  RodProblem problem = shaft_;
+  problem.p_wrist = parameters.head<3>();
+  problem.p_port = parameters.segment<3>(3);
+  problem.f_tip = parameters.tail<3>() * force_unit_;
+  return problem;
+}
+
+void RodFit::AddPosition(const Eigen::Vector3d& measured, const Eigen::Matrix3d& whiten,
+                         const RodSection& section) const {
+  residuals_.segment<3>(rows_) = whiten * (section.p - measured);
+  jacobian_.middleRows<3>(rows_) = whiten * section.dp;
+  rows_ += 3;
+}
+
+void RodFit::AddDirection(const Eigen::Vector3d& measured, double noise_rad,
+                          const Eigen::Vector3d& t, const RodDerivative& dt) const {
+  const Eigen::Matrix<double, 2, 3> across =
+      NormalBasis(measured).transpose() / std::max(noise_rad, kLeastAngle_rad);
+  residuals_.segment<2>(rows_) = across * t;
+  jacobian_.middleRows<2>(rows_) = across * dt;
+  rows_ += 2;
+}
+
+void RodFit::AddStrain(const RodState& rod) const {
+  // The measured wrist frame, turned to the model's tangent and carried along the shaft without
+  // twist: each stretch bends in one plane, so one rotation a stretch carries it.
+  const Eigen::Matrix3d& R_RW = *measurements_.R_RW;
+  Eigen::Matrix3d frame = RotationWithoutTwist(R_RW.col(0), rod.wrist.t) * R_RW;
+  Eigen::Vector3d t = rod.wrist.t;
+  const double noise = std::max(measurements_.strain->moment_noise_Nm, kLeastMoment_Nm);
+  for (int i = 0; i < 2; ++i) {
+    const double s =
+        std::clamp(measurements_.strain->station_from_wrist_m[i], 0.0, shaft_.length_m);
+    const RodSection section = solver_.Section(s);
+    if (s > rod.s_port_m) {
+      frame = RotationWithoutTwist(t, rod.t_port) * frame;
+      t = rod.t_port;
+    }
+    frame = RotationWithoutTwist(t, section.t) * frame;
+    t = section.t;
+    // The axes turn with the shaft too, but only along it, where there is no moment.
+    const Eigen::Matrix<double, 2, 3> axes = frame.rightCols<2>().transpose() / noise;
+    residuals_.segment<2>(rows_) =
+        axes * section.m - measurements_.strain->moments_Nm.segment<2>(2 * i) / noise;
+    jacobian_.middleRows<2>(rows_) = axes * section.dm;
+    rows_ += 2;
+  }
+}
+
+void RodFit::AddSensors(const RodState& rod, const RodParameters& x) const {
+  const Measurements& z = measurements_;
+  if (z.R_RW) {
+    AddDirection(z.R_RW->col(0), z.wrist_orientation_noise_rad, rod.wrist.t, rod.wrist.dt);
+  }
+  if (z.tip && z.tip->status != TipStatus::kLost) {
+    if (use_positions_) AddPosition(z.tip->p_RE, Whitening(z.tip->covariance_m2), rod.tip);
+    if (z.tip->d_RE) AddDirection(*z.tip->d_RE, z.tip_direction_noise_rad, rod.tip.t, rod.tip.dt);
+  }
+  if (z.em) {
+    const double s = std::clamp(shaft_.length_m - z.em->distance_from_tip_m, 0.0, shaft_.length_m);
+    const RodSection section = solver_.Section(s);
+    if (use_positions_) AddPosition(z.em->T_RS.p, Whitening(z.em->position_noise_m), section);
+    AddDirection(z.em->T_RS.R.col(0), z.em->orientation_noise_rad, section.t, section.dt);
+  }
+  if (z.port_direction) {
+    AddDirection(*z.port_direction, z.port_direction_noise_rad, rod.t_port, rod.dt_port);
+  }
+  if (z.strain && z.R_RW) AddStrain(rod);
+  if (z.load) {
+    const double noise = std::max(z.load->force_noise_N, kLeastForce_N);
+    residuals_.segment<3>(rows_) = (x.tail<3>() * force_unit_ - z.load->f_tip_N) / noise;
+    jacobian_.block<3, 3>(rows_, 6) = Eigen::Matrix3d::Identity() / noise;
+    rows_ += 3;
+  }
+}
+
+void RodFit::AddPrior(const RodParameters& parameters) const {
+  residuals_.head<9>() = (parameters - prior_.mean).cwiseQuotient(prior_.sd);
+  jacobian_.topRows<9>() = prior_.sd.cwiseInverse().asDiagonal();
+  rows_ = 9;
+}
+
+bool RodFit::operator()(const double* parameters, double* residuals, double* jacobian) const {
+  const RodParameters x = Eigen::Map<const RodParameters>(parameters);
+  const RodState rod = solver_.Solve(ProblemAt(x));
+  if (!rod.IsUsable()) return false;
+  residuals_.setZero();
+  jacobian_.setZero();
+  AddPrior(x);
+  AddSensors(rod, x);
+  // The sensors' columns were by newton; the parameter is the force in units of EI / L^2.
+  jacobian_.bottomRightCorner<kMaxRodResiduals - 9, 3>() *= force_unit_;
+  Eigen::Map<Residuals>(residuals, NUM_RESIDUALS) = residuals_;
+  if (jacobian != nullptr)
+    Eigen::Map<Jacobian>(jacobian, NUM_RESIDUALS, NUM_PARAMETERS) = jacobian_;
+  return true;
+}
+
+}  // namespace flextip

@@ -1,0 +1,65 @@
+// The measurements of one instant as residuals of the rod, whitened, with their derivatives.
+// Private to estimation.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "estimation/measurements.h"
+#include "kinematics/rod.h"
+
+namespace flextip {
+
+/// Parameters: wrist position (m), port position (m), tip force in units of EI / L^2.
+using RodParameters = Eigen::Matrix<double, 9, 1>;
+
+/// Enough rows for every sensor at once; the rows not used are zero.
+inline constexpr int kMaxRodResiduals = 32;
+
+struct RodPrior {
+  RodParameters mean = RodParameters::Zero();
+  RodParameters sd = RodParameters::Ones();
+};
+
+/// The cost function of one instant, in the form ceres::TinySolver takes.
+class RodFit {
+ public:
+  using Scalar = double;
+  enum { NUM_RESIDUALS = kMaxRodResiduals, NUM_PARAMETERS = 9 };
+  using Residuals = Eigen::Matrix<double, NUM_RESIDUALS, 1>;
+  using Jacobian = Eigen::Matrix<double, NUM_RESIDUALS, NUM_PARAMETERS>;
+
+  /// `shaft` gives length, stiffness and weight. Without `use_positions` the places of tip and EM
+  /// sensor are left out. The references must outlive the object.
+  RodFit(const RodProblem& shaft, const Measurements& measurements, const RodPrior& prior,
+         bool use_positions, RodSolver& solver);
+
+  /// False where the rod has no equilibrium. `jacobian` (column-major) may be null.
+  bool operator()(const double* parameters, double* residuals, double* jacobian) const;
+
+  /// How many scalar measurements (without the priors) the last call used.
+  int MeasurementCount() const { return rows_ - NUM_PARAMETERS; }
+
+  RodProblem ProblemAt(const RodParameters& parameters) const;
+  double ForceUnit() const { return force_unit_; }
+
+ private:
+  void AddPosition(const Eigen::Vector3d& measured, const Eigen::Matrix3d& whiten,
+                   const RodSection& section) const;
+  void AddDirection(const Eigen::Vector3d& measured, double noise_rad, const Eigen::Vector3d& t,
+                    const RodDerivative& dt) const;
+  void AddStrain(const RodState& rod) const;
+  void AddSensors(const RodState& rod, const RodParameters& x) const;
+  void AddPrior(const RodParameters& parameters) const;
+
+  RodProblem shaft_;
+  const Measurements& measurements_;
+  RodPrior prior_;
+  bool use_positions_;
+  RodSolver& solver_;
+  double force_unit_;
+  mutable int rows_ = 0;
+  mutable Residuals residuals_;
+  mutable Jacobian jacobian_;
+};
+
+}  // namespace flextip

@@ -1,0 +1,176 @@
+#include "estimation/shaft_estimator.h"
+
+#include <ceres/tiny_solver.h>
+
+#include <algorithm>
+
+#include "estimation/rod_fit.h"
+
+namespace flextip {
+namespace {
+
+constexpr double kObservable = 0.3;    // posterior over prior sd of the force across the shaft
+constexpr double kSecant_m = 0.001;    // tip travel between two looks at the tissue
+constexpr double kTissueWeight = 0.5;  // of a new secant against what was known
+constexpr double kStiffestTissue_N_m = 2000.0;
+
+bool AllFinite(const Measurements& z) {
+  bool ok = z.p_RW.allFinite();
+  if (z.R_RW) ok &= z.R_RW->allFinite();
+  if (z.tip && z.tip->status != TipStatus::kLost) {
+    ok &= z.tip->p_RE.allFinite() && z.tip->covariance_m2.allFinite();
+    if (z.tip->d_RE) ok &= z.tip->d_RE->allFinite();
+  }
+  if (z.em) ok &= z.em->T_RS.p.allFinite() && z.em->T_RS.R.allFinite();
+  if (z.port_direction) ok &= z.port_direction->allFinite();
+  if (z.strain) ok &= z.strain->moments_Nm.allFinite();
+  if (z.load) ok &= z.load->f_tip_N.allFinite();
+  return ok;
+}
+
+RodPrior Prior(const EstimatorOptions& options, const Measurements& z) {
+  RodPrior prior;
+  prior.mean << z.p_RW, options.p_RP, Eigen::Vector3d::Zero();
+  prior.sd << Eigen::Vector3d::Constant(std::max(z.wrist_position_noise_m, 1e-6)),
+      Eigen::Vector3d::Constant(std::max(options.port_prior_m, 1e-6)),
+      Eigen::Vector3d::Constant(options.force_prior_units);
+  return prior;
+}
+
+/// The straight-shaft model that is handed on where nothing better is known.
+ShaftModel StraightModel(const EstimatorOptions& options) {
+  ShaftModel model;
+  model.instrument = options.instrument;
+  model.p_RP = options.p_RP;
+  model.weight_N_m = options.instrument.mass_per_length_kg_m * options.gravity_m_s2;
+  model.beam.status = BeamStatus::kStraight;
+  return model;
+}
+
+/// The thesis's parameters from the fitted force, for flexion without slopes or moments.
+BeamFit BeamFromForce(const Measurements& z, const EstimatorOptions& options,
+                      const ShaftModel& model) {
+  return SolveBeam(z.p_RW, model.p_RP, model.f_tip_N, options.instrument.bending_stiffness_Nm2,
+                   options.instrument.length_m);
+}
+
+/// Tissue: symmetric, and it only pushes back.
+Eigen::Matrix3d PushingBack(const Eigen::Matrix3d& K) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(0.5 * (K + K.transpose()));
+  const Eigen::Vector3d values = eigen.eigenvalues().cwiseMin(0.0).cwiseMax(-kStiffestTissue_N_m);
+  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+}  // namespace
+
+const char* Name(EstimateStatus status) {
+  switch (status) {
+    case EstimateStatus::kOk:
+      return "ok";
+    case EstimateStatus::kUnobservable:
+      return "unobservable";
+    case EstimateStatus::kNotConverged:
+      return "not_converged";
+    case EstimateStatus::kBadInput:
+      return "bad_input";
+  }
+  return "";
+}
+
+ShaftEstimator::ShaftEstimator(const EstimatorOptions& options) : options_(options) {}
+
+void ShaftEstimator::Reset() { *this = ShaftEstimator(options_); }
+
+ShaftEstimate ShaftEstimator::Update(const Measurements& z) {
+  ShaftEstimate estimate;
+  estimate.model = StraightModel(options_);
+  if (!AllFinite(z)) return estimate;
+
+  RodProblem shaft;
+  shaft.length_m = options_.instrument.length_m;
+  shaft.bending_stiffness_Nm2 = options_.instrument.bending_stiffness_Nm2;
+  shaft.q_weight = estimate.model.weight_N_m;
+  const RodPrior prior = Prior(options_, z);
+  RodFit fit(shaft, z, prior, options_.use_positions, solver_);
+  RodParameters x = prior.mean;
+  x.tail<3>() = last_force_N_ / fit.ForceUnit();
+
+  if (!Fit(fit, x, estimate)) {
+    estimate.status = EstimateStatus::kNotConverged;
+    last_force_N_.setZero();
+    return estimate;
+  }
+  Describe(fit, x, estimate);
+  FillModel(fit, x, z, estimate);
+  return estimate;
+}
+
+bool ShaftEstimator::Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate) {
+  ceres::TinySolver<RodFit> solver;
+  solver.options.max_num_iterations = 20;
+  solver.options.cost_threshold = 1e-12;
+  solver.options.gradient_tolerance = 1e-9;
+  solver.options.parameter_tolerance = 1e-10;
+  RodFit::Residuals residuals;
+  RodFit::Jacobian jacobian;
+  // The last force is the usual start; where the rod has no equilibrium there, the unloaded shaft.
+  if (!fit(x.data(), residuals.data(), nullptr)) {
+    x.tail<3>().setZero();
+    if (!fit(x.data(), residuals.data(), nullptr)) return false;
+  }
+  solver.Solve(fit, &x);
+  if (!x.allFinite() || !fit(x.data(), residuals.data(), jacobian.data())) return false;
+  estimate.chi2 = residuals.squaredNorm();
+  estimate.measurements = fit.MeasurementCount();
+  const Matrix9d information = jacobian.transpose() * jacobian;
+  estimate.covariance = information.ldlt().solve(Matrix9d::Identity());
+  return estimate.covariance.allFinite();
+}
+
+void ShaftEstimator::Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate) {
+  const RodState rod = solver_.Solve(fit.ProblemAt(x));
+  estimate.p_RE = rod.tip.p;
+  estimate.d_RE = rod.tip.t;
+  estimate.s_port_m = rod.s_port_m;
+  // Observable: what the sensors say of the force across the shaft narrows the prior.
+  const Eigen::Matrix3d force = estimate.covariance.bottomRightCorner<3, 3>();
+  const Eigen::Vector3d t = rod.t_port;
+  const double across = std::sqrt(0.5 * std::max(0.0, force.trace() - t.dot(force * t)));
+  estimate.status = across < kObservable * options_.force_prior_units
+                        ? EstimateStatus::kOk
+                        : EstimateStatus::kUnobservable;
+  // From units of EI / L^2 to newton.
+  estimate.covariance.rightCols<3>() *= fit.ForceUnit();
+  estimate.covariance.bottomRows<3>() *= fit.ForceUnit();
+  estimate.p_RE_covariance_m2 = rod.tip.dp * estimate.covariance * rod.tip.dp.transpose();
+}
+
+void ShaftEstimator::FillModel(const RodFit& fit, const RodParameters& x, const Measurements& z,
+                               ShaftEstimate& estimate) {
+  ShaftModel& model = estimate.model;
+  model.p_RP = x.segment<3>(3);
+  if (estimate.status != EstimateStatus::kOk) return;
+  model.f_tip_N = x.tail<3>() * fit.ForceUnit();
+  model.force_known = true;
+  last_force_N_ = model.f_tip_N;
+  model.beam = BeamFromForce(z, options_, model);
+  if (options_.estimate_tissue) UpdateTissue(estimate);
+  model.tissue_stiffness_N_m = tissue_stiffness_N_m_;
+}
+
+void ShaftEstimator::UpdateTissue(const ShaftEstimate& estimate) {
+  const Eigen::Vector3d dp = estimate.p_RE - reference_tip_;
+  if (has_reference_ && dp.norm() < kSecant_m) return;
+  if (has_reference_) {
+    // Broyden's update: the least change of the stiffness that explains the last secant.
+    const Eigen::Vector3d df = estimate.model.f_tip_N - reference_force_N_;
+    const Eigen::Vector3d miss = df - tissue_stiffness_N_m_ * dp;
+    tissue_stiffness_N_m_ = PushingBack(tissue_stiffness_N_m_ +
+                                        kTissueWeight * miss * dp.transpose() / dp.squaredNorm());
+  }
+  has_reference_ = true;
+  reference_tip_ = estimate.p_RE;
+  reference_force_N_ = estimate.model.f_tip_N;
+}
+
+}  // namespace flextip
