@@ -1,0 +1,198 @@
+#include "control/controller.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "allocation_counter.h"
+#include "core/derivative_check.h"
+#include "kinematics/straight.h"
+
+namespace flextip {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Chapter 4's shaft: 2 N hung at the tip.
+ControlInput Chapter4Input() {
+  ControlInput input;
+  input.model.instrument = {0.6, 0.00238, 0.304, 0.0};
+  input.model.p_RP = {0.28, 0.0, 0.0};
+  input.model.f_tip_N = {0.0, -2.0, 0.0};
+  input.model.force_known = true;
+  input.model.beam = SolveBeam(input.p_RW, input.model.p_RP, input.model.f_tip_N, 0.304, 0.6);
+  const RodState rod =
+      RodSolver().Solve({0.6, 0.304, input.p_RW, input.model.p_RP, input.model.f_tip_N, {0, 0, 0}});
+  input.p_RE_measured = rod.tip.p;
+  input.tip_measured = true;
+  input.p_RE_desired = rod.tip.p + Eigen::Vector3d(0.001, 0.0005, -0.0007);
+  return input;
+}
+
+std::vector<ControllerKind> AllKinds() {
+  std::vector<ControllerKind> kinds;
+  for (int i = 0; i < kControllerKinds; ++i) kinds.push_back(static_cast<ControllerKind>(i));
+  return kinds;
+}
+
+ControllerOptions Options(ControllerKind kind) {
+  ControllerOptions options;
+  options.kind = kind;
+  return options;
+}
+
+TEST(Controller, NamesRoundTrip) {
+  for (const ControllerKind kind : AllKinds()) EXPECT_EQ(ControllerKindNamed(Name(kind)), kind);
+  EXPECT_FALSE(ControllerKindNamed("bent-track"));
+}
+
+TEST(Controller, StepSolvesTheJacobianForTheTipError) {
+  for (const ControllerKind kind : AllKinds()) {
+    const ControlInput input = Chapter4Input();
+    const ControlOutput out = TipController(Options(kind)).Step(input);
+    ASSERT_EQ(out.status, ControlStatus::kOk) << Name(kind);
+    // The tip that was used, by what the kind says it uses.
+    if (UsesTipMeasurement(kind)) {
+      EXPECT_EQ(out.p_RE_used, input.p_RE_measured);
+    }
+    if (out.damped || out.step_limited) continue;
+    const Eigen::Vector3d moved = out.J_tip_wrist * (out.p_RW_command - input.p_RW);
+    EXPECT_LT((moved - (input.p_RE_desired - out.p_RE_used)).norm(), 1e-12) << Name(kind);
+  }
+}
+
+TEST(Controller, RodTrackReachesTheGoalOnTheRodInTwoSteps) {
+  ControlInput input = Chapter4Input();
+  TipController controller(Options(ControllerKind::kRodTrack));
+  for (int i = 0; i < 2; ++i) {
+    input.p_RW = controller.Step(input).p_RW_command;
+    input.p_RE_measured =
+        RodSolver()
+            .Solve({0.6, 0.304, input.p_RW, input.model.p_RP, input.model.f_tip_N, {0, 0, 0}})
+            .tip.p;
+  }
+  EXPECT_LT((input.p_RE_measured - input.p_RE_desired).norm(), 1e-6);
+}
+
+TEST(Controller, StraightJacobianIsTheLeversByDifferences) {
+  const ControlInput input = Chapter4Input();
+  const auto tip = [&](const Eigen::VectorXd& w) -> Eigen::VectorXd {
+    return SolveStraight(w, input.model.p_RP, 0.6).p_tip;
+  };
+  const ControlOutput out = TipController(Options(ControllerKind::kStraightTrack)).Step(input);
+  EXPECT_LT((out.J_tip_wrist - NumericJacobian(tip, input.p_RW, 1e-4)).norm(), 1e-9);
+}
+
+TEST(Controller, TrackersHoldStillWithoutATip) {
+  for (const ControllerKind kind : AllKinds()) {
+    ControlInput input = Chapter4Input();
+    input.tip_measured = false;
+    input.p_RE_measured.setConstant(kNaN);  // whatever stands there must not be read
+    const ControlOutput out = TipController(Options(kind)).Step(input);
+    EXPECT_EQ(out.status, UsesTipMeasurement(kind) ? ControlStatus::kNoTip : ControlStatus::kOk);
+    EXPECT_TRUE(out.p_RW_command.allFinite());
+    if (UsesTipMeasurement(kind)) {
+      EXPECT_EQ(out.p_RW_command, input.p_RW);
+    }
+  }
+}
+
+TEST(Controller, HoldsStillOnBadInputAndWithoutAModel) {
+  for (const ControllerKind kind : AllKinds()) {
+    ControlInput bad = Chapter4Input();
+    bad.p_RE_desired.y() = kNaN;
+    ControlOutput out = TipController(Options(kind)).Step(bad);
+    EXPECT_EQ(out.status, ControlStatus::kBadInput);
+    EXPECT_EQ(out.p_RW_command, bad.p_RW);
+
+    ControlInput far = Chapter4Input();
+    far.model.p_RP = {0.7, 0, 0};
+    far.model.beam.status = BeamStatus::kNoPort;
+    out = TipController(Options(kind)).Step(far);
+    EXPECT_EQ(out.status, ControlStatus::kNoModel) << Name(kind);
+    EXPECT_EQ(out.p_RW_command, far.p_RW);
+  }
+}
+
+TEST(Controller, FallsBackOnTheStraightShaftAndSaysSo) {
+  for (const ControllerKind kind : AllKinds()) {
+    ControlInput input = Chapter4Input();
+    input.model.f_tip_N.setZero();
+    input.model.force_known = false;
+    input.model.beam.status = BeamStatus::kStraight;
+    const ControlOutput out = TipController(Options(kind)).Step(input);
+    const bool straight =
+        kind == ControllerKind::kStraightCalculate || kind == ControllerKind::kStraightTrack;
+    EXPECT_EQ(out.status, straight ? ControlStatus::kOk : ControlStatus::kStraightInstead);
+    const StraightShaft lever = SolveStraight(input.p_RW, input.model.p_RP, 0.6);
+    EXPECT_LT((out.J_tip_wrist - lever.J_tip_wrist).norm(), 1e-9) << Name(kind);
+  }
+}
+
+TEST(Controller, StepIsBoundedAndSaysSo) {
+  for (const ControllerKind kind : AllKinds()) {
+    ControlInput input = Chapter4Input();
+    input.p_RE_desired += Eigen::Vector3d(0.0, 0.2, 0.0);
+    const ControlOutput out = TipController(Options(kind)).Step(input);
+    EXPECT_TRUE(out.step_limited);
+    EXPECT_NEAR((out.p_RW_command - input.p_RW).norm(), 0.01, 1e-12);
+  }
+}
+
+TEST(Controller, WristKeepsItsDistanceFromThePort) {
+  std::mt19937_64 rng(3);
+  std::normal_distribution<double> normal;
+  for (const ControllerKind kind : AllKinds()) {
+    TipController controller(Options(kind));
+    for (int i = 0; i < 200; ++i) {
+      ControlInput input = Chapter4Input();
+      // Near either end of the shaft, with wild goals.
+      input.p_RW = {i % 2 == 0 ? 0.265 : -0.305, 0.002 * normal(rng), 0.002 * normal(rng)};
+      input.p_RE_desired += 0.3 * Eigen::Vector3d(normal(rng), normal(rng), normal(rng));
+      const ControlOutput out = controller.Step(input);
+      ASSERT_TRUE(out.p_RW_command.allFinite());
+      if (out.status == ControlStatus::kNoModel) continue;
+      const double distance = (out.p_RW_command - input.model.p_RP).norm();
+      EXPECT_GE(distance, 0.0119);
+      EXPECT_LE(distance, 0.5881);
+    }
+  }
+}
+
+TEST(Controller, DampsNearSingular) {
+  // A wrist almost on the port: the lever (L - a) / a is long one way; a tip almost at the port:
+  // its motion across nearly vanishes, and an undamped inverse would throw the wrist about.
+  ControlInput input = Chapter4Input();
+  input.p_RW = {-0.3, 0, 0};  // the tip 20 mm beyond the port
+  input.p_RE_measured = {0.3, 0, 0};
+  input.p_RE_desired = input.p_RE_measured + Eigen::Vector3d(0, 0.0001, 0);
+  ControllerOptions options = Options(ControllerKind::kStraightTrack);
+  const ControlOutput out = TipController(options).Step(input);
+  EXPECT_TRUE(out.damped);
+  EXPECT_NEAR(out.smallest_singular_value, 0.02 / 0.58, 1e-9);
+  options.min_singular_value = 0.01;
+  const ControlOutput free = TipController(options).Step(input);
+  EXPECT_FALSE(free.damped);
+  EXPECT_LT((out.p_RW_command - input.p_RW).norm(), (free.p_RW_command - input.p_RW).norm());
+}
+
+TEST(Controller, StepAllocatesNothing) {
+#if !defined(__SANITIZE_ADDRESS__)
+  const long empty = AllocationCount();
+  const Eigen::MatrixXd dynamic(4, 4);
+  ASSERT_EQ(AllocationCount(), empty + 1) << "the counter does not count";
+#endif
+  for (const ControllerKind kind : AllKinds()) {
+    TipController controller(Options(kind));
+    ControlInput input = Chapter4Input();
+    controller.Step(input);  // cold
+    const long before = AllocationCount();
+    for (int i = 0; i < 10; ++i) input.p_RW = controller.Step(input).p_RW_command;
+    EXPECT_EQ(AllocationCount(), before) << Name(kind);
+  }
+}
+
+}  // namespace
+}  // namespace flextip

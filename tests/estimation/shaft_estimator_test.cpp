@@ -1,0 +1,263 @@
+#include "estimation/shaft_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/derivative_check.h"
+#include "core/rotation.h"
+#include "estimation/rod_fit.h"
+
+namespace flextip {
+namespace {
+
+constexpr double kL = 0.6, kEI = 0.304;
+const Eigen::Vector3d kPort(0.28, 0.0, 0.0);
+const Eigen::Vector3d kForce(0.3, -1.2, 0.5);
+
+RodProblem Shaft() { return {kL, kEI, {0, 0, 0}, kPort, kForce, {0, 0, 0}}; }
+
+enum Sensors {
+  kWristDirection = 1,
+  kTip = 2,
+  kTipDirection = 4,
+  kEm = 8,
+  kStrain = 16,
+  kLoad = 32,
+  kPortDirection = 64
+};
+
+/// Measurements of the rod itself (the estimator's own model: what is tested here is the fit, its
+/// covariance and its status; models against another physics meet in the closed loop's tests).
+class Bench {
+ public:
+  Measurements Measure(const RodProblem& problem, int sensors, double noise_scale) {
+    RodSolver solver;
+    const RodState rod = solver.Solve(problem);
+    EXPECT_TRUE(rod.IsUsable());
+    Measurements z;
+    z.wrist_position_noise_m = 5e-5;
+    z.p_RW = problem.p_wrist + noise_scale * 5e-5 * Normal();
+    const Eigen::Matrix3d R_RW = RotationWithoutTwist(Eigen::Vector3d::UnitX(), rod.wrist.t);
+    if (sensors & (kWristDirection | kStrain)) {
+      z.R_RW = ExpRotation(noise_scale * 3e-4 * Normal()) * R_RW;
+      z.wrist_orientation_noise_rad = 3e-4;
+    }
+    if (sensors & (kTip | kTipDirection)) {
+      z.tip.emplace();
+      z.tip->status = TipStatus::kOk;
+      const Eigen::Vector3d sd(1e-4, 2e-4, 5e-4);
+      z.tip->covariance_m2 = sd.cwiseAbs2().asDiagonal();
+      z.tip->p_RE = rod.tip.p + noise_scale * sd.cwiseProduct(Normal());
+      if (sensors & kTipDirection) {
+        z.tip->d_RE = ExpRotation(noise_scale * 3e-3 * Normal()) * rod.tip.t;
+        z.tip_direction_noise_rad = 3e-3;
+      }
+    }
+    if (sensors & kEm) {
+      const RodSection s = solver.Section(kL - 0.02);
+      z.em.emplace();
+      z.em->distance_from_tip_m = 0.02;
+      z.em->position_noise_m = 1.3e-4;
+      z.em->orientation_noise_rad = 5.6e-4;
+      z.em->T_RS = {ExpRotation(noise_scale * 5.6e-4 * Normal()) *
+                        RotationWithoutTwist(Eigen::Vector3d::UnitX(), s.t),
+                    s.p + noise_scale * 1.3e-4 * Normal()};
+    }
+    if (sensors & kPortDirection) {
+      z.port_direction = ExpRotation(noise_scale * 5.6e-4 * Normal()) * rod.t_port;
+      z.port_direction_noise_rad = 5.6e-4;
+    }
+    if (sensors & kStrain) AddStrain(solver, R_RW, noise_scale, z);
+    if (sensors & kLoad)
+      z.load = LoadMeasurement{problem.f_tip + noise_scale * 0.005 * Normal(), 0.005};
+    return z;
+  }
+
+ private:
+  /// The carried frame by small steps along the shaft, unlike the estimator's two rotations.
+  void AddStrain(RodSolver& solver, const Eigen::Matrix3d& R_RW, double noise_scale,
+                 Measurements& z) {
+    z.strain.emplace();
+    z.strain->moment_noise_Nm = 8e-4;
+    const double stations[2] = {0.12, 0.5};
+    Eigen::Matrix3d frame = R_RW;
+    const int steps = 300;
+    int next = 0;
+    for (int i = 1; i <= steps && next < 2; ++i) {
+      const double s = stations[1] * i / steps;
+      const RodSection section = solver.Section(s);
+      frame = RotationWithoutTwist(frame.col(0), section.t) * frame;
+      if (s < stations[next] - 1e-9) continue;
+      z.strain->station_from_wrist_m[next] = s;
+      z.strain->moments_Nm.segment<2>(2 * next) =
+          frame.rightCols<2>().transpose() * section.m + noise_scale * 8e-4 * Normal().head<2>();
+      ++next;
+    }
+  }
+  Eigen::Vector3d Normal() { return {normal_(rng_), normal_(rng_), normal_(rng_)}; }
+
+  std::mt19937_64 rng_{11};
+  std::normal_distribution<double> normal_;
+};
+
+EstimatorOptions Options(bool use_positions = true) {
+  EstimatorOptions options;
+  options.instrument = {kL, 0.00238, kEI, 0.0};
+  options.p_RP = kPort;
+  options.use_positions = use_positions;
+  return options;
+}
+
+struct SensorSet {
+  const char* name;
+  int sensors;
+  bool use_positions;
+  double across_N;  // bound on the noise-free error of the force across the shaft
+};
+const SensorSet kSets[] = {
+    {"wrist direction, tip", kWristDirection | kTip, true, 2e-3},
+    {"wrist direction, tip and its direction", kWristDirection | kTip | kTipDirection, true, 2e-3},
+    {"wrist direction, EM", kWristDirection | kEm, true, 2e-3},
+    {"wrist direction, EM orientation only", kWristDirection | kEm, false, 2e-3},
+    {"strain", kStrain, false, 2e-3},
+    {"strain, tip", kStrain | kTip, true, 2e-3},
+    {"load", kLoad, false, 1e-3},
+    {"everything", 127, true, 1e-3},
+};
+
+TEST(ShaftEstimator, RecoversTheLoadFromEverySetOfSensorsWithoutNoise) {
+  for (const SensorSet& set : kSets) {
+    Bench bench;
+    ShaftEstimator estimator(Options(set.use_positions));
+    const RodState truth = RodSolver().Solve(Shaft());
+    const ShaftEstimate e = estimator.Update(bench.Measure(Shaft(), set.sensors, 0.0));
+    ASSERT_EQ(e.status, EstimateStatus::kOk) << set.name;
+    const Eigen::Vector3d t = truth.t_port, miss = e.model.f_tip_N - kForce;
+    // The force along the shaft hardly bends it: the prior pulls it towards nothing, as its
+    // covariance says, and the rest of the error is what that costs the others.
+    EXPECT_LT((miss - miss.dot(t) * t).norm(), 0.04) << set.name;
+    EXPECT_LT((e.p_RE - truth.tip.p).norm(), 2e-4) << set.name;
+    EXPECT_TRUE(e.model.beam.IsUsable()) << set.name;
+  }
+}
+
+TEST(ShaftEstimator, CovarianceMatchesMonteCarlo) {
+  for (const SensorSet& set : kSets) {
+    Bench bench;
+    std::mt19937_64 rng(5);
+    std::normal_distribution<double> normal;
+    const EstimatorOptions options = Options(set.use_positions);
+    const double unit = kEI / (kL * kL);
+    double nees = 0.0;
+    const int runs = 300;
+    int used = 0;
+    for (int i = 0; i < runs; ++i) {
+      // Truth drawn from the priors as well: only then is the covariance the error's.
+      RodProblem problem = Shaft();
+      const auto draw = [&] { return Eigen::Vector3d(normal(rng), normal(rng), normal(rng)); };
+      problem.p_port += options.port_prior_m * draw();
+      problem.f_tip = 0.25 * options.force_prior_units * unit * draw();
+      const RodState truth = RodSolver().Solve(problem);
+      if (!truth.IsUsable()) continue;
+      ShaftEstimator estimator(options);
+      const ShaftEstimate e = estimator.Update(bench.Measure(problem, set.sensors, 1.0));
+      ASSERT_EQ(e.status, EstimateStatus::kOk) << set.name;
+      const Eigen::Vector3d miss = e.p_RE - truth.tip.p;
+      nees += miss.dot(e.p_RE_covariance_m2.ldlt().solve(miss));
+      ++used;
+    }
+    ASSERT_GT(used, runs * 9 / 10);
+    // The mean of chi2 with 3 degrees of freedom over 300 runs: 3 +- 0.14.
+    EXPECT_GT(nees / used, 2.4) << set.name;
+    EXPECT_LT(nees / used, 3.6) << set.name;
+  }
+}
+
+TEST(ShaftEstimator, SaysWhenTheLoadCannotBeSeen) {
+  Bench bench;
+  ShaftEstimator estimator(Options(false));
+  // The tip's position may not be used, and nothing else is there.
+  const ShaftEstimate e = estimator.Update(bench.Measure(Shaft(), kTip, 0.0));
+  EXPECT_EQ(e.status, EstimateStatus::kUnobservable);
+  EXPECT_FALSE(e.model.force_known);
+  EXPECT_EQ(e.model.f_tip_N, Eigen::Vector3d::Zero());
+  EXPECT_FALSE(e.model.beam.IsUsable());
+  EXPECT_TRUE(e.p_RE.allFinite());
+}
+
+TEST(ShaftEstimator, UnloadedShaftGivesNoWildPort) {
+  Bench bench;
+  RodProblem problem = Shaft();
+  problem.f_tip.setZero();
+  for (int i = 0; i < 50; ++i) {
+    ShaftEstimator estimator(Options());
+    const ShaftEstimate e = estimator.Update(bench.Measure(problem, kWristDirection | kEm, 1.0));
+    ASSERT_EQ(e.status, EstimateStatus::kOk);
+    EXPECT_LT((e.model.p_RP - kPort).norm(), 0.002);
+    EXPECT_LT(e.model.f_tip_N.norm(), 2.5);
+  }
+}
+
+TEST(ShaftEstimator, BadInputAndUnreachablePortAreStatuses) {
+  Bench bench;
+  Measurements z = bench.Measure(Shaft(), kWristDirection | kTip, 0.0);
+  ShaftEstimator estimator(Options());
+  Measurements bad = z;
+  bad.tip->p_RE.x() = std::nan("");
+  EXPECT_EQ(estimator.Update(bad).status, EstimateStatus::kBadInput);
+  EstimatorOptions far = Options();
+  far.p_RP = {0.9, 0, 0};
+  EXPECT_EQ(ShaftEstimator(far).Update(z).status, EstimateStatus::kNotConverged);
+  EXPECT_EQ(estimator.Update(z).status, EstimateStatus::kOk);
+}
+
+TEST(ShaftEstimator, FindsTheTissuesStiffness) {
+  Bench bench;
+  ShaftEstimator estimator(Options());
+  Eigen::Matrix3d K = Eigen::Matrix3d::Zero();
+  K(1, 1) = -60.0;
+  const RodState start = RodSolver().Solve({kL, kEI, {0, 0, 0}, kPort, {0, 0, 0}, {0, 0, 0}});
+  ShaftEstimate e;
+  for (int i = 0; i < 40; ++i) {
+    RodProblem problem = Shaft();
+    problem.f_tip.setZero();
+    problem.p_wrist = {0, 0.0015 * i, 0};  // the tip goes down into the tissue
+    RodSolver solver;
+    for (int j = 0; j < 200; ++j) {
+      const Eigen::Vector3d f = K * (solver.Solve(problem).tip.p - start.tip.p);
+      problem.f_tip += 0.1 * (f - problem.f_tip);
+    }
+    e = estimator.Update(bench.Measure(problem, kWristDirection | kTip | kEm, 0.2));
+  }
+  EXPECT_NEAR(e.model.tissue_stiffness_N_m(1, 1), -60.0, 6.0);
+}
+
+TEST(RodFit, JacobianAgainstDifferences) {
+  Bench bench;
+  const Measurements z = bench.Measure(Shaft(), 127, 1.0);
+  RodPrior prior;
+  prior.mean << z.p_RW, kPort, Eigen::Vector3d::Zero();
+  prior.sd << Eigen::Vector3d::Constant(5e-5), Eigen::Vector3d::Constant(3e-4), 4, 4, 4;
+  RodSolver solver;
+  const RodProblem shaft{kL, kEI, {}, {}, {}, {0, 0, 0}};
+  const RodFit fit(shaft, z, prior, true, solver);
+  RodParameters x = prior.mean;
+  x.tail<3>() = kForce / fit.ForceUnit();
+  RodFit::Residuals r;
+  RodFit::Jacobian J;
+  ASSERT_TRUE(fit(x.data(), r.data(), J.data()));
+  EXPECT_EQ(fit.MeasurementCount(), 2 + 3 + 2 + 5 + 2 + 4 + 3);
+  const auto f = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
+    RodFit::Residuals residuals;
+    EXPECT_TRUE(fit(at.data(), residuals.data(), nullptr));
+    return residuals;
+  };
+  const Eigen::MatrixXd numeric = NumericJacobian(f, x, 1e-5);
+  for (int i = 0; i < J.rows(); ++i) {
+    EXPECT_LT((J.row(i) - numeric.row(i)).norm(), 1e-5 * (numeric.row(i).norm() + 1e-3)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace flextip
