@@ -12,16 +12,24 @@
 
 namespace flextip {
 
+using TagCorners = std::array<Eigen::Vector2d, 4>;
+
 /// A tag seen in an image. The corners are those of the black border's outer edge (tag36h11), in
 /// the order (-,+), (+,+), (+,-), (-,-) of the tag frame G (x right, y down as it is read): bottom
 /// left, bottom right, top right, top left of the upright tag.
 struct TagDetection {
   int id = 0;
-  int hamming = 0;               ///< corrected bits
-  double decision_margin = 0.0;  ///< mean distance of a bit's grey value from the threshold
-  std::array<Eigen::Vector2d, 4> corners_px;      ///< pixel (0,0) is a pixel's centre
-  std::array<Eigen::Vector2d, 4> raw_corners_px;  ///< the library's, in its origin (centres at .5)
+  int hamming = 0;                      ///< corrected bits
+  double decision_margin = 0.0;         ///< mean distance of a bit's grey value from the threshold
+  TagCorners corners_px = NoCorners();  ///< pixel (0,0) is a pixel's centre
+  TagCorners raw_corners_px = NoCorners();  ///< the library's, in its origin (centres at .5)
   bool refined = false;  ///< corners_px come from the edges fitted here, not the library
+
+  static TagCorners NoCorners() {
+    TagCorners corners;
+    corners.fill(Eigen::Vector2d::Zero());
+    return corners;
+  }
 };
 
 struct TagDetectorOptions {
