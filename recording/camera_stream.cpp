@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/videoio.hpp>
+#include <opencv2/videoio/registry.hpp>
 #include <system_error>
 
 #include "recording/camera_yaml.h"
@@ -103,7 +104,9 @@ long CheckVideo(const YamlMap& yaml, const std::filesystem::path& file,
   }
   cv::VideoCapture video;
   try {
-    video.open(file.string());
+    // Asked for any of its readers, OpenCV prints a complaint of each that refuses the file.
+    const bool ffmpeg = cv::videoio_registry::hasBackend(cv::CAP_FFMPEG);
+    video.open(file.string(), ffmpeg ? cv::CAP_FFMPEG : cv::CAP_ANY);
   } catch (const cv::Exception&) {
     video.release();
   }
