@@ -1,0 +1,68 @@
+// The folder a command writes its results to.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace flextip {
+
+struct OutputOptions {
+  bool force = false;                              ///< replace a folder that holds something
+  std::vector<std::filesystem::path> inputs = {};  ///< what the command reads: never replaced
+};
+
+/// Results are written to `folder()`, NAME.partial-PID beside NAME, which becomes NAME with Commit.
+/// What was not committed is removed: nothing half-written ever stands under NAME.
+///
+///   OutputFolder output("out", "track", {.force = force, .inputs = {recording}});
+///   ... write below output.folder(), output.Warn("...") ...
+///   output.WriteSummary({{"frames", 8}});
+///   output.Commit();
+class OutputFolder {
+ public:
+  /// Throws InputError where NAME is a file or a folder that is not empty (without `force`), where
+  /// replacing it would delete an input, the working folder, the home folder or a recording without
+  /// a summary (which no command made), and where no folder can be made there.
+  OutputFolder(const std::filesystem::path& name, const std::string& command,
+               const OutputOptions& options = {});
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Where to write until Commit; NAME itself after it.
+  const std::filesystem::path& folder() const { return folder_; }
+  /// NAME, as an absolute path.
+  const std::filesystem::path& name() const { return name_; }
+
+  /// A line for the summary's `warnings`.
+  void Warn(const std::string& warning) { warnings_.push_back(warning); }
+  void Warn(const std::vector<std::string>& warnings) {
+    warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
+  }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// Writes summary.json: the object `results` with `command`, `version`, `seconds` since the
+  /// constructor and `warnings` (those in `results` first). Throws WorkError where the disk
+  /// refuses, and where a number in `results` is NaN or infinite, which JSON cannot hold.
+  void WriteSummary(nlohmann::json results) const;
+
+  /// Makes the folder NAME. Throws WorkError where the disk refuses or another program has put
+  /// something there in the meantime.
+  void Commit();
+
+ private:
+  void RefuseToReplace(const std::vector<std::filesystem::path>& inputs) const;
+
+  std::filesystem::path name_;
+  std::filesystem::path folder_;
+  std::string command_;
+  bool force_;
+  bool committed_ = false;
+  std::vector<std::string> warnings_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace flextip
