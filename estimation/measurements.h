@@ -10,9 +10,9 @@
 namespace flextip {
 
 struct EmMeasurement {
-  Pose T_RS;                       ///< sensor on the shaft, its x along the shaft
+  Pose T_RS;  ///< sensor on the shaft, its x along the shaft
   double distance_from_tip_m = 0.0;
-  double position_noise_m = 0.0;   ///< standard deviation per axis
+  double position_noise_m = 0.0;  ///< standard deviation per axis
   double orientation_noise_rad = 0.0;
 };
 
@@ -32,9 +32,9 @@ struct LoadMeasurement {
 struct Measurements {
   Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();
   double wrist_position_noise_m = 0.0;
-  std::optional<Eigen::Matrix3d> R_RW;      ///< measured orientation of the free wrist joint
+  std::optional<Eigen::Matrix3d> R_RW;  ///< measured orientation of the free wrist joint
   double wrist_orientation_noise_rad = 0.0;
-  std::optional<TipObservation> tip;        ///< by vision; its d_RE where the direction was seen
+  std::optional<TipObservation> tip;  ///< by vision; its d_RE where the direction was seen
   double tip_direction_noise_rad = 0.0;
   std::optional<EmMeasurement> em;
   std::optional<Eigen::Vector3d> port_direction;  ///< the shaft's direction at the port (em1), unit

@@ -58,28 +58,43 @@ void RodFit::AddDirection(const Eigen::Vector3d& measured, double noise_rad,
   rows_ += 2;
 }
 
+namespace {
+
+/// A frame carried along the shaft without twist, leg by leg. Each stretch of the shaft bends in
+/// one plane, so one rotation a leg carries it. As the legs move, the frame turns about the
+/// shaft by the area that the leg sweeps on the sphere of directions (its holonomy).
+struct CarriedFrame {
+  Eigen::Matrix3d R;  // column 0 along the shaft
+  RodDerivative dt;   // of column 0
+  Eigen::Matrix<double, 1, 9> twist = Eigen::Matrix<double, 1, 9>::Zero();
+
+  void CarryTo(const Eigen::Vector3d& t, const RodDerivative& dt_new) {
+    const Eigen::Vector3d from = R.col(0);
+    twist -= from.cross(t).transpose() * (dt + dt_new) / (1.0 + from.dot(t));
+    R = RotationWithoutTwist(from, t) * R;
+    dt = dt_new;
+  }
+};
+
+}  // namespace
+
 void RodFit::AddStrain(const RodState& rod) const {
-  // The measured wrist frame, turned to the model's tangent and carried along the shaft without
-  // twist: each stretch bends in one plane, so one rotation a stretch carries it.
-  const Eigen::Matrix3d& R_RW = *measurements_.R_RW;
-  Eigen::Matrix3d frame = RotationWithoutTwist(R_RW.col(0), rod.wrist.t) * R_RW;
-  Eigen::Vector3d t = rod.wrist.t;
+  CarriedFrame frame{*measurements_.R_RW, RodDerivative::Zero()};
+  frame.CarryTo(rod.wrist.t, rod.wrist.dt);
+  bool beyond_port = false;
   const double noise = std::max(measurements_.strain->moment_noise_Nm, kLeastMoment_Nm);
   for (int i = 0; i < 2; ++i) {
     const double s =
         std::clamp(measurements_.strain->station_from_wrist_m[i], 0.0, shaft_.length_m);
     const RodSection section = solver_.Section(s);
-    if (s > rod.s_port_m) {
-      frame = RotationWithoutTwist(t, rod.t_port) * frame;
-      t = rod.t_port;
-    }
-    frame = RotationWithoutTwist(t, section.t) * frame;
-    t = section.t;
-    // The axes turn with the shaft too, but only along it, where there is no moment.
-    const Eigen::Matrix<double, 2, 3> axes = frame.rightCols<2>().transpose() / noise;
-    residuals_.segment<2>(rows_) =
-        axes * section.m - measurements_.strain->moments_Nm.segment<2>(2 * i) / noise;
-    jacobian_.middleRows<2>(rows_) = axes * section.dm;
+    if (s > rod.s_port_m && !beyond_port) frame.CarryTo(rod.t_port, rod.dt_port);
+    beyond_port = s > rod.s_port_m;
+    frame.CarryTo(section.t, section.dt);
+    const Eigen::Vector2d m = frame.R.rightCols<2>().transpose() * section.m;
+    residuals_.segment<2>(rows_) = (m - measurements_.strain->moments_Nm.segment<2>(2 * i)) / noise;
+    jacobian_.middleRows<2>(rows_) = (frame.R.rightCols<2>().transpose() * section.dm +
+                                      Eigen::Vector2d(m[1], -m[0]) * frame.twist) /
+                                     noise;
     rows_ += 2;
   }
 }

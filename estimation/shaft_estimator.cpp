@@ -9,9 +9,10 @@
 namespace flextip {
 namespace {
 
-constexpr double kObservable = 0.3;    // posterior over prior sd of the force across the shaft
-constexpr double kSecant_m = 0.001;    // tip travel between two looks at the tissue
-constexpr double kTissueWeight = 0.5;  // of a new secant against what was known
+constexpr double kObservable = 0.3;        // posterior over prior sd of the force across the shaft
+constexpr double kSecant_m = 0.001;        // tip travel between two looks at the tissue
+constexpr double kTissueMemory = 0.9;      // weight of the past against a new secant
+constexpr double kLeastTravel_m = 0.0005;  // travel in a direction before it says much of it
 constexpr double kStiffestTissue_N_m = 2000.0;
 
 bool AllFinite(const Measurements& z) {
@@ -162,11 +163,13 @@ void ShaftEstimator::UpdateTissue(const ShaftEstimate& estimate) {
   const Eigen::Vector3d dp = estimate.p_RE - reference_tip_;
   if (has_reference_ && dp.norm() < kSecant_m) return;
   if (has_reference_) {
-    // Broyden's update: the least change of the stiffness that explains the last secant.
+    // Least squares of df = K dp over the secants so far, the old ones fading.
     const Eigen::Vector3d df = estimate.model.f_tip_N - reference_force_N_;
-    const Eigen::Vector3d miss = df - tissue_stiffness_N_m_ * dp;
-    tissue_stiffness_N_m_ = PushingBack(tissue_stiffness_N_m_ +
-                                        kTissueWeight * miss * dp.transpose() / dp.squaredNorm());
+    secants_pp_ = kTissueMemory * secants_pp_ + dp * dp.transpose();
+    secants_fp_ = kTissueMemory * secants_fp_ + df * dp.transpose();
+    const Eigen::Matrix3d damped =
+        secants_pp_ + kLeastTravel_m * kLeastTravel_m * Eigen::Matrix3d::Identity();
+    tissue_stiffness_N_m_ = PushingBack(secants_fp_ * damped.inverse());
   }
   has_reference_ = true;
   reference_tip_ = estimate.p_RE;

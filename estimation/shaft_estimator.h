@@ -74,6 +74,8 @@ class ShaftEstimator {
   bool has_reference_ = false;  // of the tissue's secant
   Eigen::Vector3d reference_tip_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d reference_force_N_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d secants_pp_ = Eigen::Matrix3d::Zero();  // sum of dp dp^T
+  Eigen::Matrix3d secants_fp_ = Eigen::Matrix3d::Zero();  // sum of df dp^T
   Eigen::Matrix3d tissue_stiffness_N_m_ = Eigen::Matrix3d::Zero();
 };
 

@@ -113,17 +113,16 @@ struct SensorSet {
   const char* name;
   int sensors;
   bool use_positions;
-  double across_N;  // bound on the noise-free error of the force across the shaft
 };
 const SensorSet kSets[] = {
-    {"wrist direction, tip", kWristDirection | kTip, true, 2e-3},
-    {"wrist direction, tip and its direction", kWristDirection | kTip | kTipDirection, true, 2e-3},
-    {"wrist direction, EM", kWristDirection | kEm, true, 2e-3},
-    {"wrist direction, EM orientation only", kWristDirection | kEm, false, 2e-3},
-    {"strain", kStrain, false, 2e-3},
-    {"strain, tip", kStrain | kTip, true, 2e-3},
-    {"load", kLoad, false, 1e-3},
-    {"everything", 127, true, 1e-3},
+    {"wrist direction, tip", kWristDirection | kTip, true},
+    {"wrist direction, tip and its direction", kWristDirection | kTip | kTipDirection, true},
+    {"wrist direction, EM", kWristDirection | kEm, true},
+    {"wrist direction, EM orientation only", kWristDirection | kEm, false},
+    {"strain", kStrain, false},
+    {"strain, tip", kStrain | kTip, true},
+    {"load", kLoad, false},
+    {"everything", 127, true},
 };
 
 TEST(ShaftEstimator, RecoversTheLoadFromEverySetOfSensorsWithoutNoise) {
@@ -133,10 +132,11 @@ TEST(ShaftEstimator, RecoversTheLoadFromEverySetOfSensorsWithoutNoise) {
     const RodState truth = RodSolver().Solve(Shaft());
     const ShaftEstimate e = estimator.Update(bench.Measure(Shaft(), set.sensors, 0.0));
     ASSERT_EQ(e.status, EstimateStatus::kOk) << set.name;
-    const Eigen::Vector3d t = truth.t_port, miss = e.model.f_tip_N - kForce;
-    // The force along the shaft hardly bends it: the prior pulls it towards nothing, as its
-    // covariance says, and the rest of the error is what that costs the others.
-    EXPECT_LT((miss - miss.dot(t) * t).norm(), 0.04) << set.name;
+    // Without noise only the priors pull: the force along the shaft, which hardly bends it,
+    // towards nothing. The error must be within what the covariance says of that.
+    const Eigen::Vector3d miss = e.model.f_tip_N - kForce;
+    const Eigen::Matrix3d covariance = e.covariance.bottomRightCorner<3, 3>();
+    EXPECT_LT(miss.dot(covariance.ldlt().solve(miss)), 1.0) << set.name;
     EXPECT_LT((e.p_RE - truth.tip.p).norm(), 2e-4) << set.name;
     EXPECT_TRUE(e.model.beam.IsUsable()) << set.name;
   }
@@ -230,7 +230,9 @@ TEST(ShaftEstimator, FindsTheTissuesStiffness) {
     }
     e = estimator.Update(bench.Measure(problem, kWristDirection | kTip | kEm, 0.2));
   }
-  EXPECT_NEAR(e.model.tissue_stiffness_N_m(1, 1), -60.0, 6.0);
+  // With these sensors a secant of 1 mm knows the stiffness to a quarter; eight fading ones to a
+  // tenth (one standard deviation).
+  EXPECT_NEAR(e.model.tissue_stiffness_N_m(1, 1), -60.0, 15.0);
 }
 
 TEST(RodFit, JacobianAgainstDifferences) {
