@@ -19,7 +19,7 @@ namespace flextip {
 struct TissueOptions {
   Eigen::Vector3d point_R = Eigen::Vector3d::Zero();    ///< a point of the mean plane (m)
   Eigen::Vector3d normal_R = Eigen::Vector3d::UnitZ();  ///< out of the tissue; any length but 0
-  Eigen::Vector3d albedo_bgr = {0.30, 0.34, 0.72};      ///< mean reflectance, 0 to 1; 0 is black
+  Eigen::Vector3d albedo_bgr = {0.26, 0.31, 0.80};      ///< mean reflectance, 0 to 1; 0 is black
   double relief_m = 0.0015;                             ///< standard height of the relief; 0: flat
   double texture_scale_m = 0.012;                       ///< size of the coarsest patches
   double texture_contrast = 1.0;                        ///< 0: one colour
@@ -36,7 +36,7 @@ struct Occluder {
   Eigen::Vector3d a_R = Eigen::Vector3d::Zero(), b_R = Eigen::Vector3d::Zero();  ///< m
   double radius_m = 0.0025;
   Eigen::Vector3d albedo_bgr = {0.02, 0.02, 0.25};
-  double specular = 0.3;                                 ///< 0 matt, 1 as the metal shaft
+  double specular = 0.05;                                ///< 0 matt, 1 as the metal shaft
   Eigen::Vector3d velocity_R = Eigen::Vector3d::Zero();  ///< m per frame, from first_frame on
   int first_frame = 0, last_frame = std::numeric_limits<int>::max();
 };
@@ -46,11 +46,11 @@ struct Occluder {
 struct LaparoscopeOptions {
   TissueOptions tissue;
   std::vector<Occluder> occluders;
-  double exposure = 0.9;           ///< signal, as a part of the full well, of a white matt surface
+  double exposure = 0.55;          ///< signal, as a part of the full well, of a white matt surface
                                    ///< that faces the scope on its axis at `exposure_distance_m`
   double exposure_distance_m = 0;  ///< 0: the distance of the tissue along the optical axis, or
                                    ///< 0.1 m where the axis misses the tissue
-  double vignetting = 3.0;         ///< the light falls as cos(angle off the axis) to this power
+  double vignetting = 2.0;         ///< the light falls as cos(angle off the axis) to this power
   double blur_sigma_px = 0.7;      ///< of the lens, Gaussian; 0: none
   double full_well_electrons = 15000;  ///< shot noise: variance = mean, in electrons; 0: none
   double read_noise_electrons = 15;

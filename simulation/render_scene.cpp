@@ -17,8 +17,8 @@ constexpr double kNear_m = 1e-3;
 
 Material Steel() {
   Material steel;
-  steel.albedo = {0.36f, 0.35f, 0.34f};
-  steel.gloss_wide = 0.16f;
+  steel.albedo = {0.27f, 0.26f, 0.255f};
+  steel.gloss_wide = 0.12f;
   steel.gloss_narrow = 0.42f;
   return steel;
 }
@@ -71,7 +71,7 @@ void Scene::AddOccluder(const Occluder& o, const Pose& T_CR, int frame_number) {
   const Vector3d a = T_CR * (o.a_R + moved_R), b = T_CR * (o.b_R + moved_R);
   Material material;
   material.albedo = o.albedo_bgr.cast<float>();
-  material.gloss_wide = static_cast<float>(0.16 * o.specular);
+  material.gloss_wide = static_cast<float>(0.12 * o.specular);
   material.gloss_narrow = static_cast<float>(0.42 * o.specular);
   const Vector3d axis = (b - a).normalized();
   if (o.kind == Occluder::Kind::kCapsule) {

@@ -103,7 +103,7 @@ double TissueTexture::Vessels(double u, double v) const {
     const double finer = i == 0 ? 0.8 : 1.9;
     const Vector3d n = Noise(wu * finer, wv * finer, seed_ + 41u + static_cast<unsigned>(i));
     const double distance = std::abs(n[0]) / (0.15 + std::hypot(n[1], n[2]));
-    const double width = i == 0 ? 0.035 : 0.03;
+    const double width = i == 0 ? 0.035 : 0.022;
     const double here = SmoothStep(0.0, 0.35, Noise(wu * 0.6, wv * 0.6, seed_ + 53u + i)[0] + 0.1);
     vessels = std::max(vessels, (1 - SmoothStep(0.3 * width, width, distance)) * here);
   }
@@ -118,13 +118,13 @@ Vector3f TissueTexture::Albedo(double u, double v) const {
   const double fat = Octaves(u / size * 0.7 + 40, v / size * 0.7, 4, 0.55, seed_ + 17)[0];
   const double clots = Octaves(u / size * 2.6, v / size * 2.6 + 9, 3, 0.5, seed_ + 23)[0];
   Vector3d colour = mean * (1 + contrast * 0.55 * patches);
-  const Vector3d pale(0.42, 0.55, 0.82), dark(0.12, 0.10, 0.28), vessel(0.16, 0.10, 0.42);
+  const Vector3d pale(0.36, 0.45, 0.84), dark(0.08, 0.07, 0.24), vessel(0.07, 0.05, 0.34);
   const auto blend = [&](const Vector3d& other, double part) {
     colour += std::min(contrast, 1.0) * part * (other - colour);
   };
   blend(pale, 0.55 * SmoothStep(0.10, 0.65, fat));
   blend(dark, 0.50 * SmoothStep(0.22, 0.75, clots));
-  blend(vessel, 0.55 * Vessels(u, v));
+  blend(vessel, 0.5 * Vessels(u, v));
   return colour.cwiseMax(0.0).cwiseMin(1.0).cast<float>();
 }
 
@@ -151,8 +151,8 @@ Vector3f TissueTexture::Radiance(const Vector3d& ray, const render::Light& light
   const render::Shade shade = light.On(x, smooth.normalized(), render::Material{});
   if (options_.wetness <= 0) return albedo * shade.diffuse;
   // A film of water follows finer bumps than the colour shows; it mirrors the light at the eye.
-  const double size = 0.45 * options_.texture_scale_m;
-  const Vector3d bump = Octaves(u / size, v / size, 3, 0.45, seed_ + 61);
+  const double size = 0.55 * options_.texture_scale_m;
+  const Vector3d bump = Octaves(u / size, v / size, 3, 0.30, seed_ + 61);
   const Vector3d wet = (smooth - 0.16 * (bump[1] * e_u_ + bump[2] * e_v_)).normalized();
   const double facing = std::abs(wet.dot(x)) / x.norm();
   const double pool =
