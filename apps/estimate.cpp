@@ -1,0 +1,201 @@
+// flextip estimate: the instrument's load, port and shape at every sample of a recording.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/commands.h"
+#include "apps/output.h"
+#include "apps/progress.h"
+#include "apps/recorded_measurements.h"
+#include "core/error.h"
+#include "estimation/shaft_estimator.h"
+#include "recording/csv.h"
+#include "recording/recording_reader.h"
+#include "recording/sensor_streams.h"
+#include "recording/text.h"
+#include "recording/truth.h"
+#include "report/pages.h"
+
+namespace flextip {
+namespace {
+
+struct EstimateOptions {
+  std::filesystem::path recording, tracked, out;
+  double port_prior_m = 0.0003;
+  bool without_positions = false, force = false;
+};
+
+using Estimates = Series<ShaftEstimate>;
+
+const std::vector<std::string> kColumns = {
+    "timestamp [ns]",     "p_RE_x [m]",  "p_RE_y [m]",  "p_RE_z [m]",      "sd_RE_x [m]",
+    "sd_RE_y [m]",        "sd_RE_z [m]", "d_RE_x []",   "d_RE_y []",       "d_RE_z []",
+    "f_tip_x [N]",        "f_tip_y [N]", "f_tip_z [N]", "sd_f_tip_x [N]",  "sd_f_tip_y [N]",
+    "sd_f_tip_z [N]",     "p_RP_x [m]",  "p_RP_y [m]",  "p_RP_z [m]",      "s_port [m]",
+    "F_p_over_EI [1/m2]", "a [m]",       "chi2 []",     "measurements []", "status []"};
+
+void AddVector(CsvWriter& csv, const Eigen::Vector3d& v) {
+  for (int i = 0; i < 3; ++i) csv.Add(v[i]);
+}
+
+/// Numbers only where there is an estimate; the status always.
+void AddRow(CsvWriter& csv, TimeNs t_ns, const ShaftEstimate& e) {
+  csv.Add(t_ns);
+  if (e.status == EstimateStatus::kOk || e.status == EstimateStatus::kUnobservable) {
+    AddVector(csv, e.p_RE);
+    AddVector(csv, e.p_RE_covariance_m2.diagonal().cwiseMax(0.0).cwiseSqrt());
+    AddVector(csv, e.d_RE);
+    AddVector(csv, e.model.f_tip_N);
+    AddVector(csv, e.covariance.diagonal().tail<3>().cwiseMax(0.0).cwiseSqrt());
+    AddVector(csv, e.model.p_RP);
+    csv.Add(e.s_port_m);
+    if (e.model.beam.IsUsable()) {
+      csv.Add(e.model.beam.F_p_over_EI).Add(e.model.beam.a);
+    } else {
+      csv.AddEmpty(2);
+    }
+    csv.Add(e.chi2);
+  } else {
+    csv.AddEmpty(22);
+  }
+  csv.Add(static_cast<double>(e.measurements)).Add(std::string(Name(e.status)));
+  csv.EndRow();
+}
+
+EstimatorOptions MakeOptions(const Recording& recording, const EstimateOptions& options) {
+  EstimatorOptions estimator;
+  estimator.instrument = recording.instrument;
+  estimator.p_RP = recording.p_RP;
+  estimator.gravity_m_s2 = recording.gravity_m_s2;
+  estimator.port_prior_m = options.port_prior_m;
+  estimator.use_positions = !options.without_positions;
+  estimator.estimate_tissue = false;  // for the controllers only
+  return estimator;
+}
+
+Estimates EstimateAll(const Recording& recording, const EstimateOptions& options, bool quiet) {
+  ShaftEstimator estimator(MakeOptions(recording, options));
+  const std::vector<TimeNs> times = EstimationTimes(recording);
+  Estimates estimates;
+  Progress progress("estimate", times.size(), quiet);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    progress.Update(i);
+    const auto measurements = MeasurementsAt(recording, times[i]);
+    if (measurements) estimates.push_back({times[i], estimator.Update(*measurements)});
+  }
+  return estimates;
+}
+
+/// Scoring only: the tip's RMS error where the simulation left its truth. Empty without.
+std::optional<double> TipRmsError(const std::filesystem::path& recording,
+                                  const Estimates& estimates) {
+  const auto truth = ReadTruth(recording);
+  if (!truth) return {};
+  double sum = 0.0;
+  int count = 0;
+  for (const auto& estimate : estimates) {
+    if (estimate.value.status != EstimateStatus::kOk) continue;
+    const auto where = FindBracket(*truth, estimate.t_ns);
+    if (!where) continue;
+    const std::size_t next = std::min(where->i + 1, truth->size() - 1);
+    const Eigen::Vector3d p_RE =
+        Interpolate((*truth)[where->i].value.p_RE, (*truth)[next].value.p_RE, where->fraction);
+    sum += (estimate.value.p_RE - p_RE).squaredNorm();
+    ++count;
+  }
+  if (count == 0) return {};
+  return std::sqrt(sum / count);
+}
+
+nlohmann::json Summary(const EstimateOptions& options, const Recording& recording,
+                       const Estimates& estimates) {
+  std::map<std::string, int> statuses;
+  double chi2 = 0.0;
+  int measurements = 0;
+  for (const auto& e : estimates) {
+    ++statuses[Name(e.value.status)];
+    chi2 += e.value.chi2;
+    measurements += e.value.measurements;
+  }
+  nlohmann::json sensors = nlohmann::json::array();
+  const auto present = [&](bool is, const char* name) {
+    if (is) sensors.push_back(name);
+  };
+  present(recording.wrist0.has_value(), "wrist0");
+  present(recording.vision0.has_value(), "vision0");
+  present(recording.em0.has_value(), "em0");
+  present(recording.em1.has_value(), "em1");
+  present(recording.strain0.has_value(), "strain0");
+  present(recording.load0.has_value(), "load0");
+  nlohmann::json summary = {
+      {"samples", estimates.size()}, {"statuses", statuses}, {"sensors", sensors}};
+  if (measurements > 0) summary["chi2_per_measurement"] = chi2 / measurements;
+  if (const auto rms = TipRmsError(options.recording, estimates)) summary["tip_rms_error_m"] = *rms;
+  return summary;
+}
+
+void RunEstimate(const EstimateOptions& options, bool quiet) {
+  ReadResult read = ReadRecording(options.recording, {.check_frames = false});
+  Recording& recording = read.recording;
+  if (!options.tracked.empty()) {
+    ReadLog log;
+    recording.vision0 = ReadVision(options.tracked / "vision0", log);
+    read.warnings.insert(read.warnings.end(), log.warnings.begin(), log.warnings.end());
+  }
+  if (!recording.wrist0) {
+    throw InputError(options.recording.string() +
+                     ": no wrist0, without which nothing can be estimated");
+  }
+  OutputFolder output(options.out, "estimate",
+                      {.force = options.force, .inputs = {options.recording}});
+  output.Warn(read.warnings);
+  if (recording.cam0 && !recording.vision0) {
+    output.Warn("cam0 has not been tracked: run flextip track and pass its folder with --tracked");
+  }
+  const Estimates estimates = EstimateAll(recording, options, quiet);
+  if (estimates.empty())
+    throw WorkError(options.recording.string() + ": no sample could be estimated");
+  CsvWriter csv(kColumns);
+  for (const auto& e : estimates) AddRow(csv, e.t_ns, e.value);
+  WriteTextFile(output.folder() / "state0" / "data.csv", csv.text());
+  output.WriteSummary(Summary(options, recording, estimates));
+  WriteEstimateReport(output.folder());
+  output.Commit();
+  if (!quiet) {
+    fmt::print("{} samples in {}\n", estimates.size(),
+               (options.out / "state0" / "data.csv").string());
+  }
+}
+
+}  // namespace
+
+void AddEstimate(CLI::App& app, AppContext& context) {
+  auto* command = app.add_subcommand(
+      "estimate", "Load, port and shape of the instrument at every sample of a recording");
+  auto options = std::make_shared<EstimateOptions>();
+  command->add_option("recording", options->recording, "Folder of the recording")
+      ->required()
+      ->type_name("RECORDING");
+  command->add_option("-o,--output", options->out, "Folder for the results")
+      ->required()
+      ->type_name("OUT");
+  command->add_option("--tracked", options->tracked,
+                      "Take the tip from this result of flextip track instead of vision0");
+  command
+      ->add_option("--port-prior", options->port_prior_m,
+                   "How well the port is registered: standard deviation per axis (m)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--without-positions", options->without_positions,
+                    "Leave out the places of tip and EM sensor, as a system without tip tracking");
+  command->add_flag("--force", options->force, "Replace the folder of an earlier run");
+  command->footer("Example:\n  flextip estimate recording -o estimate\n");
+  OnRun(*command, context, [options, &context] { RunEstimate(*options, context.quiet); });
+}
+
+}  // namespace flextip
