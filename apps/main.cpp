@@ -28,8 +28,11 @@ int Complain(const std::string& message, int code) {
 }
 
 void AddCommands(CLI::App& app, AppContext& context) {
-  static_cast<void>(app);
-  static_cast<void>(context);
+  AddCalibrate(app, context);
+  AddDetect(app, context);
+  AddEstimate(app, context);
+  AddShape(app, context);
+  AddTrack(app, context);
 }
 
 int Run(int argc, char** argv) {
