@@ -1,5 +1,6 @@
 #include "recording/image_head.h"
 
+#include <algorithm>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <string_view>

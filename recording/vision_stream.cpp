@@ -1,4 +1,7 @@
 // vision0: the tip as seen.
+#include <algorithm>
+#include <array>
+
 #include "recording/sensor_head.h"
 #include "recording/sensor_streams.h"
 #include "recording/series_file.h"
