@@ -1,0 +1,143 @@
+#include "apps/overlay.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "vision/camera_model.h"
+
+namespace flextip {
+namespace {
+
+const cv::Scalar kGreen(80, 220, 60), kYellow(40, 220, 240), kOrange(0, 140, 255);
+const cv::Scalar kWhite(255, 255, 255), kBlack(0, 0, 0), kCyan(230, 200, 40);
+constexpr double kAxis_m = 0.01;
+constexpr double kChi2Of99Percent = 9.21;  // two degrees of freedom
+constexpr int kFractionBits = 4;           // OpenCV draws to 1/16 px
+
+cv::Mat View(Image& image) {
+  return cv::Mat(image.height_px, image.width_px, CV_8UC3, image.data.data());
+}
+
+cv::Point Fine(const Eigen::Vector2d& px) {
+  const double scale = 1 << kFractionBits;
+  return {static_cast<int>(std::lround(px.x() * scale)),
+          static_cast<int>(std::lround(px.y() * scale))};
+}
+
+void Line(cv::Mat& canvas, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+          const cv::Scalar& color, int thickness = 1) {
+  cv::line(canvas, Fine(a), Fine(b), color, thickness, cv::LINE_AA, kFractionBits);
+}
+
+void Text(cv::Mat& canvas, const std::string& text, cv::Point at, double scale,
+          const cv::Scalar& color) {
+  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, scale, kBlack, 3, cv::LINE_AA);
+  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, scale, color, 1, cv::LINE_AA);
+}
+
+bool Near(const Eigen::Vector2d& px, const cv::Mat& canvas) {
+  return px.cwiseAbs().maxCoeff() < 4.0 * std::max(canvas.cols, canvas.rows);
+}
+
+void Quad(cv::Mat& canvas, const TagCorners& corners, const cv::Scalar& color) {
+  for (int i = 0; i < 4; ++i) Line(canvas, corners[i], corners[(i + 1) % 4], color);
+}
+
+void DrawCollar(cv::Mat& canvas, const CameraModel& model, const TagCollar& collar,
+                const Pose& T_CE) {
+  for (const CollarTag& tag : collar.tags) {
+    const Pose T_CG = T_CE * tag.T_EG;
+    if (T_CG.R.col(2).dot(T_CG.p) <= 0) continue;  // faces away
+    TagCorners corners;
+    bool seen = true;
+    const auto corners_E = CornersInE(tag);
+    for (int i = 0; i < 4; ++i) {
+      const auto px = model.Project(T_CE * corners_E[i]);
+      seen = seen && px && Near(*px, canvas);
+      if (px) corners[i] = *px;
+    }
+    if (seen) Quad(canvas, corners, kCyan);
+  }
+}
+
+void DrawAxes(cv::Mat& canvas, const CameraModel& model, const Pose& T_CE) {
+  const auto origin = model.Project(T_CE.p);
+  const cv::Scalar colors[] = {{60, 60, 240}, {60, 200, 60}, {240, 120, 40}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto end = model.Project(T_CE * Eigen::Vector3d(kAxis_m * Eigen::Vector3d::Unit(axis)));
+    if (origin && end && Near(*origin, canvas) && Near(*end, canvas)) {
+      Line(canvas, *origin, *end, colors[axis], 2);
+    }
+  }
+}
+
+// The covariance seen through the lens: J C J^T.
+void DrawTip(cv::Mat& canvas, const CameraModel& model, const TipObservation& tip) {
+  const Pose T_CR = model.Calibration().T_RC.Inverse();
+  Eigen::Matrix<double, 2, 3> J;
+  const auto px = model.Project(T_CR * tip.p_RE, &J);
+  if (!px || !Near(*px, canvas)) return;
+  const Eigen::Matrix<double, 2, 3> J_R = J * T_CR.R;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(J_R * tip.covariance_m2 *
+                                                            J_R.transpose());
+  const Eigen::Vector2d half = (kChi2Of99Percent * axes.eigenvalues().cwiseMax(0)).cwiseSqrt();
+  const Eigen::Vector2d minor_axis = axes.eigenvectors().col(0);
+  const double angle_deg = std::atan2(minor_axis.y(), minor_axis.x()) * 180 / M_PI;
+  const cv::Scalar color = tip.status == TipStatus::kOk ? kWhite : kOrange;
+  const auto size = Fine(half.cwiseMin(1000.0).cwiseMax(1.0));
+  cv::ellipse(canvas, Fine(*px), cv::Size(size.x, size.y), angle_deg, 0, 360, color, 1, cv::LINE_AA,
+              kFractionBits);
+}
+
+std::string Describe(const TipTrack& track) {
+  if (track.tip.status == TipStatus::kLost) return "lost";
+  if (track.tip.status == TipStatus::kPredicted) return "predicted";
+  return fmt::format("ok, {} tags, {:.2f} px", track.pose.tags_used, track.rms_px);
+}
+
+}  // namespace
+
+void DrawTags(Image& image, const std::vector<TagDetection>& tags) {
+  cv::Mat canvas = View(image);
+  for (const TagDetection& tag : tags) {
+    const cv::Scalar& color = tag.refined ? kGreen : kYellow;
+    Quad(canvas, tag.corners_px, color);
+    // The first corner is where the tag's own bottom left is.
+    cv::circle(canvas, Fine(tag.corners_px[0]), 2 << kFractionBits, color, 1, cv::LINE_AA,
+               kFractionBits);
+    Eigen::Vector2d right = tag.corners_px[0];
+    for (const Eigen::Vector2d& c : tag.corners_px) right = c.x() > right.x() ? c : right;
+    const cv::Point at(static_cast<int>(right.x()) + 3, static_cast<int>(right.y()) + 3);
+    Text(canvas, std::to_string(tag.id), at, 0.4, color);
+  }
+}
+
+void DrawTrack(Image& image, const TipTrack& track, const CameraCalibration& camera,
+               const TagCollar& collar) {
+  DrawTags(image, track.tags);
+  const CameraModel model(camera);
+  cv::Mat canvas = View(image);
+  if (track.tip.status == TipStatus::kOk) {
+    DrawCollar(canvas, model, collar, track.pose.T_CE);
+    DrawAxes(canvas, model, track.pose.T_CE);
+  }
+  if (track.tip.status != TipStatus::kLost) DrawTip(canvas, model, track.tip);
+  DrawLabel(image, Describe(track));
+}
+
+void DrawPoints(Image& image, const std::vector<Eigen::Vector2d>& points_px) {
+  cv::Mat canvas = View(image);
+  for (const Eigen::Vector2d& p : points_px) {
+    Line(canvas, p - Eigen::Vector2d(4, 0), p + Eigen::Vector2d(4, 0), kGreen);
+    Line(canvas, p - Eigen::Vector2d(0, 4), p + Eigen::Vector2d(0, 4), kGreen);
+  }
+}
+
+void DrawLabel(Image& image, const std::string& text) {
+  cv::Mat canvas = View(image);
+  Text(canvas, text, {8, 22}, 0.6, kWhite);
+}
+
+}  // namespace flextip

@@ -1,0 +1,27 @@
+// What vision found, drawn into the picture.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/tag_collar.h"
+#include "vision/tip_tracker.h"
+
+namespace flextip {
+
+/// Outlines and ids of tags; green where the corners were fitted to the edges, else yellow.
+void DrawTags(Image& image, const std::vector<TagDetection>& tags);
+
+/// Tags, the collar's faces where the pose puts them, the axes of E (x red, y green, z blue, 10 mm)
+/// and the ellipse that holds the tip with 99 %; orange where it is only predicted.
+void DrawTrack(Image& image, const TipTrack& track, const CameraCalibration& camera,
+               const TagCollar& collar);
+
+/// Crosses at the points.
+void DrawPoints(Image& image, const std::vector<Eigen::Vector2d>& points_px);
+
+void DrawLabel(Image& image, const std::string& text);
+
+}  // namespace flextip

@@ -1,0 +1,56 @@
+#include "apps/tip_score.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "recording/csv.h"
+#include "recording/series_file.h"
+#include "recording/truth.h"
+
+namespace flextip {
+
+std::optional<Series<Eigen::Vector3d>> ReadTipTruth(const std::filesystem::path& recording,
+                                                    const std::filesystem::path& file) {
+  Series<Eigen::Vector3d> truth;
+  if (file.empty()) {
+    const auto of_recording = ReadTruth(recording);
+    if (!of_recording) return {};
+    for (const auto& sample : *of_recording) truth.push_back({sample.t_ns, sample.value.p_RE});
+    return truth;
+  }
+  ReadLog log;
+  CsvReader csv(file, {kTimeColumn, "x", "y", "z"}, log, {.allow_other_columns = true});
+  while (csv.Next()) {
+    const TimeNs t_ns = csv.Integer(0);
+    if (!truth.empty()) CheckTimeRuns(csv, truth.back().t_ns, t_ns);
+    truth.push_back({t_ns, ReadVector3(csv, 1)});
+  }
+  if (truth.empty()) throw csv.Error("no samples, expected at least one whole line of data");
+  return truth;
+}
+
+TipScore ScoreTips(const Series<TipObservation>& tips, const Series<Eigen::Vector3d>& truth,
+                   const Pose& T_RC) {
+  TipScore score;
+  double squared = 0, depth = 0, nees = 0;
+  for (const auto& sample : tips) {
+    const TipObservation& tip = sample.value;
+    const auto p_RE = ValueAt(truth, sample.t_ns);
+    if (tip.status != TipStatus::kOk || !p_RE) continue;
+    const Eigen::Vector3d e_R = tip.p_RE - *p_RE;
+    const double along = (T_RC.R.transpose() * e_R).z();
+    squared += e_R.squaredNorm();
+    depth += along * along;
+    nees += e_R.dot(tip.covariance_m2.ldlt().solve(e_R));
+    score.max_error_m = std::max(score.max_error_m, e_R.norm());
+    ++score.frames;
+  }
+  if (score.frames == 0) return score;
+  score.rms_error_m = std::sqrt(squared / score.frames);
+  score.rms_depth_m = std::sqrt(depth / score.frames);
+  score.rms_across_m = std::sqrt(std::max(0.0, squared - depth) / score.frames);
+  score.mean_nees = nees / score.frames;
+  return score;
+}
+
+}  // namespace flextip
