@@ -50,6 +50,11 @@ int Run(int argc, char** argv) {
   } catch (const CLI::Success& done) {  // --help, --version
     return app.exit(done);
   } catch (const CLI::ParseError& e) {
+    const auto unknown = app.remaining();
+    if (app.get_subcommands().empty() && !unknown.empty()) {
+      return Complain(fmt::format("'{}' is no command (see flextip --help)", unknown.front()),
+                      kBadUsage);
+    }
     return Complain(fmt::format("{} (see flextip --help)", e.what()), kBadUsage);
   }
   context.work();

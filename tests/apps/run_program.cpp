@@ -1,0 +1,79 @@
+#include "tests/apps/run_program.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+namespace flextip {
+namespace {
+
+/// In the child: stdout and stderr into files, then the program.
+[[noreturn]] void Become(const std::vector<std::string>& arguments, const std::string& out,
+                         const std::string& err) {
+  std::string program = FLEXTIP_PROGRAM;
+  std::vector<std::string> copies(arguments);
+  std::vector<char*> argv{program.data()};
+  for (auto& argument : copies) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
+  dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+  execv(program.c_str(), argv.data());
+  _exit(127);
+}
+
+}  // namespace
+
+ProgramResult RunProgram(const std::vector<std::string>& arguments) {
+  const TestFolder folder;
+  const std::string out = (folder / "stdout").string(), err = (folder / "stderr").string();
+  const pid_t child = fork();
+  if (child == 0) Become(arguments, out, err);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadText(out), ReadText(err)};
+}
+
+TestFolder::TestFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "flextip-XXXXXX").string();
+  path_ = mkdtemp(name.data());
+}
+
+TestFolder::~TestFolder() {
+  std::error_code error;
+  std::filesystem::remove_all(path_, error);
+}
+
+std::string TestFolder::Write(const std::string& name, const std::string& text) const {
+  std::filesystem::create_directories((path_ / name).parent_path());
+  std::ofstream(path_ / name, std::ios::binary) << text;
+  return (path_ / name).string();
+}
+
+std::string ReadText(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+testing::AssertionResult IsRefused(const ProgramResult& result,
+                                   const std::vector<std::string>& parts) {
+  if (result.exit_code != 2) {
+    return testing::AssertionFailure() << "exit code " << result.exit_code << ", " << result.err;
+  }
+  if (!result.err.starts_with("flextip: ") ||
+      std::count(result.err.begin(), result.err.end(), '\n') != 1) {
+    return testing::AssertionFailure() << "not one line: " << result.err;
+  }
+  for (const auto& part : parts) {
+    if (result.err.find(part) == std::string::npos) {
+      return testing::AssertionFailure() << "no '" << part << "' in: " << result.err;
+    }
+  }
+  return testing::AssertionSuccess();
+}
+
+}  // namespace flextip
