@@ -33,12 +33,13 @@
     const longest = Math.max(...ranges.map((r) => r[1] - r[0])) || 1;
     const spans = ranges.map((r) => Math.max(r[1] - r[0], 0.25 * longest) * 1.08);
     const around = (r, s) => [(r[0] + r[1] - s) / 2, (r[0] + r[1] + s) / 2];
-    return { ranges: ranges.map((r, i) => around(r, spans[i])), ratio: spans.map((s) => s / Math.max(...spans)) };
+    return { ranges: ranges.map((r, i) => around(r, spans[i])), ratio: spans.map((s) => 1.9 * s / Math.hypot(...spans)) };
   }
 
   function layout(plot, inSpace) {
     const common = { font: FONT, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      showlegend: plot.traces.length > 1, hoverlabel: { font: FONT } };
+      showlegend: plot.traces.length > 1, hoverlabel: { font: FONT },
+      modebar: { bgcolor: "rgba(0,0,0,0)", color: "#b9c2cc", activecolor: INK } };
     if (!inSpace) {
       return Object.assign(common, { margin: { l: 60, r: 16, t: 10, b: 48 }, hovermode: "x unified",
         legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
@@ -51,7 +52,7 @@
       legend: { orientation: "h", y: 1.0, yanchor: "top", x: 0 },
       scene: { xaxis: side(plot.x_label, 0), yaxis: side(plot.y_label, 1), zaxis: side(plot.z_label, 2),
         aspectmode: "manual", aspectratio: { x: box.ratio[0], y: box.ratio[1], z: box.ratio[2] },
-        camera: { eye: { x: 1.25, y: -1.35, z: 0.75 } } } });
+        camera: { eye: { x: 1.15, y: -1.5, z: 0.8 } } } });
   }
 
   document.querySelectorAll(".canvas").forEach(function (element) {

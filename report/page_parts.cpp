@@ -68,16 +68,47 @@ void AddJsonTable(Report& report, const std::string& name, const Json& items) {
   report.AddTable(table);
 }
 
-/// "p_RE_x [m]" -> {"p_RE [m]", "x"}; a name without such an ending is a group of its own.
-std::pair<std::string, std::string> GroupOf(const std::string& name) {
+/// A column's name taken apart: "p_RE_x [m]" is the part "x" of "p_RE", shown in mm.
+struct ColumnName {
+  std::string group, part, unit;
+  double factor = 1.0;
+};
+
+ColumnName TakeApart(const std::string& name) {
   const auto bracket = name.find(" [");
-  const auto bare = name.substr(0, bracket);
-  const auto unit = bracket == std::string::npos ? "" : name.substr(bracket);
+  const std::string bare = name.substr(0, bracket);
+  ColumnName column{.group = bare, .part = bare, .unit = ""};
+  if (bracket != std::string::npos && name.ends_with("]")) {
+    column.unit = name.substr(bracket + 2, name.size() - bracket - 3);
+  }
+  if (column.unit == "m") {
+    column.unit = "mm";
+    column.factor = 1000.0;
+  }
   const auto cut = bare.rfind('_');
-  if (cut == std::string::npos || bare.size() - cut > 3 || cut == 0) return {bare + unit, bare};
-  const auto ending = bare.substr(cut + 1);
-  if (ending.find_first_not_of("xyzw") != std::string::npos) return {bare + unit, bare};
-  return {bare.substr(0, cut) + unit, ending};
+  if (cut == std::string::npos || cut == 0 || bare.size() - cut > 3) return column;
+  const std::string ending = bare.substr(cut + 1);
+  if (ending.empty() || ending.find_first_not_of("wxyz") != std::string::npos) return column;
+  column.group = bare.substr(0, cut);
+  column.part = ending;
+  return column;
+}
+
+/// What flextip's columns mean, for those who do not know the names by heart.
+std::string Meaning(const std::string& group) {
+  static const std::map<std::string, std::string> meanings{
+      {"p_RE", "Tip position"},
+      {"sd_RE", "Standard deviation of the tip position"},
+      {"p_RP", "Port position"},
+      {"sd_RP", "Standard deviation of the port position"},
+      {"p_RW", "Wrist position"},
+      {"d_RE", "Direction of the shaft at the tip"},
+      {"f_tip", "Force on the tip"},
+      {"sd_f_tip", "Standard deviation of the force on the tip"},
+      {"s_port", "Port along the shaft"},
+      {"chi2", "Squared residuals over their variances"}};
+  const auto it = meanings.find(group);
+  return it == meanings.end() ? group : it->second;
 }
 
 bool HasNumbers(const std::vector<double>& column) {
@@ -156,14 +187,18 @@ void AddColumnsOverTime(Report& report, const ResultTable& table) {
   std::vector<Plot> plots;
   for (std::size_t i = 1; i < table.names.size(); ++i) {
     if (!HasNumbers(table.numbers[i])) continue;
-    const auto [group, ending] = GroupOf(table.names[i]);
-    auto plot = std::find_if(plots.begin(), plots.end(),
-                             [&group = group](const Plot& p) { return p.title == group; });
+    const ColumnName name = TakeApart(table.names[i]);
+    const std::string title = Meaning(name.group);
+    auto plot =
+        std::find_if(plots.begin(), plots.end(), [&](const Plot& p) { return p.title == title; });
     if (plot == plots.end()) {
-      plots.push_back({.title = group, .x_label = "time (s)", .y_label = group});
+      const auto label = name.unit.empty() ? name.group : name.group + " (" + name.unit + ")";
+      plots.push_back({.title = title, .x_label = "time (s)", .y_label = label});
       plot = plots.end() - 1;
     }
-    plot->traces.push_back({.name = ending, .x = seconds, .y = table.numbers[i]});
+    PlotTrace trace{.name = name.part, .x = seconds, .y = table.numbers[i]};
+    for (double& y : trace.y) y *= name.factor;
+    plot->traces.push_back(std::move(trace));
   }
   for (const auto& plot : plots) report.AddPlot(plot);
 }

@@ -20,6 +20,9 @@ constexpr std::size_t kPictures = 6;
 constexpr const char* kX = "x (mm)";
 constexpr const char* kY = "y (mm)";
 constexpr const char* kZ = "z (mm)";
+/// The models of the controllers in the order of their worth, with their colours.
+constexpr std::pair<const char*, const char*> kModelColors[] = {
+    {"straight", "#d55e00"}, {"flex", "#0072b2"}, {"rod", "#009e73"}};
 
 /// One controller's run.
 struct Run {
@@ -36,14 +39,19 @@ std::vector<Run> ReadRuns(const fs::path& folder) {
   for (const auto& sub : FoldersWith(folder, "deviation.csv")) {
     runs.push_back({sub.filename().string(), sub, ReadResultTable(sub / "deviation.csv")});
   }
+  const auto rank = [](const Run& run) {
+    const auto* it = std::find_if(std::begin(kModelColors), std::end(kModelColors),
+                                  [&](const auto& m) { return run.name.starts_with(m.first); });
+    return it - std::begin(kModelColors);
+  };
+  std::stable_sort(runs.begin(), runs.end(),
+                   [&](const Run& a, const Run& b) { return rank(a) < rank(b); });
   return runs;
 }
 
 /// One colour a model; what is calculated rather than seen is dashed.
 void StyleController(PlotTrace& trace) {
-  const std::pair<const char*, const char*> colors[] = {
-      {"straight", "#d55e00"}, {"flex", "#0072b2"}, {"rod", "#009e73"}};
-  for (const auto& [model, color] : colors) {
+  for (const auto& [model, color] : kModelColors) {
     if (trace.name.starts_with(model)) trace.color = color;
   }
   trace.dashed = trace.name.find("calculate") != std::string::npos;
@@ -138,19 +146,30 @@ void AddSeenPath(Report& report, const ResultTable& table) {
   report.AddPlot(plot);
 }
 
+/// The values less the first one that is a number.
+std::vector<double> FromFirst(std::vector<double> values) {
+  const auto first =
+      std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  if (first == values.end()) return values;
+  const double start = *first;
+  for (double& v : values) v -= start;
+  return values;
+}
+
 void AddSeenTip(Report& report, const fs::path& data) {
   if (!fs::exists(data)) return;
   const auto table = ReadResultTable(data);
   if (table.Rows() == 0) return;
   report.AddHeading("The tip");
   AddSeenPath(report, table);
-  Plot coordinates{.title = "Coordinates of the tip",
-                   .caption = "In the robot's frame. Gaps: the tip was lost.",
+  Plot coordinates{.title = "Movement of the tip",
+                   .caption = "Along the robot's axes, from where it was seen first. Gaps: lost.",
                    .x_label = "time (s)",
-                   .y_label = "position (mm)"};
+                   .y_label = "movement (mm)"};
   for (const char* axis : {"x", "y", "z"}) {
-    const auto y = Scaled(table, std::string("p_RE_") + axis, kMmPerM);
-    if (!y.empty()) coordinates.traces.push_back({.name = axis, .x = SecondsOf(table), .y = y});
+    auto y = FromFirst(Scaled(table, std::string("p_RE_") + axis, kMmPerM));
+    if (y.empty()) continue;
+    coordinates.traces.push_back({.name = axis, .x = SecondsOf(table), .y = std::move(y)});
   }
   report.AddPlot(coordinates);
   const auto uncertainty = Uncertainty(table);
@@ -217,8 +236,17 @@ void WriteEstimateReport(const fs::path& folder) {
   Report report = BeginPage(folder, "Instrument fitted to the sensors");
   const auto data = folder / "state0" / "data.csv";
   if (fs::exists(data)) {
+    const auto table = ReadResultTable(data);
     report.AddHeading("State over time");
-    AddColumnsOverTime(report, ReadResultTable(data));
+    const auto path = PathTrace(table, "p_RE", "tip");
+    if (!path.x.empty()) {
+      report.AddPlot({.title = "Path of the tip",
+                      .x_label = kX,
+                      .y_label = kY,
+                      .z_label = kZ,
+                      .traces = {path}});
+    }
+    AddColumnsOverTime(report, table);
   }
   report.Write(folder / "report.html");
 }

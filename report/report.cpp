@@ -38,7 +38,7 @@ nlohmann::json TraceJson(const PlotTrace& trace) {
   return json;
 }
 
-/// What page.js draws. "</" would end the script element that holds it.
+/// What page.js draws. A "<" could end the script element that holds it.
 std::string PlotJson(const Plot& plot) {
   nlohmann::json json{{"x_label", plot.x_label},
                       {"y_label", plot.y_label},
@@ -51,8 +51,8 @@ std::string PlotJson(const Plot& plot) {
     json["traces"].push_back(TraceJson(trace));
   }
   std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  for (auto at = text.find("</"); at != std::string::npos; at = text.find("</", at + 3)) {
-    text.replace(at, 2, "<\\/");
+  for (auto at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    text.replace(at, 1, "\\u003c");
   }
   return text;
 }

@@ -160,7 +160,9 @@ std::string SpokenValue(const std::string& key, double value) {
     const bool whole = value == std::floor(value) && std::abs(value) < 1e9;
     return whole ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
   }
-  return fmt::format("{:.4g} {}", value * unit->factor, unit->shown);
+  const double shown = value * unit->factor;
+  return std::abs(shown) < 1000 ? fmt::format("{:.3g} {}", shown, unit->shown)
+                                : fmt::format("{:.1f} {}", shown, unit->shown);
 }
 
 }  // namespace flextip

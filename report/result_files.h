@@ -39,7 +39,7 @@ std::vector<std::filesystem::path> FoldersWith(const std::filesystem::path& fold
 
 /// "max_deviation_m" -> "max deviation", "frames_per_second" -> "frames per second".
 std::string SpokenName(const std::string& key);
-/// The number behind `key` in the unit people read: metres as mm, N, px, s; 4 significant digits.
+/// The number behind `key` in the unit people read: metres as mm, N, px, s.
 std::string SpokenValue(const std::string& key, double value);
 
 }  // namespace flextip

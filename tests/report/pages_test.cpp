@@ -1,0 +1,159 @@
+#include "report/pages.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "report/report.h"
+#include "report/result_files.h"
+
+namespace flextip {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class Pages : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("flextip-pages-" + std::to_string(getpid()) + "-" +
+               testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    Write("summary.json", R"({"command": "simulate", "version": "9.8.7", "seconds": 1.5,
+      "warnings": ["the tip was lost twice"], "frames": 12,
+      "controllers": {"rod-track": {"max_deviation_m": 0.00123, "rms_deviation_m": 0.0004}}})");
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void Write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  std::string Page() const { return ReadBytes(folder_ / "report.html"); }
+  std::vector<nlohmann::json> Plots() const {
+    const std::string html = Page(), begin = "<script type=\"application/json\">";
+    std::vector<nlohmann::json> plots;
+    for (auto at = html.find(begin); at != std::string::npos; at = html.find(begin, at)) {
+      at += begin.size();
+      plots.push_back(nlohmann::json::parse(html.substr(at, html.find("</script>", at) - at)));
+    }
+    return plots;
+  }
+
+  std::filesystem::path folder_;
+};
+
+const char* kDeviation =
+    "#timestamp [ns],p_desired_x [m],p_desired_y [m],p_desired_z [m],p_RE_x [m],p_RE_y [m],"
+    "p_RE_z [m],deviation [m]\n"
+    "1000000000,0.5,0,0,0.5,0.001,0,0.001\n"
+    "1500000000,0.5,0.002,0,0.5,0.002,0.003,0.003\n";
+
+TEST_F(Pages, ShowFiguresWarningsAndTheTableOfControllers) {
+  WriteSimulateReport(folder_);
+  const std::string html = Page();
+  EXPECT_THAT(html, HasSubstr("simulate   (flextip 9.8.7)"));
+  EXPECT_THAT(html, HasSubstr("<dt>frames</dt><dd>12</dd>"));
+  EXPECT_THAT(html, HasSubstr("the tip was lost twice"));
+  EXPECT_THAT(html, HasSubstr("<th>max deviation</th>"));
+  EXPECT_THAT(html, HasSubstr("<td>rod-track</td><td>1.23 mm</td><td>0.4 mm</td>"));
+}
+
+TEST_F(Pages, PlotEveryControllersDeviationAndPath) {
+  Write("rod-track/deviation.csv", kDeviation);
+  Write("straight-calculate/deviation.csv", kDeviation);
+  WriteSimulateReport(folder_);
+  const auto plots = Plots();
+  ASSERT_EQ(plots.size(), 2U);
+  const auto& over_time = plots[0]["traces"];
+  ASSERT_EQ(over_time.size(), 2U);
+  EXPECT_EQ(over_time[0]["name"], "straight-calculate");  // the poorest model first
+  EXPECT_EQ(over_time[0]["dashed"], true);
+  EXPECT_EQ(over_time[1]["dashed"], false);
+  EXPECT_EQ(over_time[1]["x"], nlohmann::json({0.0, 0.5}));
+  EXPECT_EQ(over_time[1]["y"], nlohmann::json({1.0, 3.0}));  // mm
+  const auto& paths = plots[1]["traces"];
+  ASSERT_EQ(paths.size(), 3U);
+  EXPECT_EQ(paths[2]["name"], "desired");
+  EXPECT_EQ(paths[1]["z"], nlohmann::json({0.0, 3.0}));
+}
+
+TEST_F(Pages, LeaveGapsWhereTheTipWasLost) {
+  Write("vision0/data.csv",
+        "#timestamp [ns],p_RE_x [m],p_RE_y [m],p_RE_z [m],cov_xx [m2],cov_xy [m2],cov_xz [m2],"
+        "cov_yy [m2],cov_yz [m2],cov_zz [m2],d_RE_x [],d_RE_y [],d_RE_z [],status []\n"
+        "0,0.1,0.2,0.3,4e-8,0,0,4e-8,0,1e-8,1,0,0,ok\n"
+        "1000000000,,,,,,,,,,,,,lost\n"
+        "2000000000,0.101,0.2,0.3,4e-8,0,0,4e-8,0,1e-8,,,,predicted\n");
+  WriteTrackReport(folder_);
+  const auto plots = Plots();
+  ASSERT_EQ(plots.size(), 3U);
+  EXPECT_TRUE(plots[1]["traces"][0]["y"][1].is_null());
+  EXPECT_NEAR(plots[1]["traces"][0]["y"][2].get<double>(), 1.0, 1e-9);
+  EXPECT_NEAR(plots[2]["traces"][0]["y"][0].get<double>(), 0.3, 1e-9);  // sqrt of 9e-8 m2
+}
+
+TEST_F(Pages, PlotEveryColumnOfAState) {
+  Write("state0/data.csv",
+        "#timestamp [ns],p_RE_x [m],p_RE_y [m],p_RE_z [m],f_tip_x [N],status []\n"
+        "0,0.1,0.2,0.3,1,ok\n100,0.1,0.2,0.4,2,ok\n");
+  WriteEstimateReport(folder_);
+  const auto plots = Plots();
+  ASSERT_EQ(plots.size(), 3U);  // the path, the position, the force
+  EXPECT_EQ(plots[1]["traces"].size(), 3U);
+  EXPECT_EQ(plots[1]["traces"][2]["y"][1].get<double>(), 400.0);
+  EXPECT_EQ(plots[2]["traces"][0]["y"], nlohmann::json({1.0, 2.0}));
+}
+
+TEST_F(Pages, ShowPicturesOfAllCommands) {
+  Write("overlay/0001.png", "\x89PNG one");
+  Write("overlay/notes.txt", "not a picture");
+  for (const auto write : {WriteTrackReport, WriteDetectReport, WriteCalibrateReport}) {
+    write(folder_);
+    EXPECT_THAT(Page(), HasSubstr(Base64("\x89PNG one")));
+    EXPECT_THAT(Page(), Not(HasSubstr("notes.txt")));
+  }
+}
+
+TEST_F(Pages, SayWhichFileIsWrong) {
+  Write("deviation.csv", std::string(kDeviation) + "1700000000,0.5\n");
+  try {
+    WriteSimulateReport(folder_);
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("deviation.csv:4: 2 cells, expected 8"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "report.html"));
+  std::filesystem::remove(folder_ / "summary.json");
+  EXPECT_THROW(WriteTrackReport(folder_), InputError);
+  Write("summary.json", "{torn");
+  EXPECT_THROW(WriteTrackReport(folder_), InputError);
+}
+
+TEST(ResultFiles, SpreadAFewPicturesOverAll) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("flextip-pictures-" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  for (int i = 0; i < 10; ++i) std::ofstream(folder / (std::to_string(i) + ".png")) << "x";
+  std::vector<std::string> names;
+  for (const auto& path : PicturesIn(folder, 4)) names.push_back(path.stem().string());
+  EXPECT_THAT(names, ElementsAre("0", "3", "6", "9"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(ResultFiles, SayNumbersInTheUnitsPeopleRead) {
+  EXPECT_EQ(SpokenName("max_deviation_m"), "max deviation");
+  EXPECT_EQ(SpokenValue("max_deviation_m", 0.00123), "1.23 mm");
+  EXPECT_EQ(SpokenValue("rms_reprojection_error_px", 0.19512), "0.195 px");
+  EXPECT_EQ(SpokenValue("frames", 900), "900");
+  EXPECT_EQ(SpokenName("frames_per_second"), "frames per second");
+}
+
+}  // namespace
+}  // namespace flextip
