@@ -87,33 +87,40 @@ std::vector<PoseMinimum> Minima(const CameraModel& camera, const std::vector<See
   return distinct;
 }
 
-// The tag whose corners are farthest from where the pose puts them.
-std::size_t WorstTag(const CameraModel& camera, const std::vector<SeenTag>& seen,
-                     const Pose& T_CE) {
-  std::size_t worst = 0;
-  double worst_error = -1;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const auto error = Reproject(camera, Correspondences({seen[i]}), T_CE);
-    const double size = error ? error->squared_px2 : HUGE_VAL;
-    if (size > worst_error) worst = i, worst_error = size;
-  }
-  return worst;
-}
-
 double Rms(const PoseMinimum& m, std::size_t tags) {
   return std::sqrt(m.error.squared_px2 / (4.0 * static_cast<double>(tags)));
 }
 
-// Fits, and fits again without the worst tag as long as the fit is poor and two tags would stay.
+std::vector<PoseMinimum> FitAll(const CameraModel& camera, const std::vector<SeenTag>& seen,
+                                const CollarPoseOptions& options,
+                                const std::optional<Pose>& near_T_CE) {
+  return Minima(camera, seen, Starts(camera, seen, near_T_CE), options.max_iterations);
+}
+
+// Fits all tags; as long as that is poor and two would stay, leaves out the tag without which the
+// rest fits best.
 std::vector<PoseMinimum> FitWithoutOutliers(const CameraModel& camera, std::vector<SeenTag>& seen,
                                             const CollarPoseOptions& options,
                                             const std::optional<Pose>& near_T_CE) {
-  while (true) {
-    auto minima = Minima(camera, seen, Starts(camera, seen, near_T_CE), options.max_iterations);
-    const bool poor = !minima.empty() && Rms(minima[0], seen.size()) > options.max_rms_px;
-    if (!poor || seen.size() < 3) return minima;
-    seen.erase(seen.begin() + static_cast<std::ptrdiff_t>(WorstTag(camera, seen, minima[0].T_CE)));
+  auto minima = FitAll(camera, seen, options, near_T_CE);
+  while (seen.size() > 2 && (minima.empty() || Rms(minima[0], seen.size()) > options.max_rms_px)) {
+    std::vector<SeenTag> best_rest;
+    std::vector<PoseMinimum> best;
+    for (std::size_t left_out = 0; left_out < seen.size(); ++left_out) {
+      std::vector<SeenTag> rest = seen;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(left_out));
+      auto fit = FitAll(camera, rest, options, near_T_CE);
+      const bool better =
+          !fit.empty() && (best.empty() || fit[0].error.squared_px2 < best[0].error.squared_px2);
+      if (better || best_rest.empty()) {
+        best_rest = rest;
+        best = fit;
+      }
+    }
+    seen = best_rest;
+    minima = best;
   }
+  return minima;
 }
 
 // The corners' noise from this fit and earlier ones, never below the floor.

@@ -36,7 +36,7 @@ struct TagDetectorOptions {
   std::string family = "tag36h11";  ///< or tag25h9, tag16h5, tagStandard41h12
   double quad_decimate = 1.0;       ///< quads are searched at 1/this of the resolution; >= 1
   double quad_sigma_px = 0.0;       ///< Gaussian blur before the search
-  bool refine_edges = true;         ///< the library's own refinement
+  bool refine_edges = false;        ///< the library's own refinement; with it a few are not read
   double decode_sharpening = 0.25;
   int threads = 1;
   int max_hamming = 2;                ///< detections with more corrected bits are dropped
