@@ -19,7 +19,7 @@ namespace flextip {
 struct TissueOptions {
   Eigen::Vector3d point_R = Eigen::Vector3d::Zero();    ///< a point of the mean plane (m)
   Eigen::Vector3d normal_R = Eigen::Vector3d::UnitZ();  ///< out of the tissue; any length but 0
-  Eigen::Vector3d albedo_bgr = {0.26, 0.31, 0.80};      ///< mean reflectance, 0 to 1; 0 is black
+  Eigen::Vector3d albedo_bgr = {0.29, 0.34, 0.88};      ///< mean reflectance, 0 to 1; 0 is black
   double relief_m = 0.0015;                             ///< standard height of the relief; 0: flat
   double texture_scale_m = 0.012;                       ///< size of the coarsest patches
   double texture_contrast = 1.0;                        ///< 0: one colour
@@ -46,7 +46,7 @@ struct Occluder {
 struct LaparoscopeOptions {
   TissueOptions tissue;
   std::vector<Occluder> occluders;
-  double exposure = 0.55;          ///< signal, as a part of the full well, of a white matt surface
+  double exposure = 0.33;          ///< signal, as a part of the full well, of a white matt surface
                                    ///< that faces the scope on its axis at `exposure_distance_m`
   double exposure_distance_m = 0;  ///< 0: the distance of the tissue along the optical axis, or
                                    ///< 0.1 m where the axis misses the tissue

@@ -54,7 +54,7 @@ Film::Film(const LaparoscopeOptions& options, double gamma)
       code_(kCodes) {
   for (int i = 0; i < kCodes; ++i) {
     code_[i] =
-        static_cast<std::uint8_t>(std::lround(255.0 * std::pow(i / (kCodes - 1.0), 1.0 / gamma)));
+        static_cast<std::uint8_t>(std::lround(255.0 * std::pow(i / (kCodes - 1.0), 2.0 / gamma)));
   }
   if (electrons_ > 0) normal_ = NormalQuantiles();
 }
@@ -80,7 +80,8 @@ Image Film::Develop(LinearImage& light, int frame_number) const {
 
 void Film::DevelopRow(const float* light, std::uint8_t* out, int count, std::uint64_t state) const {
   const auto encode = [&](float signal) {
-    return code_[static_cast<std::size_t>(std::clamp(signal, 0.0f, 1.0f) * (kCodes - 1) + 0.5f)];
+    return code_[static_cast<std::size_t>(std::sqrt(std::clamp(signal, 0.0f, 1.0f)) * (kCodes - 1) +
+                                          0.5f)];
   };
   if (electrons_ <= 0) {
     std::transform(light, light + count, out, encode);

@@ -22,7 +22,7 @@ class Film {
 
   double blur_sigma_px_, electrons_, read_electrons_;
   std::uint64_t seed_;
-  std::vector<std::uint8_t> code_;  // of the signal in steps of 1/65535
+  std::vector<std::uint8_t> code_;  // of the signal's root in steps of 1/65535
   std::vector<float> normal_;       // quantiles of the standard normal distribution
 };
 
