@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/error.h"
 
@@ -133,11 +134,11 @@ Report BeginPage(const std::filesystem::path& folder, const std::string& title) 
     for (const auto& w : summary["warnings"]) warnings.push_back(Shown("", w));
   }
   report.AddWarnings(warnings);
+  bool headed = false;
   for (const auto& [key, value] : summary.items()) {
-    if (key != "warnings" && IsTable(value)) {
-      report.AddHeading("Results");
-      AddJsonTable(report, key, value);
-    }
+    if (key == "warnings" || !IsTable(value)) continue;
+    if (!std::exchange(headed, true)) report.AddHeading("Results");
+    AddJsonTable(report, key, value);
   }
   return report;
 }
