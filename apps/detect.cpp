@@ -24,7 +24,7 @@ namespace {
 struct DetectOptions {
   std::vector<std::filesystem::path> images;
   TagDetectorOptions detector;
-  bool json = false, no_refit = false, no_edge_refinement = false, force = false;
+  bool json = false, no_refit = false, edge_refinement = false, force = false;
   std::filesystem::path out;
 };
 
@@ -110,7 +110,7 @@ void WriteResults(const DetectOptions& options, std::vector<DetectedImage>& resu
 void RunDetect(const DetectOptions& options, bool quiet) {
   TagDetectorOptions detector_options = options.detector;
   detector_options.refine_corners = !options.no_refit;
-  detector_options.refine_edges = !options.no_edge_refinement;
+  detector_options.refine_edges = options.edge_refinement;
   TagDetector detector(detector_options);
   std::vector<DetectedImage> results;
   {
@@ -149,8 +149,8 @@ void AddDetect(CLI::App& app, AppContext& context) {
       ->capture_default_str();
   command->add_option("--threads", options->detector.threads, "Threads")->capture_default_str();
   command->add_flag("--no-refit", options->no_refit, "Keep the library's corners");
-  command->add_flag("--no-edge-refinement", options->no_edge_refinement,
-                    "Switch the library's own refinement off");
+  command->add_flag("--edge-refinement", options->edge_refinement,
+                    "Switch the library's own refinement on");
   command->add_option("-o,--output", options->out, "Folder for pictures, tags.csv and a report");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->footer(
