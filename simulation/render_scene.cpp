@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kMargin_px = 4.0;
 constexpr double kNear_m = 1e-3;
+constexpr double kLeastStep_m = 1e-9;
 
 Material Steel() {
   Material steel;
@@ -41,7 +42,10 @@ Scene::Scene(const CameraModel& camera, const CollarBody& collar,
       tiles_(static_cast<std::size_t>(tiles_across_) * tiles_down_, 0) {
   const Pose T_CR = camera.Calibration().T_RC.Inverse();
   std::vector<Vector3d> points;
-  for (const Vector3d& p : curve.points) points.push_back(T_CR * p);
+  for (const Vector3d& p : curve.points) {  // points that coincide say nothing
+    const Vector3d x = T_CR * p;
+    if (points.empty() || (x - points.back()).norm() > kLeastStep_m) points.push_back(x);
+  }
   AddTube(Tube(points, T_CR.R * curve.T_RE.R.col(0), 0.5 * curve.diameter_m, {}), Steel());
   for (const Face& face : collar.FacesSeen(T_CR * curve.T_RE)) AddFace(face, Print());
   for (const Occluder& o : occluders) {

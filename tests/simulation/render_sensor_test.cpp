@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <tuple>
 
 #include "core/error.h"
@@ -232,6 +233,34 @@ TEST(RenderSensor, GreyIsTheLuminanceOfTheColours) {
   ASSERT_EQ(grey.channels, 1);
   EXPECT_NEAR(grey.At(100, 100)[0], 0.0722 * bgr[0] + 0.7152 * bgr[1] + 0.2126 * bgr[2], 1e-6);
   EXPECT_EQ(scope.Render(HiddenShaft(), 0).channels, 1);
+}
+
+TEST(RenderInput, AnyShaftGivesFiniteLight) {
+  // Across the camera, through it, along its axis, behind it, with points that coincide.
+  CameraCalibration camera = SmallCamera();
+  camera.distortion_coefficients = {-0.22, 0.08, 0.0006, -0.0004};
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 60; ++trial) {
+    LaparoscopeOptions o = PlainOptions();
+    camera.width_px = camera.height_px = 96;
+    camera.cu_px = camera.cv_px = 47.5;
+    Pose T_RE;
+    T_RE.R = ExpRotation(2.0 * Vector3d(normal(random), normal(random), normal(random)));
+    T_RE.p = 0.03 * Vector3d(normal(random), normal(random), 1 + normal(random));
+    if (trial == 0) T_RE.R << 0, 1, 0, 0, 0, 1, 1, 0, 0;  // along the optical axis
+    if (trial == 0) T_RE.p = {0, 0, 0.1};
+    ShaftCurve curve = ArcShaft(T_RE, 0.3, 0.05 + 0.01 * trial, 0.005);
+    curve.points.insert(curve.points.begin() + 7, curve.points[7]);
+    Occluder capsule;
+    capsule.a_R = 0.05 * Vector3d(normal(random), normal(random), normal(random));
+    capsule.b_R = trial == 1 ? Vector3d(-capsule.a_R) : Vector3d(0.01, 0.02, 0.05);
+    o.occluders = {capsule};
+    const LinearImage image = Laparoscope(camera, HexagonCollar(), o).RenderLinear(curve, 0);
+    ASSERT_TRUE(std::all_of(image.data.begin(), image.data.end(), [](float v) {
+      return std::isfinite(v) && v >= 0;
+    })) << trial;
+  }
 }
 
 TEST(RenderInput, BadInputIsRefused) {
