@@ -162,6 +162,11 @@ TEST(RenderSensor, TheSameSeedGivesTheSameBytesOnAnyNumberOfThreads) {
   LaparoscopeOptions o;
   o.tissue.point_R = {0.2, 0, -0.045};
   CameraCalibration camera = SampleCamera();
+  camera.width_px = 320;
+  camera.height_px = 180;
+  camera.fu_px = camera.fv_px = 240;
+  camera.cu_px = 161;
+  camera.cv_px = 88;
   Pose T_RE;
   T_RE.p = {0.2, 0, 0};
   const ShaftCurve curve = ArcShaft(T_RE, 0.3, 1.0, 0.005);
