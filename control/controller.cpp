@@ -42,14 +42,32 @@ Prediction PredictFlex(const ControlInput& input, BeamLoadLaw law) {
   return {ControlStatus::kOk, BeamTip(beam, input.p_RW), BeamJacobian(beam, law)};
 }
 
-Prediction PredictRod(const ControlInput& input, RodSolver& solver) {
+/// The tissue's stiffness as far as it may be relied on. The loop's gain along a direction is what
+/// the Jacobian assumes over what is there, (1 - c k) / (1 - c k_true) with c the shaft's
+/// compliance: should the tissue let go, it must stay below 2, so 1 - c k is held to `limit`.
+Eigen::Matrix3d TrustedStiffness(const Eigen::Matrix3d& K, const Eigen::Matrix3d& compliance,
+                                 double limit) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(-0.5 * (K + K.transpose()));
+  const Eigen::Matrix3d root = eigen.eigenvectors() *
+                               eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+                               eigen.eigenvectors().transpose();
+  const Eigen::Matrix3d product = root * (0.5 * (compliance + compliance.transpose())) * root;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> gains(product, Eigen::EigenvaluesOnly);
+  const double largest = gains.eigenvalues()[2];
+  const double part = largest > limit - 1.0 ? (limit - 1.0) / largest : 1.0;
+  return -part * root * root;
+}
+
+Prediction PredictRod(const ControlInput& input, const ControllerOptions& options,
+                      RodSolver& solver) {
   const ShaftModel& model = input.model;
   const RodState rod =
       solver.Solve({model.instrument.length_m, model.instrument.bending_stiffness_Nm2, input.p_RW,
                     model.p_RP, model.f_tip_N, model.weight_N_m});
   if (!rod.IsUsable()) return StraightInstead(input);
   return {model.force_known ? ControlStatus::kOk : ControlStatus::kStraightInstead, rod.tip.p,
-          rod.J_tip_wrist(model.tissue_stiffness_N_m)};
+          rod.J_tip_wrist(TrustedStiffness(model.tissue_stiffness_N_m, rod.tip.dp.rightCols<3>(),
+                                           options.max_tissue_gain))};
 }
 
 Prediction Predict(const ControlInput& input, const ControllerOptions& options, RodSolver& solver) {
@@ -62,7 +80,7 @@ Prediction Predict(const ControlInput& input, const ControllerOptions& options, 
       return PredictFlex(input, options.beam_load_law);
     case ControllerKind::kRodCalculate:
     case ControllerKind::kRodTrack:
-      return PredictRod(input, solver);
+      return PredictRod(input, options, solver);
   }
   return {};
 }

@@ -31,6 +31,7 @@ struct ControllerOptions {
   BeamLoadLaw beam_load_law = BeamLoadLaw::kTipForce;
   double gain = 1.0;                 ///< k of (2.1)
   double max_step_m = 0.01;          ///< bound on the wrist's motion in one step
+  double max_tissue_gain = 1.7;      ///< of the loop, should tissue that was felt let go (below 2)
   double min_singular_value = 0.05;  ///< of J_tip_wrist; below it the inverse is damped
 };
 

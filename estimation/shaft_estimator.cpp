@@ -10,9 +10,9 @@ namespace flextip {
 namespace {
 
 constexpr double kObservable = 0.3;        // posterior over prior sd of the force across the shaft
-constexpr double kSecant_m = 0.001;        // tip travel between two looks at the tissue
+constexpr double kSecant_m = 0.002;        // tip travel between two looks at the tissue
 constexpr double kTissueMemory = 0.9;      // weight of the past against a new secant
-constexpr double kLeastTravel_m = 0.0005;  // travel in a direction before it says much of it
+constexpr double kLeastTravel_m = 0.002;  // travel in a direction before it says much of it
 constexpr double kStiffestTissue_N_m = 2000.0;
 
 bool AllFinite(const Measurements& z) {

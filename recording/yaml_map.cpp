@@ -156,6 +156,17 @@ std::vector<double> YamlMap::Numbers(const std::string& key, std::size_t count) 
   return values;
 }
 
+std::vector<std::string> YamlMap::Texts(const std::string& key) const {
+  const auto& node = impl_->Node(key);
+  if (!node.IsSequence()) throw impl_->Unexpected(key, node, "a list of texts");
+  std::vector<std::string> values;
+  for (const auto& item : node) {
+    if (!item.IsScalar()) throw impl_->Unexpected(key, item, "a text in the list");
+    values.push_back(item.Scalar());
+  }
+  return values;
+}
+
 Eigen::Vector3d YamlMap::Vector3(const std::string& key) const {
   const auto values = Numbers(key, 3);
   return {values[0], values[1], values[2]};

@@ -35,6 +35,7 @@ class YamlMap {
   bool IsList(const std::string& key) const;
   std::vector<double> Numbers(const std::string& key) const;  ///< a list of finite numbers
   std::vector<double> Numbers(const std::string& key, std::size_t count) const;
+  std::vector<std::string> Texts(const std::string& key) const;  ///< a list
   Eigen::Vector3d Vector3(const std::string& key) const;
 
   YamlMap Map(const std::string& key) const;

@@ -1,0 +1,175 @@
+// flextip simulate: a closed loop of plant, sensors, vision and controllers, written as recordings.
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/commands.h"
+#include "apps/output.h"
+#include "apps/progress.h"
+#include "core/error.h"
+#include "recording/csv.h"
+#include "recording/recording_writer.h"
+#include "recording/text.h"
+#include "recording/truth.h"
+#include "report/pages.h"
+#include "simulation/scenario.h"
+
+namespace flextip {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SimulateOptions {
+  fs::path scenario, out;
+  bool render = false, force = false;
+};
+
+/// Progress of several runs at once.
+class SharedProgress {
+ public:
+  SharedProgress(std::size_t runs, bool quiet)
+      : progress_("simulate", kUnits * runs, quiet), done_(runs) {}
+  void Update(std::size_t run, int done, int total) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    done_[run] = std::min<std::size_t>(kUnits, kUnits * static_cast<std::size_t>(done) / total);
+    std::size_t sum = 0;
+    for (const std::size_t units : done_) sum += units;
+    progress_.Update(sum);
+  }
+
+ private:
+  static constexpr std::size_t kUnits = 1000;
+  std::mutex mutex_;
+  Progress progress_;
+  std::vector<std::size_t> done_;
+};
+
+void SaveFrame(const fs::path& folder, TimeNs t_ns, const Image& image) {
+  const int type = image.channels == 3 ? CV_8UC3 : CV_8UC1;
+  const cv::Mat frame(image.height_px, image.width_px, type,
+                      const_cast<std::uint8_t*>(image.data.data()));
+  const fs::path file = folder / fmt::format("{}.png", t_ns);
+  // Fast rather than small: a run writes hundreds.
+  if (!cv::imwrite(file.string(), frame, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+    throw WorkError(file.string() + ": cannot be written");
+  }
+}
+
+void WriteDeviation(const fs::path& file, const LoopResult& result) {
+  CsvWriter csv({"timestamp [ns]", "p_desired_x [m]", "p_desired_y [m]", "p_desired_z [m]",
+                 "p_RE_x [m]", "p_RE_y [m]", "p_RE_z [m]", "deviation [m]"});
+  for (const LoopUpdate& update : result.updates) {
+    csv.Add(update.t_ns);
+    for (int i = 0; i < 3; ++i) csv.Add(update.p_RE_desired[i]);
+    for (int i = 0; i < 3; ++i) csv.Add(update.p_RE[i]);
+    csv.Add(update.deviation_m);
+    csv.EndRow();
+  }
+  WriteTextFile(file, csv.text());
+}
+
+nlohmann::json Figures(const LoopResult& result) {
+  return {
+      {"max_deviation_m", result.max_deviation_m},   {"rms_deviation_m", result.rms_deviation_m},
+      {"final_error_m", result.final_error_m},       {"updates", result.updates.size()},
+      {"control_statuses", result.control_statuses}, {"tip_statuses", result.tip_statuses},
+      {"steps_limited", result.steps_limited},       {"steps_damped", result.steps_damped}};
+}
+
+/// One controller's run, written into `folder` as a recording.
+LoopResult RunOne(const Scenario& scenario, ControllerKind kind, const Laparoscope* laparoscope,
+                  const fs::path& folder, const std::function<void(int, int)>& progress) {
+  LoopSetup setup = scenario.loop;
+  setup.controller.kind = kind;
+  std::optional<LoopCamera> camera;
+  if (laparoscope != nullptr) {
+    const fs::path frames = folder / "cam0" / "data";
+    fs::create_directories(frames);
+    camera.emplace(
+        LoopCamera{*laparoscope, scenario.tracker,
+                   [frames](TimeNs t_ns, const Image& image) { SaveFrame(frames, t_ns, image); }});
+  } else {
+    fs::create_directories(folder);
+  }
+  LoopResult result = RunClosedLoop(setup, camera ? &*camera : nullptr, progress);
+  WriteRecording(folder, result.recording);
+  WriteTruth(folder, result.truth);
+  WriteDeviation(folder / "deviation.csv", result);
+  return result;
+}
+
+void RunSimulate(const SimulateOptions& options, bool quiet) {
+  const Scenario scenario = ReadScenario(options.scenario);
+  const std::string file = options.scenario.string();
+  if (options.render && !scenario.has_camera) {
+    throw InputError(file + ": --render needs a section camera");
+  }
+  if (!options.render && !scenario.loop.sensors.tip) {
+    throw InputError(file + ": without --render the sensors need a section tip");
+  }
+  OutputFolder output(options.out, "simulate",
+                      {.force = options.force, .inputs = {options.scenario}});
+  output.Warn(scenario.warnings);
+  std::optional<Laparoscope> laparoscope;
+  if (options.render) {
+    const LoopSetup& loop = scenario.loop;
+    laparoscope.emplace(loop.base.cam0->calibration, *loop.base.tags0, scenario.laparoscope);
+  }
+  const std::size_t runs = scenario.controllers.size();
+  std::vector<LoopResult> results(runs);
+  {
+    SharedProgress progress(runs, quiet);
+    tbb::parallel_for(std::size_t(0), runs, [&](std::size_t i) {
+      const ControllerKind kind = scenario.controllers[i];
+      const fs::path folder = runs == 1 ? output.folder() : output.folder() / Name(kind);
+      results[i] = RunOne(scenario, kind, laparoscope ? &*laparoscope : nullptr, folder,
+                          [&](int done, int total) { progress.Update(i, done, total); });
+    });
+  }
+  nlohmann::json controllers;
+  for (std::size_t i = 0; i < runs; ++i)
+    controllers[Name(scenario.controllers[i])] = Figures(results[i]);
+  output.WriteSummary({{"scenario", options.scenario.filename().string()},
+                       {"rendered", options.render},
+                       {"controllers", controllers}});
+  WriteSimulateReport(output.folder());
+  output.Commit();
+  if (quiet) return;
+  fmt::print("{:<20} {:>12} {:>12}\n", "deviation (mm)", "max", "rms");
+  for (std::size_t i = 0; i < runs; ++i) {
+    fmt::print("{:<20} {:>12.3f} {:>12.3f}\n", Name(scenario.controllers[i]),
+               1e3 * results[i].max_deviation_m, 1e3 * results[i].rms_deviation_m);
+  }
+  fmt::print("report: {}\n", (options.out / "report.html").string());
+}
+
+}  // namespace
+
+void AddSimulate(CLI::App& app, AppContext& context) {
+  auto* command =
+      app.add_subcommand("simulate", "Run a closed loop and write it as recordings with truth");
+  auto options = std::make_shared<SimulateOptions>();
+  command->add_option("scenario", options->scenario, "What to run")
+      ->required()
+      ->type_name("SCENARIO.yaml");
+  command->add_option("-o,--output", options->out, "Folder for the recording")
+      ->required()
+      ->type_name("RECORDING");
+  command->add_flag("--render", options->render,
+                    "Render laparoscope frames and run the loop on what vision sees in them");
+  command->add_flag("--force", options->force, "Replace the folder of an earlier run");
+  command->footer(
+      "With several controllers each gets a folder of its name, a recording of its own.\n"
+      "Example:\n  flextip simulate testdata/scenarios/press.yaml --render -o press\n");
+  OnRun(*command, context, [options, &context] { RunSimulate(*options, context.quiet); });
+}
+
+}  // namespace flextip

@@ -1,0 +1,85 @@
+// The sensors on the simulated instrument: each at its own rate, with its own noise and seed.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/time_series.h"
+#include "recording/recording.h"
+#include "simulation/plant_shape.h"
+
+namespace flextip {
+
+/// A tip tracker by its figures, for runs without rendered frames: noise across the camera's line
+/// of sight and along it.
+struct TipSensorSetup {
+  double rate_hz = 30.0;
+  double across_noise_m = 0.0001;
+  double depth_noise_m = 0.0005;
+  double direction_noise_rad = 0.003;
+  Eigen::Vector3d line_of_sight = Eigen::Vector3d::UnitZ();  ///< in R, unit
+};
+
+/// Which sensors there are. The streams' samples are empty here: they state rates and noises.
+struct SensorSetup {
+  std::optional<WristStream> wrist;
+  std::optional<EmStream> em0, em1;
+  std::optional<StrainStream> strain;
+  std::optional<LoadStream> load;
+  std::optional<TipSensorSetup> tip;
+};
+
+/// Noise of one sensor.
+class SensorNoise {
+ public:
+  SensorNoise(std::uint64_t seed, NoiseDistribution distribution)
+      : rng_(seed), distribution_(distribution) {}
+  /// Standard deviation `sd` per axis; a uniform distribution has the same one.
+  Eigen::Vector3d Vector(double sd);
+
+ private:
+  double Draw();
+  std::mt19937_64 rng_;
+  NoiseDistribution distribution_;
+  std::normal_distribution<double> normal_;
+};
+
+/// Samples every sensor that is due.
+class Sensors {
+ public:
+  Sensors(const SensorSetup& setup, std::uint64_t seed);
+
+  /// Adds the samples that fall due in (last call, t_ns] to `recording`'s streams, all taken from
+  /// `shape` at the time they are due. Call it with increasing times.
+  void Sample(const PlantShape& shape, TimeNs t_ns, Recording& recording);
+
+ private:
+  /// One sensor's clock and noise.
+  struct Channel {
+    SensorNoise noise;
+    TimeNs next_ns;
+    /// Whether a sample is due at `t_ns`; moves the clock on.
+    bool Due(double rate_hz, TimeNs t_ns);
+  };
+  static Channel MakeChannel(std::uint64_t seed, int sensor,
+                             const std::optional<EmStream>& em = {});
+
+  void SampleWrist(const PlantShape& shape, TimeNs t_ns, Recording& recording);
+  void SampleEm(const Pose& T_RS, TimeNs t_ns, const EmStream& setup, Channel& channel,
+                std::optional<EmStream>& stream);
+  void SampleStrain(const PlantShape& shape, TimeNs t_ns, Recording& recording);
+  void SampleTip(const PlantShape& shape, TimeNs t_ns, Recording& recording);
+
+  SensorSetup setup_;
+  Channel wrist_, em0_, em1_, strain_, load_, tip_;
+};
+
+/// Simulated recordings start here: a round time stamp in nanoseconds.
+inline constexpr TimeNs kSimulationStart_ns = 1'700'000'000'000'000'000;
+
+}  // namespace flextip
