@@ -1,5 +1,10 @@
 #include "apps/frames.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <system_error>
@@ -23,7 +28,30 @@ cv::Mat View(const Image& image) {
                  const_cast<std::uint8_t*>(image.data.data()));  // only read
 }
 
+// The codecs write what they dislike straight to stderr; whoever called them says it in one line.
+class QuietStderr {
+ public:
+  QuietStderr() : saved_(dup(STDERR_FILENO)) {
+    std::fflush(stderr);
+    const int nothing = open("/dev/null", O_WRONLY);
+    if (saved_ >= 0 && nothing >= 0) dup2(nothing, STDERR_FILENO);
+    if (nothing >= 0) close(nothing);
+  }
+  ~QuietStderr() {
+    if (saved_ < 0) return;
+    dup2(saved_, STDERR_FILENO);
+    close(saved_);
+  }
+  QuietStderr(const QuietStderr&) = delete;
+  QuietStderr& operator=(const QuietStderr&) = delete;
+
+ private:
+  int saved_;
+};
+
 }  // namespace
+
+void SilenceVideoCodecs() { setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); }
 
 Image ReadImageFile(const std::filesystem::path& file) {
   const ImageHead head = ReadImageHead(file);
@@ -32,6 +60,7 @@ Image ReadImageFile(const std::filesystem::path& file) {
   }
   cv::Mat bgr;
   try {
+    const QuietStderr quiet;
     bgr = cv::imread(file.string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {  // reported below
   }

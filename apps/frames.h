@@ -15,6 +15,9 @@ namespace flextip {
 /// cut off or no picture.
 Image ReadImageFile(const std::filesystem::path& file);
 
+/// Keeps the video library's own messages off stderr. Before the first video is opened.
+void SilenceVideoCodecs();
+
 /// Throws WorkError where the disk refuses.
 void WritePng(const std::filesystem::path& file, const Image& image);
 

@@ -190,8 +190,10 @@ void PrintResult(const TrackOptions& options, const nlohmann::json& summary) {
 }
 
 void RunTrack(const TrackOptions& options, bool quiet) {
-  OutputFolder output(options.out, "track",
-                      {.force = options.force, .inputs = {options.recording, options.truth}});
+  SilenceVideoCodecs();
+  std::vector<std::filesystem::path> inputs{options.recording};
+  if (!options.truth.empty()) inputs.push_back(options.truth);
+  OutputFolder output(options.out, "track", {.force = options.force, .inputs = inputs});
   const Recording recording = ReadForTracking(options, output);
   const auto truth = ReadTipTruth(options.recording, options.truth);
   const TrackResult result = TrackFrames(options, recording, output, quiet);
