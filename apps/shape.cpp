@@ -53,7 +53,7 @@ void PrintShape(const Shape& shape) {
 
 /// The solved shape, or the error that says what was wrong with the problem.
 Shape SolveOne(const ShapeOptions& options) {
-  const Shape shape = SolveShape(options.problem, options.model);
+  Shape shape = SolveShape(options.problem, options.model);
   if (shape.IsUsable()) return shape;
   const RodProblem& p = options.problem;
   const auto what = fmt::format(

@@ -4,6 +4,7 @@ include(CMakePackageConfigHelpers)
 
 get_property(libraries GLOBAL PROPERTY FLEXTIP_LIBRARIES)
 get_property(folders GLOBAL PROPERTY FLEXTIP_HEADER_FOLDERS)
+list(REMOVE_DUPLICATES folders)
 install(TARGETS ${libraries} EXPORT flextip-targets)
 foreach(folder IN LISTS folders)
   cmake_path(GET folder FILENAME name)

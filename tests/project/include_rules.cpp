@@ -37,14 +37,14 @@ const std::map<std::string, Names>& Arrows() {
   return arrows;
 }
 
-/// What closes the loop joins the plant with the controllers, and only there.
+/// The files of the target closed_loop join the plant with the controllers, and no others do.
 const Names kClosedLoop{"core", "recording", "vision", "control", "estimation"};
 
 /// Foreign header's beginning -> the folders whose .cpp files may include it.
 const std::map<std::string, Names>& ForeignHeaders() {
   static const std::map<std::string, Names> foreign{
       {"opencv2/", {"vision", "recording", "calibration", "simulation", "apps", "bench"}},
-      {"apriltag", {"vision"}},
+      {"apriltag", {"vision", "simulation"}},  // the renderer draws the library's patterns
       {"ceres/", {"estimation", "vision", "calibration", "diagnosis"}},
       {"yaml-cpp/", {"recording", "simulation", "diagnosis", "apps"}},
       {"tbb/", {"vision", "simulation", "diagnosis", "apps", "bench"}},
@@ -75,7 +75,9 @@ std::vector<Include> IncludesOf(const std::string& text) {
 
 std::string FolderOf(const std::string& path) { return path.substr(0, path.find('/')); }
 
-bool ClosesTheLoop(const std::string& path) { return path.starts_with("simulation/closed_loop"); }
+bool ClosesTheLoop(const std::string& path) {
+  return path.starts_with("simulation/closed_loop") || path.starts_with("simulation/scenario");
+}
 
 /// All project headers that `path` includes, directly or through others.
 Names Reachable(const SourceTree& tree, const std::string& path) {

@@ -58,7 +58,7 @@ TEST(IncludeRules, KeepForeignTypesOutOfHeaders) {
   EXPECT_THAT(IncludeViolations({{"vision/a.h", "#include <opencv2/core.hpp>\n"}}), SizeIs(1));
   EXPECT_THAT(IncludeViolations({{"vision/a.cpp", "#include <opencv2/core.hpp>\n"}}), IsEmpty());
   EXPECT_THAT(IncludeViolations({{"control/a.cpp", "#  include <ceres/ceres.h>\n"}}), SizeIs(1));
-  EXPECT_THAT(IncludeViolations({{"simulation/a.cpp", "#include <apriltag/apriltag.h>\n"}}),
+  EXPECT_THAT(IncludeViolations({{"recording/a.cpp", "#include <apriltag/apriltag.h>\n"}}),
               SizeIs(1));
 }
 
