@@ -4,14 +4,15 @@
 
 #include <algorithm>
 
+#include "estimation/beam_choice.h"
 #include "estimation/rod_fit.h"
 
 namespace flextip {
 namespace {
 
-constexpr double kObservable = 0.3;        // posterior over prior sd of the force across the shaft
-constexpr double kSecant_m = 0.002;        // tip travel between two looks at the tissue
-constexpr double kTissueMemory = 0.9;      // weight of the past against a new secant
+constexpr double kObservable = 0.3;       // posterior over prior sd of the force across the shaft
+constexpr double kSecant_m = 0.002;       // tip travel between two looks at the tissue
+constexpr double kTissueMemory = 0.9;     // weight of the past against a new secant
 constexpr double kLeastTravel_m = 0.002;  // travel in a direction before it says much of it
 constexpr double kStiffestTissue_N_m = 2000.0;
 
@@ -46,13 +47,6 @@ ShaftModel StraightModel(const EstimatorOptions& options) {
   model.weight_N_m = options.instrument.mass_per_length_kg_m * options.gravity_m_s2;
   model.beam.status = BeamStatus::kStraight;
   return model;
-}
-
-/// The thesis's parameters from the fitted force, for flexion without slopes or moments.
-BeamFit BeamFromForce(const Measurements& z, const EstimatorOptions& options,
-                      const ShaftModel& model) {
-  return SolveBeam(z.p_RW, model.p_RP, model.f_tip_N, options.instrument.bending_stiffness_Nm2,
-                   options.instrument.length_m);
 }
 
 /// Tissue: symmetric, and it only pushes back.
@@ -154,7 +148,7 @@ void ShaftEstimator::FillModel(const RodFit& fit, const RodParameters& x, const 
   model.f_tip_N = x.tail<3>() * fit.ForceUnit();
   model.force_known = true;
   last_force_N_ = model.f_tip_N;
-  model.beam = BeamFromForce(z, options_, model);
+  model.beam = ChooseBeamFit(z, options_.instrument, model, options_.use_positions);
   if (options_.estimate_tissue) UpdateTissue(estimate);
   model.tissue_stiffness_N_m = tissue_stiffness_N_m_;
 }

@@ -99,6 +99,30 @@ TEST(Controller, TrackersHoldStillWithoutATip) {
   }
 }
 
+TEST(Controller, TissueIsTrustedOnlySoFar) {
+  // Whatever stiffness is believed, the step on a shaft whose tissue let go overshoots less than
+  // twice: the loop stays stable.
+  std::mt19937_64 rng(9);
+  std::normal_distribution<double> normal;
+  ControlInput input = Chapter4Input();
+  const Eigen::Matrix3d J_free =
+      TipController(Options(ControllerKind::kRodTrack)).Step(input).J_tip_wrist;
+  for (const double size : {1.0, 30.0, 1000.0}) {
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Matrix3d A = Eigen::Matrix3d::NullaryExpr([&] { return normal(rng); });
+      input.model.tissue_stiffness_N_m = -size * A * A.transpose();
+      const ControlOutput out = TipController(Options(ControllerKind::kRodTrack)).Step(input);
+      const Eigen::Matrix3d loop = J_free * out.J_tip_wrist.inverse();
+      const Eigen::Vector3d gains = loop.eigenvalues().cwiseAbs();
+      EXPECT_LT(gains.maxCoeff(), 1.7 + 1e-6);
+      EXPECT_GT(gains.minCoeff(), 1.0 - 1e-6);
+      if (size == 1000.0) {
+        EXPECT_GT(gains.maxCoeff(), 1.7 - 1e-6);
+      }
+    }
+  }
+}
+
 TEST(Controller, HoldsStillOnBadInputAndWithoutAModel) {
   for (const ControllerKind kind : AllKinds()) {
     ControlInput bad = Chapter4Input();

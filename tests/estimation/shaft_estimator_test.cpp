@@ -230,9 +230,10 @@ TEST(ShaftEstimator, FindsTheTissuesStiffness) {
     }
     e = estimator.Update(bench.Measure(problem, kWristDirection | kTip | kEm, 0.2));
   }
-  // With these sensors a secant of 1 mm knows the stiffness to a quarter; eight fading ones to a
-  // tenth (one standard deviation).
-  EXPECT_NEAR(e.model.tissue_stiffness_N_m(1, 1), -60.0, 15.0);
+  // Shrunk by a fifth on purpose after 12 mm of travel: too stiff a belief is what makes the loop
+  // overshoot. The noise of the secants is a tenth (one standard deviation).
+  EXPECT_LT(e.model.tissue_stiffness_N_m(1, 1), -60.0 * 0.8 * 0.7);
+  EXPECT_GT(e.model.tissue_stiffness_N_m(1, 1), -60.0 * 1.1);
 }
 
 TEST(RodFit, JacobianAgainstDifferences) {

@@ -1,0 +1,57 @@
+#include "estimation/beam_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/moment_fit.h"
+#include "estimation/slope_fit.h"
+
+namespace flextip {
+namespace {
+
+bool SeesTip(const Measurements& z) { return z.tip && z.tip->status == TipStatus::kOk; }
+
+/// The chord's direction is known as well as the positions at its ends.
+double ChordNoise(const Measurements& z, double length_m) {
+  const double tip_m = std::sqrt(z.tip->covariance_m2.trace() / 3.0);
+  return std::hypot(z.wrist_position_noise_m, tip_m) / length_m;
+}
+
+BeamFit FromSlopes(const Measurements& z, double length_m) {
+  SlopeNoise noise;
+  noise.wrist_rad = z.wrist_orientation_noise_rad;
+  noise.chord_rad = ChordNoise(z, length_m);
+  if (z.em) {
+    noise.tip_rad = z.em->orientation_noise_rad;
+    return FitFromSlopes(z.p_RW, z.tip->p_RE, z.R_RW->col(0), z.em->T_RS.R.col(0), length_m, noise);
+  }
+  noise.tip_rad = z.tip_direction_noise_rad;
+  return FitFromSlopes(z.p_RW, z.tip->p_RE, z.R_RW->col(0), *z.tip->d_RE, length_m, noise);
+}
+
+BeamFit FromMoments(const Measurements& z, const Instrument& instrument) {
+  MomentPair pair;
+  pair.m1_Nm = MomentInR(*z.R_RW, z.strain->moments_Nm[0], z.strain->moments_Nm[1]);
+  pair.m2_Nm = MomentInR(*z.R_RW, z.strain->moments_Nm[2], z.strain->moments_Nm[3]);
+  pair.station1_m = z.strain->station_from_wrist_m[0];
+  pair.station2_m = z.strain->station_from_wrist_m[1];
+  pair.noise_Nm = z.strain->moment_noise_Nm;
+  return FitFromMoments(z.p_RW, z.tip->p_RE, pair, instrument.bending_stiffness_Nm2,
+                        instrument.length_m);
+}
+
+}  // namespace
+
+BeamFit ChooseBeamFit(const Measurements& z, const Instrument& instrument, const ShaftModel& model,
+                      bool use_positions) {
+  BeamFit fit;
+  if (use_positions && SeesTip(z) && z.R_RW) {
+    if (z.em || z.tip->d_RE) fit = FromSlopes(z, instrument.length_m);
+    if (!fit.IsUsable() && z.strain) fit = FromMoments(z, instrument);
+  }
+  if (fit.IsUsable()) return fit;
+  return SolveBeam(z.p_RW, model.p_RP, model.f_tip_N, instrument.bending_stiffness_Nm2,
+                   instrument.length_m);
+}
+
+}  // namespace flextip
