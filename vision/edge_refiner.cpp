@@ -44,7 +44,8 @@ EdgeFrame MakeFrame(const std::array<Eigen::Vector2d, 4>& corners, int edge, int
   f.half_length_px = 0.5 * (b - a).norm();
   f.along = (b - a) / (2 * f.half_length_px);
   f.out = Eigen::Vector2d(f.along.y(), -f.along.x());
-  const Eigen::Vector2d beyond_a = corners[(edge + 3) % 4], beyond_b = corners[(edge + 2) % 4];
+  const Eigen::Vector2d& beyond_a = corners[(edge + 3) % 4];
+  const Eigen::Vector2d& beyond_b = corners[(edge + 2) % 4];
   if (f.out.dot(0.5 * (beyond_a + beyond_b) - f.middle) > 0) f.out = -f.out;
   f.cell_px[0] = -f.out.dot(beyond_a - a) / cells_across;
   f.cell_px[1] = -f.out.dot(beyond_b - b) / cells_across;

@@ -40,20 +40,21 @@ struct Painter {
     return ray ? Eigen::Vector3d(*ray / ray->z()) : Eigen::Vector3d(1e9, 1e9, 1);
   }
 
-  // -1 outside the tag and its rim, else the grey value seen along `ray`.
-  double Grey(const PlacedTag& tag, const std::vector<std::vector<bool>>& white,
-              const Eigen::Vector3d& ray) const {
+  static constexpr int kOutside = -1, kRim = kCells * kCells;
+
+  // The cell that is seen along `ray`: its number, kRim beside the pattern, or kOutside.
+  int Cell(const PlacedTag& tag, const Eigen::Vector3d& ray) const {
     const Eigen::Vector3d normal = tag.T_CG.R.col(2);
     const double depth = normal.dot(tag.T_CG.p) / normal.dot(ray);
-    if (!(depth > 0)) return -1;
+    if (!(depth > 0)) return kOutside;
     const Eigen::Vector3d x_G = tag.T_CG.R.transpose() * (depth * ray - tag.T_CG.p);
     const double u = x_G.x() / tag.size_m * kBorderCells, v = x_G.y() / tag.size_m * kBorderCells;
     const double rim = kBorderCells / 2.0 + o.margin_cells;
-    if (std::abs(u) > rim || std::abs(v) > rim) return -1;
+    if (std::abs(u) > rim || std::abs(v) > rim) return kOutside;
     const int cx = static_cast<int>(std::floor(u + kCells / 2.0));
     const int cy = static_cast<int>(std::floor(v + kCells / 2.0));
     const bool inside = cx >= 0 && cy >= 0 && cx < kCells && cy < kCells;
-    return !inside || white[cy][cx] ? o.bright : o.dark;
+    return inside ? cy * kCells + cx : kRim;
   }
 
   void Paint(const PlacedTag& tag) const {
@@ -74,23 +75,30 @@ struct Painter {
     }
   }
 
-  // The mean over the pixel's square, rays interpolated between its corners.
+  // The mean over the pixel's square, rays interpolated between its corners. A pixel whose corners
+  // see one cell of the pattern is of that cell's grey.
   void PaintPixel(const PlacedTag& tag, const std::vector<std::vector<bool>>& white, int x,
                   int y) const {
+    const auto grey = [&](int cell) {
+      if (cell == kOutside) return static_cast<double>(canvas(y, x));
+      return cell == kRim || white[cell / kCells][cell % kCells] ? o.bright : o.dark;
+    };
     const Eigen::Vector3d r00 = Ray(x - 0.5, y - 0.5), r10 = Ray(x + 0.5, y - 0.5);
     const Eigen::Vector3d r01 = Ray(x - 0.5, y + 0.5), r11 = Ray(x + 0.5, y + 0.5);
+    const int cell = Cell(tag, r00);
+    const bool uniform = cell >= 0 && cell < kRim && Cell(tag, r10) == cell &&
+                         Cell(tag, r01) == cell && Cell(tag, r11) == cell;
     double sum = 0;
-    for (int j = 0; j < kSub; ++j) {
+    for (int j = 0; j < kSub && !uniform; ++j) {
       const double v = (j + 0.5) / kSub;
       for (int i = 0; i < kSub; ++i) {
         const double u = (i + 0.5) / kSub;
         const Eigen::Vector3d ray =
             (1 - v) * ((1 - u) * r00 + u * r10) + v * ((1 - u) * r01 + u * r11);
-        const double grey = Grey(tag, white, ray);
-        sum += grey < 0 ? canvas(y, x) : grey;
+        sum += grey(Cell(tag, ray));
       }
     }
-    canvas(y, x) = static_cast<float>(sum / (kSub * kSub));
+    canvas(y, x) = static_cast<float>(uniform ? grey(cell) : sum / (kSub * kSub));
   }
 };
 
