@@ -66,7 +66,7 @@ Shape StraightShape(const RodProblem& problem) {
   shape.s_port_m = (problem.p_port - problem.p_wrist).norm();
   AddStraightStatics(problem, straight.t, shape);
   for (int i = 0; i < kPoints; ++i) {
-    shape.points.push_back(problem.p_wrist + Along(i, problem.length_m) * straight.t);
+    shape.points.emplace_back(problem.p_wrist + Along(i, problem.length_m) * straight.t);
   }
   return shape;
 }

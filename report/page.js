@@ -33,7 +33,7 @@
     const longest = Math.max(...ranges.map((r) => r[1] - r[0])) || 1;
     const spans = ranges.map((r) => Math.max(r[1] - r[0], 0.25 * longest) * 1.08);
     const around = (r, s) => [(r[0] + r[1] - s) / 2, (r[0] + r[1] + s) / 2];
-    return { ranges: ranges.map((r, i) => around(r, spans[i])), ratio: spans.map((s) => 1.75 * s / Math.hypot(...spans)) };
+    return { ranges: ranges.map((r, i) => around(r, spans[i])), ratio: spans.map((s) => 1.6 * s / Math.hypot(...spans)) };
   }
 
   function layout(plot, inSpace) {
@@ -50,7 +50,7 @@
     const side = (label, i) => axis(label, { range: box.ranges[i], showbackground: false });
     return Object.assign(common, { margin: { l: 0, r: 0, t: 0, b: 0 },
       legend: { orientation: "h", y: 1.0, yanchor: "top", x: 0 },
-      scene: { xaxis: side(plot.x_label, 0), yaxis: side(plot.y_label, 1), zaxis: side(plot.z_label, 2),
+      scene: { domain: { x: [0, 1], y: [0, 0.93] }, xaxis: side(plot.x_label, 0), yaxis: side(plot.y_label, 1), zaxis: side(plot.z_label, 2),
         aspectmode: "manual", aspectratio: { x: box.ratio[0], y: box.ratio[1], z: box.ratio[2] },
         camera: { eye: { x: 1.15, y: -1.5, z: 0.8 }, center: { x: 0, y: 0, z: -0.1 } } } });
   }

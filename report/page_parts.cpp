@@ -148,6 +148,7 @@ void AddPictureFiles(Report& report, const std::string& heading,
   if (files.empty()) return;
   report.AddHeading(heading);
   std::vector<std::pair<std::string, std::string>> pictures;
+  pictures.reserve(files.size());
   for (const auto& file : files) pictures.emplace_back(ReadBytes(file), file.filename().string());
   report.AddPictures(pictures);
 }
@@ -155,6 +156,7 @@ void AddPictureFiles(Report& report, const std::string& heading,
 std::vector<double> SecondsOf(const ResultTable& table) {
   std::vector<double> seconds;
   if (table.texts.empty() || table.texts.front().empty()) return seconds;
+  seconds.reserve(table.Rows());
   const long long first = std::atoll(table.texts.front().front().c_str());
   for (const auto& stamp : table.texts.front()) {
     seconds.push_back(static_cast<double>(std::atoll(stamp.c_str()) - first) * 1e-9);

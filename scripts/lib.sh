@@ -49,14 +49,16 @@ install_node_modules() {
   cp package-lock.json "$stamp"
 }
 
-# build PRESET: configures once, then builds what has changed.
+# build PRESET [TARGET...]: configures once, then builds what has changed of the targets, or of all.
 build() {
-  local launcher=()
+  local preset=$1 launcher=() targets=()
+  shift
+  if [ $# -gt 0 ]; then targets=(--target "$@"); fi
   if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-  if [ ! -f "build/$1/build.ninja" ]; then
-    say "configuring $1"
-    cmake --preset "$1" "${launcher[@]}"
+  if [ ! -f "build/$preset/build.ninja" ]; then
+    say "configuring $preset"
+    cmake --preset "$preset" "${launcher[@]}"
   fi
-  say "building $1"
-  cmake --build --preset "$1" --parallel "$(nproc)"
+  say "building $preset"
+  cmake --build --preset "$preset" --parallel "$(nproc)" "${targets[@]}"
 }
