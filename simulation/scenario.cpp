@@ -31,13 +31,13 @@ class ScenarioReader {
   Scenario Read() {
     ReadInstrument();
     ReadWrist();
+    CheckReach();
     ReadLoad();
     ReadSensors();
     ReadCamera();
     ReadPath();
     ReadControllers();
     scenario_.loop.seed = static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
-    CheckReach();
     RejectUnknownKeys();
     return std::move(scenario_);
   }

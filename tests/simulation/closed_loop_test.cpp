@@ -1,0 +1,119 @@
+// The closed loop: controllers that know only what the sensors say, on a plant of another method.
+#include "simulation/closed_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "simulation/scenario.h"
+
+namespace flextip {
+namespace {
+
+const std::string kScenarios = std::string(FLEXTIP_SOURCE_DIR) + "/testdata/scenarios/";
+
+LoopResult RunLoop(Scenario scenario, ControllerKind kind) {
+  scenario.loop.controller.kind = kind;
+  return RunClosedLoop(scenario.loop, nullptr);
+}
+
+class Chapter4Moves : public testing::TestWithParam<const char*> {};
+
+/// Thesis 4.3.1 without noise. The thesis's own: 1.8 mm straight, 0.8 mm flexion.
+TEST_P(Chapter4Moves, DeviationsAreOrderedAsTheModelsAre) {
+  const Scenario scenario = ReadScenario(kScenarios + GetParam());
+  const double straight = RunLoop(scenario, ControllerKind::kStraightTrack).max_deviation_m;
+  const double flex = RunLoop(scenario, ControllerKind::kFlexTrack).max_deviation_m;
+  const double rod = RunLoop(scenario, ControllerKind::kRodTrack).max_deviation_m;
+  EXPECT_LT(rod, 0.02e-3);
+  EXPECT_LT(flex, 0.2e-3);
+  EXPECT_LT(rod, flex);
+  EXPECT_GT(straight, 0.8e-3);
+  EXPECT_LT(straight, 2.2e-3);
+}
+INSTANTIATE_TEST_SUITE_P(, Chapter4Moves,
+                         testing::Values("chapter4_up.yaml", "chapter4_down.yaml",
+                                         "chapter4_away.yaml", "chapter4_toward.yaml"));
+
+TEST(ClosedLoop, RodCalculateNeedsNoTipSensor) {
+  Scenario scenario = ReadScenario(kScenarios + "chapter4_up.yaml");
+  const double with_tip = RunLoop(scenario, ControllerKind::kRodCalculate).max_deviation_m;
+  // The same to the bit when the tip sensor lies: a controller that calculates may not listen.
+  scenario.loop.sensors.tip->across_noise_m = 0.02;
+  scenario.loop.sensors.tip->depth_noise_m = 0.02;
+  EXPECT_EQ(RunLoop(scenario, ControllerKind::kRodCalculate).max_deviation_m, with_tip);
+  EXPECT_LT(with_tip, 0.02e-3);
+}
+
+TEST(ClosedLoop, TrackersListenToTheSensorAndNotToTheTruth) {
+  Scenario scenario = ReadScenario(kScenarios + "chapter4_up.yaml");
+  scenario.loop.sensors.tip->across_noise_m = 0.001;
+  scenario.loop.sensors.tip->depth_noise_m = 0.001;
+  // A millimetre of noise in the sensor must show in the tip.
+  EXPECT_GT(RunLoop(scenario, ControllerKind::kStraightTrack).rms_deviation_m, 0.5e-3);
+}
+
+TEST(ClosedLoop, SameSeedSameRunOtherSeedAnother) {
+  Scenario scenario = ReadScenario(kScenarios + "press.yaml");
+  const LoopResult a = RunLoop(scenario, ControllerKind::kRodTrack);
+  const LoopResult b = RunLoop(scenario, ControllerKind::kRodTrack);
+  EXPECT_EQ(a.max_deviation_m, b.max_deviation_m);
+  scenario.loop.seed = 2;
+  EXPECT_NE(RunLoop(scenario, ControllerKind::kRodTrack).max_deviation_m, a.max_deviation_m);
+}
+
+TEST(ClosedLoop, SensorsKeepTheirRatesAndTheRecordingIsWhole) {
+  const Scenario scenario = ReadScenario(kScenarios + "press.yaml");
+  const LoopResult result = RunLoop(scenario, ControllerKind::kFlexTrack);
+  const Recording& r = result.recording;
+  const auto spacing = [](const auto& samples) {
+    return static_cast<double>(samples.back().t_ns - samples.front().t_ns) * 1e-9 /
+           static_cast<double>(samples.size() - 1);
+  };
+  EXPECT_NEAR(spacing(r.wrist0->samples), 1.0 / 120, 1e-6);
+  EXPECT_NEAR(spacing(r.em0->samples), 1.0 / 120, 1e-6);
+  EXPECT_NEAR(spacing(r.strain0->moments_Nm), 1.0 / 120, 1e-6);
+  EXPECT_NEAR(spacing(r.vision0->tips), 1.0 / 30, 1e-6);
+  EXPECT_NEAR(spacing(r.command0->p_RW), 1.0 / 30, 1e-6);
+  EXPECT_EQ(result.updates.size(), r.command0->p_RW.size());
+  EXPECT_EQ(result.truth.size(), r.wrist0->samples.size());
+}
+
+TEST(ClosedLoop, SensorNoiseIsAsStated) {
+  // Against the truth of the same run: mean square of the wrist's and the EM sensor's errors.
+  const Scenario scenario = ReadScenario(kScenarios + "press.yaml");
+  const LoopResult result = RunLoop(scenario, ControllerKind::kRodTrack);
+  const auto& wrist = result.recording.wrist0->samples;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < wrist.size(); ++i) {
+    sum += (wrist[i].value.p_RW - result.truth[i].value.p_RW).squaredNorm();
+  }
+  const double n = 3.0 * static_cast<double>(wrist.size());
+  EXPECT_NEAR(std::sqrt(sum / n) / 5e-5, 1.0, 4.0 / std::sqrt(2 * n));
+}
+
+TEST(ClosedLoop, ThroughTheLaparoscope) {
+  Scenario scenario = ReadScenario(kScenarios + "press.yaml");
+  scenario.loop.controller.kind = ControllerKind::kRodTrack;
+  scenario.loop.path.waypoints_m = {{0.0, 0.0, -0.003}};
+  scenario.loop.path.settle_s = 0.1;
+  const Laparoscope laparoscope(scenario.loop.base.cam0->calibration, *scenario.loop.base.tags0,
+                                scenario.laparoscope);
+  int saved = 0;
+  const LoopCamera camera{laparoscope, scenario.tracker, [&](TimeNs, const Image& image) {
+                            EXPECT_EQ(image.width_px, 1280);
+                            ++saved;
+                          }};
+  const LoopResult result = RunClosedLoop(scenario.loop, &camera);
+  EXPECT_EQ(saved, static_cast<int>(result.updates.size()));
+  EXPECT_EQ(result.tip_statuses.at("ok"), saved);
+  EXPECT_LT(result.max_deviation_m, 1.5e-3);
+  // What vision saw is not the truth.
+  const auto& tips = result.recording.vision0->tips;
+  EXPECT_GT((tips[0].value.p_RE - result.truth[0].value.p_RE).norm(), 1e-6);
+  EXPECT_LT((tips[0].value.p_RE - result.truth[0].value.p_RE).norm(), 3e-3);
+}
+
+}  // namespace
+}  // namespace flextip

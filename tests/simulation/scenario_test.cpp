@@ -1,0 +1,120 @@
+#include "simulation/scenario.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "core/error.h"
+#include "simulation/tip_path.h"
+
+namespace flextip {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const fs::path kPress = fs::path(FLEXTIP_SOURCE_DIR) / "testdata/scenarios/press.yaml";
+
+std::string PressText() {
+  std::ifstream file(kPress);
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string s = text.str();
+  // The camera's files are named relative to the scenario: absolute here, for a copy elsewhere.
+  const std::string up = "../", data = kPress.parent_path().parent_path().string() + "/";
+  for (std::size_t at; (at = s.find(up)) != std::string::npos;) s.replace(at, up.size(), data);
+  return s;
+}
+
+/// What reading says of the scenario with `from` replaced by `to`.
+std::string Complaint(const std::string& from, const std::string& to) {
+  std::string text = PressText();
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  const fs::path file = fs::path(testing::TempDir()) / "scenario_test.yaml";
+  std::ofstream(file) << text;
+  try {
+    ReadScenario(file);
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr(file.string()));
+    EXPECT_THAT(e.what(), testing::Not(HasSubstr("\n")));
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Scenario, PressReads) {
+  const Scenario scenario = ReadScenario(kPress);
+  EXPECT_EQ(scenario.controllers.size(), 6u);
+  EXPECT_TRUE(scenario.has_camera);
+  EXPECT_DOUBLE_EQ(scenario.loop.plant.load.tissue->stiffness_N_m, 50.0);
+  EXPECT_EQ(scenario.loop.path.waypoints_m.size(), 3u);
+  EXPECT_DOUBLE_EQ(scenario.loop.update_rate_hz, 30.0);
+}
+
+TEST(Scenario, SaysWhatIsWrongAndWhere) {
+  EXPECT_THAT(Complaint("length_m: 0.6", "length_m: -0.6"), HasSubstr("length_m"));
+  EXPECT_THAT(Complaint("length_m: 0.6", "length_m: long"), HasSubstr(":3:"));
+  EXPECT_THAT(Complaint("length_m: 0.6", "length_m: .nan"), HasSubstr("length_m"));
+  EXPECT_THAT(Complaint("length_m: 0.6", "length_m: 0.2"), HasSubstr("out of reach"));
+  EXPECT_THAT(Complaint("stiffness_N_m: 50", "stifness_N_m: 50"), HasSubstr("stiffness_N_m"));
+  EXPECT_THAT(Complaint("settle_s: 0.3", "setle_s: 0.3"), HasSubstr("unknown key"));
+  EXPECT_THAT(Complaint("controllers: all", "controllers: bent"), HasSubstr("'bent'"));
+  EXPECT_THAT(Complaint("controllers: all", "controllers: [rod-track, bent]"), HasSubstr("'bent'"));
+  EXPECT_THAT(Complaint("normal: [0.0, 0.0, 1.0]", "normal: [0, 0, 0]"), HasSubstr("zero vector"));
+  EXPECT_THAT(Complaint("[0.15, 0.5]", "[0.15, 0.9]"), HasSubstr("stations_from_wrist_m"));
+  EXPECT_THAT(Complaint("beam_load_law: tip_force", "beam_load_law: none"), HasSubstr("'none'"));
+  EXPECT_EQ(Complaint("controllers: all", "controllers: [rod-track, flex-track]"), "");
+}
+
+TEST(Scenario, NamesAFileOfTheCameraThatIsMissing) {
+  const fs::path file = fs::path(testing::TempDir()) / "scenario_camera_test.yaml";
+  std::ofstream(file) << std::ifstream(kPress).rdbuf();  // its ../cameras is not there
+  try {
+    ReadScenario(file);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("laparoscope.yaml"));
+  }
+}
+
+TEST(TipPath, ContinuousFollowsItsLegsAtItsSpeed) {
+  PathSetup setup;
+  setup.waypoints_m = {{0.01, 0, 0}, {0.01, 0.02, 0}};
+  setup.speed_m_s = 0.03;
+  setup.settle_s = 0.1;
+  TipPath path(setup, {1, 2, 3}, 30.0);
+  Eigen::Vector3d last(1, 2, 3);
+  double length = 0.0;
+  int updates = 0;
+  while (!path.Done()) {
+    const Eigen::Vector3d p = path.Advance({0, 0, 0});
+    EXPECT_LE((p - last).norm(), 0.001 + 1e-12);
+    EXPECT_LT(path.Deviation(p), 1e-12);
+    length += (p - last).norm();
+    last = p;
+    ASSERT_LE(++updates, path.MaxUpdates());
+  }
+  EXPECT_NEAR(length, 0.03, 1e-9);
+  EXPECT_LT((last - Eigen::Vector3d(1.01, 2.02, 3)).norm(), 1e-12);
+  EXPECT_NEAR(path.Deviation(Eigen::Vector3d(1.013, 2.01, 3)), 0.003, 1e-12);
+}
+
+TEST(TipPath, StepsWaitAtTheEndUntilTheTipIsThere) {
+  PathSetup setup;
+  setup.mode = PathMode::kSteps;
+  setup.waypoints_m = {{0.01, 0, 0}};
+  TipPath path(setup, {0, 0, 0}, 30.0);
+  for (int i = 1; i <= 5; ++i) EXPECT_NEAR(path.Advance({0, 0, 0}).x(), 0.002 * i, 1e-15);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(path.Advance({0.009, 0, 0}).x(), 0.01);
+  EXPECT_FALSE(path.Done());
+  path.Advance({0.00999, 0, 0});
+  EXPECT_TRUE(path.Done());
+}
+
+}  // namespace
+}  // namespace flextip
