@@ -5,10 +5,10 @@ namespace flextip {
 
 /// Nominal data of a shaft with a circular section.
 struct Instrument {
-  double length_m = 0.0;              ///< from the wrist pivot to the tip, along the shaft
+  double length_m = 0.0;  ///< from the wrist pivot to the tip, along the shaft
   double outer_diameter_m = 0.0;
-  double bending_stiffness_Nm2 = 0.0; ///< E I
-  double mass_per_length_kg_m = 0.0;  ///< 0 where self-weight is not modelled
+  double bending_stiffness_Nm2 = 0.0;  ///< E I
+  double mass_per_length_kg_m = 0.0;   ///< 0 where self-weight is not modelled
 };
 
 }  // namespace flextip

@@ -27,7 +27,8 @@ inline Eigen::Vector3d LogRotation(const Eigen::Matrix3d& R) {
 }
 
 /// The rotation without twist that takes the unit vector `from` to the unit vector `to`.
-inline Eigen::Matrix3d RotationWithoutTwist(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+inline Eigen::Matrix3d RotationWithoutTwist(const Eigen::Vector3d& from,
+                                            const Eigen::Vector3d& to) {
   return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
 }
 

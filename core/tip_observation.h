@@ -14,9 +14,9 @@ enum class TipStatus {
 
 struct TipObservation {
   TipStatus status = TipStatus::kLost;
-  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();               ///< m
-  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();      ///< of p_RE, in R
-  std::optional<Eigen::Vector3d> d_RE;                          ///< the shaft's direction at E, unit
+  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();           ///< m
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< of p_RE, in R
+  std::optional<Eigen::Vector3d> d_RE;                      ///< the shaft's direction at E, unit
 };
 
 }  // namespace flextip

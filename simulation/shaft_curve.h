@@ -12,7 +12,7 @@ namespace flextip {
 struct ShaftCurve {
   std::vector<Eigen::Vector3d> points;  ///< at least two, from the wrist (first) to the tip (last)
   double diameter_m = 0.0;
-  Pose T_RE;                            ///< x along the shaft at the tip
+  Pose T_RE;  ///< x along the shaft at the tip
 };
 
 }  // namespace flextip
