@@ -1,8 +1,6 @@
 // flextip estimate: the instrument's load, port and shape at every sample of a recording.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -13,13 +11,13 @@
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/recorded_measurements.h"
+#include "apps/tip_score.h"
 #include "core/error.h"
 #include "estimation/shaft_estimator.h"
 #include "recording/csv.h"
 #include "recording/recording_reader.h"
 #include "recording/sensor_streams.h"
 #include "recording/text.h"
-#include "recording/truth.h"
 #include "report/pages.h"
 
 namespace flextip {
@@ -92,25 +90,18 @@ Estimates EstimateAll(const Recording& recording, const EstimateOptions& options
   return estimates;
 }
 
-/// Scoring only: the tip's RMS error where the simulation left its truth. Empty without.
-std::optional<double> TipRmsError(const std::filesystem::path& recording,
-                                  const Estimates& estimates) {
-  const auto truth = ReadTruth(recording);
+/// Scoring only, where the simulation left its truth: each sample's tip as an observation.
+std::optional<TipScore> ScoreAgainstTruth(const std::filesystem::path& recording,
+                                          const Estimates& estimates) {
+  const auto truth = ReadTipTruth(recording, {});
   if (!truth) return {};
-  double sum = 0.0;
-  int count = 0;
+  Series<TipObservation> tips;
   for (const auto& estimate : estimates) {
     if (estimate.value.status != EstimateStatus::kOk) continue;
-    const auto where = FindBracket(*truth, estimate.t_ns);
-    if (!where) continue;
-    const std::size_t next = std::min(where->i + 1, truth->size() - 1);
-    const Eigen::Vector3d p_RE =
-        Interpolate((*truth)[where->i].value.p_RE, (*truth)[next].value.p_RE, where->fraction);
-    sum += (estimate.value.p_RE - p_RE).squaredNorm();
-    ++count;
+    tips.push_back({estimate.t_ns,
+                    {TipStatus::kOk, estimate.value.p_RE, estimate.value.p_RE_covariance_m2, {}}});
   }
-  if (count == 0) return {};
-  return std::sqrt(sum / count);
+  return ScoreTips(tips, *truth, Pose());
 }
 
 nlohmann::json Summary(const EstimateOptions& options, const Recording& recording,
@@ -136,7 +127,12 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
   nlohmann::json summary = {
       {"samples", estimates.size()}, {"statuses", statuses}, {"sensors", sensors}};
   if (measurements > 0) summary["chi2_per_measurement"] = chi2 / measurements;
-  if (const auto rms = TipRmsError(options.recording, estimates)) summary["tip_rms_error_m"] = *rms;
+  const auto score = ScoreAgainstTruth(options.recording, estimates);
+  if (score && score->frames > 0) {
+    summary["scored_samples"] = score->frames;
+    summary["tip_rms_error_m"] = score->rms_error_m;
+    summary["tip_mean_nees"] = score->mean_nees;
+  }
   return summary;
 }
 

@@ -92,8 +92,7 @@ void DrawTip(cv::Mat& canvas, const CameraModel& model, const TipObservation& ti
 }
 
 std::string Describe(const TipTrack& track) {
-  if (track.tip.status == TipStatus::kLost) return "lost";
-  if (track.tip.status == TipStatus::kPredicted) return "predicted";
+  if (track.tip.status != TipStatus::kOk) return Name(track.tip.status);
   return fmt::format("ok, {} tags, {:.2f} px", track.pose.tags_used, track.rms_px);
 }
 

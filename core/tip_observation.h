@@ -12,6 +12,19 @@ enum class TipStatus {
   kLost,       ///< not known: position and covariance mean nothing
 };
 
+/// As in recordings and summaries.
+inline const char* Name(TipStatus status) {
+  switch (status) {
+    case TipStatus::kOk:
+      return "ok";
+    case TipStatus::kPredicted:
+      return "predicted";
+    case TipStatus::kLost:
+      return "lost";
+  }
+  return "";
+}
+
 struct TipObservation {
   TipStatus status = TipStatus::kLost;
   Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();           ///< m

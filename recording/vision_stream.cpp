@@ -24,18 +24,6 @@ TipStatus ReadStatus(const CsvReader& csv) {
   throw csv.Error(fmt::format("found status {}, expected ok, predicted or lost", Quoted(text)));
 }
 
-const char* StatusText(TipStatus status) {
-  switch (status) {
-    case TipStatus::kOk:
-      return "ok";
-    case TipStatus::kPredicted:
-      return "predicted";
-    case TipStatus::kLost:
-      return "lost";
-  }
-  return "";
-}
-
 Eigen::Matrix3d ReadCovariance(const CsvReader& csv) {
   std::array<double, 6> c{};
   for (std::size_t i = 0; i < 6; ++i) c[i] = csv.Number(kCovariance + i);
@@ -70,7 +58,7 @@ TipObservation ReadRow(const CsvReader& csv) {
 
 void AddRow(CsvWriter& csv, const TipObservation& tip) {
   if (tip.status == TipStatus::kLost) {
-    csv.AddEmpty(12).Add(StatusText(tip.status));
+    csv.AddEmpty(12).Add(Name(tip.status));
     return;
   }
   AddVector3(csv, tip.p_RE);
@@ -81,7 +69,7 @@ void AddRow(CsvWriter& csv, const TipObservation& tip) {
   } else {
     csv.AddEmpty(3);
   }
-  csv.Add(StatusText(tip.status));
+  csv.Add(Name(tip.status));
 }
 
 }  // namespace

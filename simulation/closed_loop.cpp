@@ -10,18 +10,6 @@
 namespace flextip {
 namespace {
 
-const char* Name(TipStatus status) {
-  switch (status) {
-    case TipStatus::kOk:
-      return "ok";
-    case TipStatus::kPredicted:
-      return "predicted";
-    case TipStatus::kLost:
-      return "lost";
-  }
-  return "";
-}
-
 EstimatorOptions MakeEstimatorOptions(const LoopSetup& setup) {
   EstimatorOptions options;
   options.instrument = setup.base.instrument;
@@ -194,11 +182,11 @@ class Loop {
   void Note(const ControlInput& input, const ControlOutput& output) {
     if (!result_.recording.command0) {
       result_.recording.command0.emplace();
-      result_.recording.command0->comment = flextip::Name(setup_.controller.kind);
+      result_.recording.command0->comment = Name(setup_.controller.kind);
       result_.recording.command0->rate_hz = setup_.update_rate_hz;
     }
     result_.recording.command0->p_RW.push_back({t_ns_, output.p_RW_command});
-    ++result_.control_statuses[flextip::Name(output.status)];
+    ++result_.control_statuses[Name(output.status)];
     if (result_.recording.vision0 && !result_.recording.vision0->tips.empty()) {
       ++result_.tip_statuses[Name(result_.recording.vision0->tips.back().value.status)];
     }
