@@ -27,7 +27,7 @@ missing_packages() {
 apt_install() {
   command -v dpkg-query >/dev/null || die "this is no Debian: install by hand what scripts/lib.sh lists"
   local missing as_root=()
-  mapfile -t missing < <(missing_packages "$@")
+  read -r -d '' -a missing <<<"$(missing_packages "$@")" || true
   [ ${#missing[@]} -gt 0 ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || die "these packages are missing, and there is neither root nor sudo: ${missing[*]}"
