@@ -42,6 +42,7 @@ std::vector<Eigen::Vector2d> FindChessboard(const Image& grey, int columns, int 
   cv::cornerSubPix(picture, corners, cv::Size(half, half), cv::Size(-1, -1),
                    cv::TermCriteria(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 60, 1e-4));
   std::vector<Eigen::Vector2d> result;
+  result.reserve(corners.size());
   for (const cv::Point2f& c : corners) result.emplace_back(c.x, c.y);
   return result;
 }

@@ -24,6 +24,7 @@ struct RodPrior {
 class RodFit {
  public:
   using Scalar = double;
+  // NOLINTNEXTLINE(readability-identifier-naming): the names are Ceres'
   enum { NUM_RESIDUALS = kMaxRodResiduals, NUM_PARAMETERS = 9 };
   using Residuals = Eigen::Matrix<double, NUM_RESIDUALS, 1>;
   using Jacobian = Eigen::Matrix<double, NUM_RESIDUALS, NUM_PARAMETERS>;

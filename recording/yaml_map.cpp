@@ -222,7 +222,7 @@ InputError YamlMap::Error(const std::string& key, const std::string& what) const
 void YamlMap::WarnUnknown(ReadLog& log) const {
   for (const auto& [key, line] : impl_->lines) {
     if (impl_->asked.contains(key)) continue;
-    log.warnings.push_back(
+    log.warnings.emplace_back(
         InputError::At(impl_->file, line,
                        fmt::format("unknown key \"{}{}\" ignored", impl_->prefix, key))
             .what());

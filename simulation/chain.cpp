@@ -40,7 +40,7 @@ std::vector<Eigen::Vector3d> ChainNodes(const ChainProblem& problem, const Chain
   const ChainGeometry geometry(problem, state.s);
   std::vector<Eigen::Vector3d> nodes{Eigen::Vector3d::Zero()};
   for (int j = 0; j < problem.Links(); ++j) {
-    nodes.push_back(nodes.back() + geometry.h(j) * state.u[j]);
+    nodes.emplace_back(nodes.back() + geometry.h(j) * state.u[j]);
   }
   return nodes;
 }

@@ -80,6 +80,8 @@ Image Film::Develop(LinearImage& light, int frame_number) const {
 
 void Film::DevelopRow(const float* light, std::uint8_t* out, int count, std::uint64_t state) const {
   const auto encode = [&](float signal) {
+    // Never negative, so that cutting rounds; lround would cost a call a pixel.
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings)
     return code_[static_cast<std::size_t>(std::sqrt(std::clamp(signal, 0.0f, 1.0f)) * (kCodes - 1) +
                                           0.5f)];
   };

@@ -18,7 +18,7 @@ double DistanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
 
 TipPath::TipPath(const PathSetup& setup, const Eigen::Vector3d& p_start, double update_rate_hz)
     : setup_(setup), update_rate_hz_(update_rate_hz), points_{p_start} {
-  for (const auto& waypoint : setup.waypoints_m) points_.push_back(p_start + waypoint);
+  for (const auto& waypoint : setup.waypoints_m) points_.emplace_back(p_start + waypoint);
 }
 
 Eigen::Vector3d TipPath::Along(std::size_t leg, double travelled_m) const {
