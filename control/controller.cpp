@@ -91,7 +91,9 @@ Eigen::Vector3d SolveDamped(const Eigen::Vector3d& dx, const ControllerOptions& 
                             ControlOutput& output) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(output.J_tip_wrist,
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d& sigma = svd.singularValues();
+  // A copy: through a reference gcc 12 sees the decomposition as uninitialised.
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
+  const Eigen::Vector3d sigma = svd.singularValues();
   output.smallest_singular_value = sigma[2];
   const double bound = options.min_singular_value;
   const double missing = 1.0 - std::min(1.0, sigma[2] / bound);
