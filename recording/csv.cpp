@@ -94,7 +94,7 @@ bool CsvReader::Next() {
   if (IsTorn(fields_.size(), terminated)) {
     position_ = text_.size();
     ++log_->torn_lines;
-    log_->warnings.push_back(
+    log_->warnings.emplace_back(
         Error(fmt::format("skipped a torn last line: {} of {} fields{}", fields_.size(), width_,
                           terminated ? "" : ", no line break at its end"))
             .what());

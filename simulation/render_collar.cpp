@@ -100,8 +100,8 @@ void CollarBody::AddPrism(const std::vector<Plate>& ring) {
       if (rate < -1e-9) low = std::max(low, gap / rate);
     }
     if (low < high) {
-      points.push_back(c + low * along);
-      points.push_back(c + high * along);
+      points.emplace_back(c + low * along);
+      points.emplace_back(c + high * along);
     }
     x0 = std::min(x0, plate.T_EG.p.x() - plate.half_m);
     x1 = std::max(x1, plate.T_EG.p.x() + plate.half_m);
@@ -109,7 +109,7 @@ void CollarBody::AddPrism(const std::vector<Plate>& ring) {
   }
   for (int i = 0; i < 24; ++i) {
     const double angle = 2 * std::numbers::pi * i / 24;
-    points.push_back(core * Vector2d(std::cos(angle), std::sin(angle)));
+    points.emplace_back(core * Vector2d(std::cos(angle), std::sin(angle)));
   }
   const std::vector<Vector2d> section = ConvexHull(points);
   for (std::size_t i = 0; i < section.size(); ++i) {
@@ -117,6 +117,7 @@ void CollarBody::AddPrism(const std::vector<Plate>& ring) {
   }
   for (const double x : {x0, x1}) {
     std::vector<Vector3d> corners;
+    corners.reserve(section.size());
     for (const Vector2d& p : section) corners.emplace_back(x, p.x(), p.y());
     AddFace(corners, Vector3d(x == x0 ? -1 : 1, 0, 0), nullptr);
   }

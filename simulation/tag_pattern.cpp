@@ -50,7 +50,7 @@ TagPattern MakeTagPattern(const std::string& family_name, int id) {
                                  family_name));
   }
   const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(
-      apriltag_to_image(family.get(), static_cast<unsigned>(id)), FreeImage);
+      apriltag_to_image(family.get(), id), FreeImage);
   TagPattern pattern;
   pattern.cells = family->total_width;
   pattern.border_cells = family->width_at_border;
