@@ -10,9 +10,11 @@
 #include "apps/commands.h"
 #include "apps/output.h"
 #include "apps/progress.h"
+#include "apps/recorded_estimates.h"
 #include "apps/recorded_measurements.h"
 #include "apps/tip_score.h"
 #include "core/error.h"
+#include "diagnosis/model_at.h"
 #include "estimation/shaft_estimator.h"
 #include "recording/csv.h"
 #include "recording/recording_reader.h"
@@ -24,7 +26,7 @@ namespace flextip {
 namespace {
 
 struct EstimateOptions {
-  std::filesystem::path recording, tracked, out;
+  std::filesystem::path recording, tracked, model, out;
   double port_prior_m = 0.0003;
   bool without_positions = false, force = false;
 };
@@ -78,16 +80,13 @@ EstimatorOptions MakeOptions(const Recording& recording, const EstimateOptions& 
 }
 
 Estimates EstimateAll(const Recording& recording, const EstimateOptions& options, bool quiet) {
-  ShaftEstimator estimator(MakeOptions(recording, options));
-  const std::vector<TimeNs> times = EstimationTimes(recording);
-  Estimates estimates;
-  Progress progress("estimate", times.size(), quiet);
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    progress.Update(i);
-    const auto measurements = MeasurementsAt(recording, times[i]);
-    if (measurements) estimates.push_back({times[i], estimator.Update(*measurements)});
-  }
-  return estimates;
+  const EstimatorOptions estimator = MakeOptions(recording, options);
+  Progress progress("estimate", EstimationTimes(recording).size(), quiet);
+  const auto update = [&](std::size_t done, std::size_t) { progress.Update(done); };
+  if (options.model.empty()) return EstimateRecording(recording, estimator, nullptr, update);
+  const ExtendedModel found = ReadModel(options.model);
+  ModelAt model(found, recording);
+  return EstimateRecording(WithoutLatency(recording, found), estimator, &model, update);
 }
 
 /// Scoring only, where the simulation left its truth: each sample's tip as an observation.
@@ -126,6 +125,7 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
   present(recording.load0.has_value(), "load0");
   nlohmann::json summary = {
       {"samples", estimates.size()}, {"statuses", statuses}, {"sensors", sensors}};
+  if (!options.model.empty()) summary["model"] = options.model.filename().string();
   if (measurements > 0) summary["chi2_per_measurement"] = chi2 / measurements;
   const auto score = ScoreAgainstTruth(options.recording, estimates);
   if (score && score->frames > 0) {
@@ -148,8 +148,9 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
     throw InputError(options.recording.string() +
                      ": no wrist0, without which nothing can be estimated");
   }
-  OutputFolder output(options.out, "estimate",
-                      {.force = options.force, .inputs = {options.recording}});
+  std::vector<std::filesystem::path> inputs = {options.recording};
+  if (!options.model.empty()) inputs.push_back(options.model);
+  OutputFolder output(options.out, "estimate", {.force = options.force, .inputs = inputs});
   output.Warn(read.warnings);
   if (recording.cam0 && !recording.vision0) {
     output.Warn("cam0 has not been tracked: run flextip track and pass its folder with --tracked");
@@ -183,6 +184,10 @@ void AddEstimate(CLI::App& app, AppContext& context) {
       ->type_name("OUT");
   command->add_option("--tracked", options->tracked,
                       "Take the tip from this result of flextip track instead of vision0");
+  command
+      ->add_option("--model", options->model,
+                   "Know of the effects in this model.yaml (from flextip diagnose)")
+      ->type_name("MODEL.yaml");
   command
       ->add_option("--port-prior", options->port_prior_m,
                    "How well the port is registered: standard deviation per axis (m)")

@@ -30,6 +30,7 @@ int Complain(const std::string& message, int code) {
 void AddCommands(CLI::App& app, AppContext& context) {
   AddCalibrate(app, context);
   AddDetect(app, context);
+  AddDiagnose(app, context);
   AddEstimate(app, context);
   AddShape(app, context);
   AddSimulate(app, context);

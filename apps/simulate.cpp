@@ -15,11 +15,13 @@
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "core/error.h"
+#include "diagnosis/model_at.h"
 #include "recording/csv.h"
 #include "recording/recording_writer.h"
 #include "recording/text.h"
 #include "recording/truth.h"
 #include "report/pages.h"
+#include "simulation/camera_view.h"
 #include "simulation/scenario.h"
 
 namespace flextip {
@@ -28,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SimulateOptions {
-  fs::path scenario, out;
+  fs::path scenario, model, out;
   bool render = false, force = false;
 };
 
@@ -106,8 +108,15 @@ LoopResult RunOne(const Scenario& scenario, ControllerKind kind, const Laparosco
   return result;
 }
 
+void RefuseWhatIsNotRendered(const std::string& file, const LoopSetup& loop) {
+  const bool late = loop.sensor_effects.camera_latency_s != 0.0;
+  if (!late && loop.plant.effects.tip_compliance_m_N == 0.0) return;
+  throw InputError(fmt::format("{}: effects: {} is not rendered: run it without --render", file,
+                               late ? "camera_latency" : "tip_compliance"));
+}
+
 void RunSimulate(const SimulateOptions& options, bool quiet) {
-  const Scenario scenario = ReadScenario(options.scenario);
+  Scenario scenario = ReadScenario(options.scenario);
   const std::string file = options.scenario.string();
   if (options.render && !scenario.has_camera) {
     throw InputError(file + ": --render needs a section camera");
@@ -115,13 +124,21 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
   if (!options.render && !scenario.loop.sensors.tip) {
     throw InputError(file + ": without --render the sensors need a section tip");
   }
-  OutputFolder output(options.out, "simulate",
-                      {.force = options.force, .inputs = {options.scenario}});
+  if (options.render) RefuseWhatIsNotRendered(file, scenario.loop);
+  std::vector<fs::path> inputs = {options.scenario};
+  if (!options.model.empty()) {
+    inputs.push_back(options.model);
+    const ExtendedModel model = ReadModel(options.model);
+    const Recording& base = scenario.loop.base;
+    scenario.loop.model = [model, &base] { return std::make_unique<ModelAt>(model, base); };
+  }
+  OutputFolder output(options.out, "simulate", {.force = options.force, .inputs = inputs});
   output.Warn(scenario.warnings);
   std::optional<Laparoscope> laparoscope;
   if (options.render) {
     const LoopSetup& loop = scenario.loop;
-    laparoscope.emplace(loop.base.cam0->calibration, *loop.base.tags0, scenario.laparoscope);
+    laparoscope.emplace(TrueCamera(loop.base.cam0->calibration, loop.sensor_effects),
+                        TrueCollar(*loop.base.tags0, loop.sensor_effects), scenario.laparoscope);
   }
   const std::size_t runs = scenario.controllers.size();
   std::vector<LoopResult> results(runs);
@@ -137,9 +154,11 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
   nlohmann::json controllers;
   for (std::size_t i = 0; i < runs; ++i)
     controllers[Name(scenario.controllers[i])] = Figures(results[i]);
-  output.WriteSummary({{"scenario", options.scenario.filename().string()},
-                       {"rendered", options.render},
-                       {"controllers", controllers}});
+  nlohmann::json summary = {{"scenario", options.scenario.filename().string()},
+                            {"rendered", options.render},
+                            {"controllers", controllers}};
+  if (!options.model.empty()) summary["model"] = options.model.filename().string();
+  output.WriteSummary(summary);
   WriteSimulateReport(output.folder());
   output.Commit();
   if (quiet) return;
@@ -163,6 +182,11 @@ void AddSimulate(CLI::App& app, AppContext& context) {
   command->add_option("-o,--output", options->out, "Folder for the recording")
       ->required()
       ->type_name("RECORDING");
+  command
+      ->add_option("--model", options->model,
+                   "Estimator and controllers know of the effects in this model.yaml (the "
+                   "simulated instrument does not: its own are in the scenario)")
+      ->type_name("MODEL.yaml");
   command->add_flag("--render", options->render,
                     "Render laparoscope frames and run the loop on what vision sees in them");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "kinematics/straight.h"
 
@@ -58,19 +59,31 @@ Eigen::Matrix3d TrustedStiffness(const Eigen::Matrix3d& K, const Eigen::Matrix3d
   return -part * root * root;
 }
 
+/// The wrist that moves the tip is the measured one: where the arm yields, the rod's derivative by
+/// it says so; where it has play, the shaft follows the true wrist beside it.
 Prediction PredictRod(const ControlInput& input, const ControllerOptions& options,
-                      RodSolver& solver) {
+                      ShaftRod& solver) {
   const ShaftModel& model = input.model;
-  const RodState rod =
-      solver.Solve({model.instrument.length_m, model.instrument.bending_stiffness_Nm2, input.p_RW,
-                    model.p_RP, model.f_tip_N, model.weight_N_m});
+  ShaftProblem problem;
+  problem.rod.rod = {model.instrument.length_m,
+                     model.instrument.bending_stiffness_Nm2,
+                     input.p_RW + model.wrist_shift_m,
+                     model.p_RP,
+                     model.f_tip_N,
+                     model.weight_N_m};
+  problem.rod.effects = model.effects;
+  problem.tip_compliance_m_N = model.tip_compliance_m_N;
+  const ShaftRodState rod = solver.Solve(problem);
   if (!rod.IsUsable()) return StraightInstead(input);
-  return {model.force_known ? ControlStatus::kOk : ControlStatus::kStraightInstead, rod.tip.p,
-          rod.J_tip_wrist(TrustedStiffness(model.tissue_stiffness_N_m, rod.tip.dp.rightCols<3>(),
-                                           options.max_tissue_gain))};
+  // dp = J dw + C df with df = K dp.
+  const Eigen::Matrix3d C = rod.dp_RE.rightCols<3>();
+  const Eigen::Matrix3d K =
+      TrustedStiffness(model.tissue_stiffness_N_m, C, options.max_tissue_gain);
+  return {model.force_known ? ControlStatus::kOk : ControlStatus::kStraightInstead, rod.p_RE,
+          (Eigen::Matrix3d::Identity() - C * K).inverse() * rod.dp_RE.leftCols<3>()};
 }
 
-Prediction Predict(const ControlInput& input, const ControllerOptions& options, RodSolver& solver) {
+Prediction Predict(const ControlInput& input, const ControllerOptions& options, ShaftRod& solver) {
   switch (options.kind) {
     case ControllerKind::kStraightCalculate:
     case ControllerKind::kStraightTrack:
@@ -101,6 +114,26 @@ Eigen::Vector3d SolveDamped(const Eigen::Vector3d& dx, const ControllerOptions& 
   output.damped = damping2 > 0.0;
   const Eigen::Vector3d inverse = sigma.array() / (sigma.array().square() + damping2);
   return svd.matrixV() * inverse.cwiseProduct(svd.matrixU().transpose() * dx);
+}
+
+bool UsesRod(ControllerKind kind) {
+  return kind == ControllerKind::kRodCalculate || kind == ControllerKind::kRodTrack;
+}
+
+/// The step of the measured wrist that moves the true one by `step`: each axis first crosses its
+/// play, but for a tenth of it that is left to the next steps, so that a play overrated does not
+/// make the loop swing. A step that is small against the play does not turn the direction around.
+Eigen::Vector3d LeadByPlay(const Eigen::Vector3d& step, const ShaftModel& model) {
+  constexpr double kSmall = 0.02, kCrossed = 0.9;
+  const double play = model.wrist_play_m;
+  Eigen::Vector3d lead = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(step[i]) <= kSmall * play) continue;
+    // wrist_shift is true less measured: at the end of the play it is half of it behind.
+    const double offset = model.wrist_shift_m[i] + std::copysign(0.5 * play, step[i]);
+    lead[i] = kCrossed * offset;
+  }
+  return step + lead;
 }
 
 /// Shortens the step to the bound and so that the wrist keeps its distance from the port.
@@ -166,7 +199,9 @@ ControlOutput TipController::Step(const ControlInput& input) {
   output.p_RE_used = tracks ? input.p_RE_measured : model.p_RE;
 
   const Eigen::Vector3d dx = options_.gain * (input.p_RE_desired - output.p_RE_used);  // (2.1)
-  const Eigen::Vector3d step = SolveDamped(dx, options_, output);                      // (5.1)
+  Eigen::Vector3d step = SolveDamped(dx, options_, output);                            // (5.1)
+  if (UsesRod(options_.kind) && input.model.wrist_play_m > 0.0)
+    step = LeadByPlay(step, input.model);
   output.p_RW_command += Bound(step, input, options_, output);
   return output;
 }

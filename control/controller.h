@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "estimation/shaft_model.h"
-#include "kinematics/rod.h"
+#include "estimation/shaft_rod.h"
 
 namespace flextip {
 
@@ -37,7 +37,7 @@ struct ControllerOptions {
 
 /// One cycle's input. Everything in R.
 struct ControlInput {
-  Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();  ///< as measured
   Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_RE_measured = Eigen::Vector3d::Zero();
   bool tip_measured = false;  ///< p_RE_measured is valid in this cycle
@@ -75,7 +75,7 @@ class TipController {
 
  private:
   ControllerOptions options_;
-  RodSolver rod_;  // keeps the last equilibrium as the next step's starting point
+  ShaftRod rod_;  // keeps the last equilibrium as the next step's starting point
 };
 
 }  // namespace flextip

@@ -25,27 +25,37 @@ Eigen::Matrix3d Whitening(double noise_m) {
 
 }  // namespace
 
-RodFit::RodFit(const RodProblem& shaft, const Measurements& measurements, const RodPrior& prior,
-               bool use_positions, RodSolver& solver)
+RodFit::RodFit(const ShaftProblem& shaft, const Measurements& measurements, const RodPrior& prior,
+               bool use_positions, ShaftRod& solver)
     : shaft_(shaft),
       measurements_(measurements),
       prior_(prior),
       use_positions_(use_positions),
       solver_(solver),
-      force_unit_(shaft.bending_stiffness_Nm2 / (shaft.length_m * shaft.length_m)) {}
+      force_unit_(shaft.rod.rod.bending_stiffness_Nm2 /
+                  (shaft.rod.rod.length_m * shaft.rod.rod.length_m)) {
+  if (measurements.strain && measurements.R_RW) {
+    for (const double s : measurements.strain->station_from_wrist_m)
+      stations_[station_count_++] = {s, false};
+  }
+  if (measurements.em) {
+    em_station_ = static_cast<int>(station_count_);
+    stations_[station_count_++] = {measurements.em->distance_from_tip_m, true};
+  }
+}
 
-RodProblem RodFit::ProblemAt(const RodParameters& parameters) const {
-  RodProblem problem = shaft_;
-  problem.p_wrist = parameters.head<3>();
-  problem.p_port = parameters.segment<3>(3);
-  problem.f_tip = parameters.tail<3>() * force_unit_;
+ShaftProblem RodFit::ProblemAt(const RodParameters& parameters) const {
+  ShaftProblem problem = shaft_;
+  problem.rod.rod.p_wrist = parameters.head<3>();
+  problem.rod.rod.p_port = parameters.segment<3>(3);
+  problem.rod.rod.f_tip = parameters.tail<3>() * force_unit_;
   return problem;
 }
 
 void RodFit::AddPosition(const Eigen::Vector3d& measured, const Eigen::Matrix3d& whiten,
-                         const RodSection& section) const {
-  residuals_.segment<3>(rows_) = whiten * (section.p - measured);
-  jacobian_.middleRows<3>(rows_) = whiten * section.dp;
+                         const Eigen::Vector3d& p, const RodDerivative& dp) const {
+  residuals_.segment<3>(rows_) = whiten * (p - measured);
+  jacobian_.middleRows<3>(rows_) = whiten * dp;
   rows_ += 3;
 }
 
@@ -76,42 +86,69 @@ struct CarriedFrame {
   }
 };
 
+/// Moments about the section's y and z axes, and their derivatives.
+struct LocalMoments {
+  Eigen::Vector2d m;
+  Eigen::Matrix<double, 2, 9> dm;
+};
+
+/// By the axes the rod itself carries along the shaft.
+LocalMoments ByOwnAxes(const ShaftSection& s) {
+  const Eigen::Vector3d z = s.t.cross(s.y);
+  LocalMoments local;
+  local.m << s.m.dot(s.y), s.m.dot(z);
+  local.dm.row(0) = s.y.transpose() * s.dm + s.m.transpose() * s.dy;
+  // m . d(t x y) = (y x m) . dt + (m x t) . dy
+  local.dm.row(1) =
+      z.transpose() * s.dm + s.y.cross(s.m).transpose() * s.dt + s.m.cross(s.t).transpose() * s.dy;
+  return local;
+}
+
+/// By a frame carried along: the moment has no part along the shaft.
+LocalMoments ByFrame(const CarriedFrame& frame, const ShaftSection& s) {
+  LocalMoments local;
+  local.m = frame.R.rightCols<2>().transpose() * s.m;
+  local.dm = frame.R.rightCols<2>().transpose() * s.dm +
+             Eigen::Vector2d(local.m[1], -local.m[0]) * frame.twist;
+  return local;
+}
+
 }  // namespace
 
-void RodFit::AddStrain(const RodState& rod) const {
+void RodFit::AddStrain(const ShaftRodState& rod) const {
   CarriedFrame frame{*measurements_.R_RW, RodDerivative::Zero()};
-  frame.CarryTo(rod.wrist.t, rod.wrist.dt);
+  if (!rod.has_axes) frame.CarryTo(rod.wrist.t, rod.wrist.dt);
   bool beyond_port = false;
   const double noise = std::max(measurements_.strain->moment_noise_Nm, kLeastMoment_Nm);
   for (int i = 0; i < 2; ++i) {
-    const double s =
-        std::clamp(measurements_.strain->station_from_wrist_m[i], 0.0, shaft_.length_m);
-    const RodSection section = solver_.Section(s);
-    if (s > rod.s_port_m && !beyond_port) frame.CarryTo(rod.t_port, rod.dt_port);
-    beyond_port = s > rod.s_port_m;
-    frame.CarryTo(section.t, section.dt);
-    const Eigen::Vector2d m = frame.R.rightCols<2>().transpose() * section.m;
-    residuals_.segment<2>(rows_) = (m - measurements_.strain->moments_Nm.segment<2>(2 * i)) / noise;
-    jacobian_.middleRows<2>(rows_) = (frame.R.rightCols<2>().transpose() * section.dm +
-                                      Eigen::Vector2d(m[1], -m[0]) * frame.twist) /
-                                     noise;
+    const ShaftSection& section = rod.stations[i];
+    if (!rod.has_axes) {
+      if (section.s_m > rod.s_port_m && !beyond_port) frame.CarryTo(rod.t_port, rod.dt_port);
+      beyond_port = section.s_m > rod.s_port_m;
+      frame.CarryTo(section.t, section.dt);
+    }
+    const LocalMoments local = rod.has_axes ? ByOwnAxes(section) : ByFrame(frame, section);
+    residuals_.segment<2>(rows_) =
+        (local.m - measurements_.strain->moments_Nm.segment<2>(2 * i)) / noise;
+    jacobian_.middleRows<2>(rows_) = local.dm / noise;
     rows_ += 2;
   }
 }
 
-void RodFit::AddSensors(const RodState& rod, const RodParameters& x) const {
+void RodFit::AddSensors(const ShaftRodState& rod, const RodParameters& x) const {
   const Measurements& z = measurements_;
   if (z.R_RW) {
     AddDirection(z.R_RW->col(0), z.wrist_orientation_noise_rad, rod.wrist.t, rod.wrist.dt);
   }
   if (z.tip && z.tip->status != TipStatus::kLost) {
-    if (use_positions_) AddPosition(z.tip->p_RE, Whitening(z.tip->covariance_m2), rod.tip);
-    if (z.tip->d_RE) AddDirection(*z.tip->d_RE, z.tip_direction_noise_rad, rod.tip.t, rod.tip.dt);
+    if (use_positions_)
+      AddPosition(z.tip->p_RE, Whitening(z.tip->covariance_m2), rod.p_RE, rod.dp_RE);
+    if (z.tip->d_RE) AddDirection(*z.tip->d_RE, z.tip_direction_noise_rad, rod.end.t, rod.end.dt);
   }
   if (z.em) {
-    const double s = std::clamp(shaft_.length_m - z.em->distance_from_tip_m, 0.0, shaft_.length_m);
-    const RodSection section = solver_.Section(s);
-    if (use_positions_) AddPosition(z.em->T_RS.p, Whitening(z.em->position_noise_m), section);
+    const ShaftSection& section = rod.stations[em_station_];
+    if (use_positions_)
+      AddPosition(z.em->T_RS.p, Whitening(z.em->position_noise_m), section.p, section.dp);
     AddDirection(z.em->T_RS.R.col(0), z.em->orientation_noise_rad, section.t, section.dt);
   }
   if (z.port_direction) {
@@ -134,7 +171,7 @@ void RodFit::AddPrior(const RodParameters& parameters) const {
 
 bool RodFit::operator()(const double* parameters, double* residuals, double* jacobian) const {
   const RodParameters x = Eigen::Map<const RodParameters>(parameters);
-  const RodState rod = solver_.Solve(ProblemAt(x));
+  const ShaftRodState rod = solver_.Solve(ProblemAt(x), {stations_.data(), station_count_});
   if (!rod.IsUsable()) return false;
   residuals_.setZero();
   jacobian_.setZero();

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 
 #include "estimation/measurements.h"
-#include "kinematics/rod.h"
+#include "estimation/shaft_rod.h"
 
 namespace flextip {
 
@@ -29,10 +29,10 @@ class RodFit {
   using Residuals = Eigen::Matrix<double, NUM_RESIDUALS, 1>;
   using Jacobian = Eigen::Matrix<double, NUM_RESIDUALS, NUM_PARAMETERS>;
 
-  /// `shaft` gives length, stiffness and weight. Without `use_positions` the places of tip and EM
-  /// sensor are left out. The references must outlive the object.
-  RodFit(const RodProblem& shaft, const Measurements& measurements, const RodPrior& prior,
-         bool use_positions, RodSolver& solver);
+  /// `shaft` gives length, stiffness, weight and effects. Without `use_positions` the places of tip
+  /// and EM sensor are left out. The references must outlive the object.
+  RodFit(const ShaftProblem& shaft, const Measurements& measurements, const RodPrior& prior,
+         bool use_positions, ShaftRod& solver);
 
   /// False where the rod has no equilibrium. `jacobian` (column-major) may be null.
   bool operator()(const double* parameters, double* residuals, double* jacobian) const;
@@ -40,24 +40,27 @@ class RodFit {
   /// How many scalar measurements (without the priors) the last call used.
   int MeasurementCount() const { return rows_ - NUM_PARAMETERS; }
 
-  RodProblem ProblemAt(const RodParameters& parameters) const;
+  ShaftProblem ProblemAt(const RodParameters& parameters) const;
   double ForceUnit() const { return force_unit_; }
 
  private:
   void AddPosition(const Eigen::Vector3d& measured, const Eigen::Matrix3d& whiten,
-                   const RodSection& section) const;
+                   const Eigen::Vector3d& p, const RodDerivative& dp) const;
   void AddDirection(const Eigen::Vector3d& measured, double noise_rad, const Eigen::Vector3d& t,
                     const RodDerivative& dt) const;
-  void AddStrain(const RodState& rod) const;
-  void AddSensors(const RodState& rod, const RodParameters& x) const;
+  void AddStrain(const ShaftRodState& rod) const;
+  void AddSensors(const ShaftRodState& rod, const RodParameters& x) const;
   void AddPrior(const RodParameters& parameters) const;
 
-  RodProblem shaft_;
+  ShaftProblem shaft_;
   const Measurements& measurements_;
   RodPrior prior_;
   bool use_positions_;
-  RodSolver& solver_;
+  ShaftRod& solver_;
   double force_unit_;
+  std::array<RodStation, kMaxShaftStations> stations_;  // the strain's two, then the EM sensor's
+  std::size_t station_count_ = 0;
+  int em_station_ = -1;
   mutable int rows_ = 0;
   mutable Residuals residuals_;
   mutable Jacobian jacobian_;

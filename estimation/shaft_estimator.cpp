@@ -30,9 +30,9 @@ bool AllFinite(const Measurements& z) {
   return ok;
 }
 
-RodPrior Prior(const EstimatorOptions& options, const Measurements& z) {
+RodPrior Prior(const EstimatorOptions& options, const Measurements& z, const ShaftModel& model) {
   RodPrior prior;
-  prior.mean << z.p_RW, options.p_RP, Eigen::Vector3d::Zero();
+  prior.mean << z.p_RW + model.wrist_shift_m, model.p_RP, Eigen::Vector3d::Zero();
   prior.sd << Eigen::Vector3d::Constant(std::max(z.wrist_position_noise_m, 1e-6)),
       Eigen::Vector3d::Constant(std::max(options.port_prior_m, 1e-6)),
       Eigen::Vector3d::Constant(options.force_prior_units);
@@ -40,11 +40,18 @@ RodPrior Prior(const EstimatorOptions& options, const Measurements& z) {
 }
 
 /// The straight-shaft model that is handed on where nothing better is known.
-ShaftModel StraightModel(const EstimatorOptions& options) {
+ShaftModel StraightModel(const EstimatorOptions& options, const ShaftChange& change) {
   ShaftModel model;
   model.instrument = options.instrument;
-  model.p_RP = options.p_RP;
-  model.weight_N_m = options.instrument.mass_per_length_kg_m * options.gravity_m_s2;
+  model.instrument.length_m += change.length_delta_m;
+  model.instrument.bending_stiffness_Nm2 *= change.stiffness_scale;
+  model.p_RP = options.p_RP + change.port_shift_m;
+  model.weight_N_m =
+      options.instrument.mass_per_length_kg_m * options.gravity_m_s2 + change.weight_N_m;
+  model.effects = change.effects;
+  model.tip_compliance_m_N = change.tip_compliance_m_N;
+  model.wrist_shift_m = change.wrist_shift_m;
+  model.wrist_play_m = change.wrist_play_m;
   model.beam.status = BeamStatus::kStraight;
   return model;
 }
@@ -76,20 +83,30 @@ ShaftEstimator::ShaftEstimator(const EstimatorOptions& options) : options_(optio
 
 void ShaftEstimator::Reset() { *this = ShaftEstimator(options_); }
 
-ShaftEstimate ShaftEstimator::Update(const Measurements& z) {
+ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& change) {
   ShaftEstimate estimate;
-  estimate.model = StraightModel(options_);
+  estimate.model = StraightModel(options_, change);
   if (!AllFinite(z)) return estimate;
 
-  RodProblem shaft;
-  shaft.length_m = options_.instrument.length_m;
-  shaft.bending_stiffness_Nm2 = options_.instrument.bending_stiffness_Nm2;
-  shaft.q_weight = estimate.model.weight_N_m;
-  const RodPrior prior = Prior(options_, z);
+  ShaftProblem shaft;
+  shaft.rod.rod.length_m = estimate.model.instrument.length_m;
+  shaft.rod.rod.bending_stiffness_Nm2 = estimate.model.instrument.bending_stiffness_Nm2;
+  shaft.rod.rod.q_weight = estimate.model.weight_N_m;
+  shaft.rod.effects = change.effects;
+  shaft.tip_compliance_m_N = change.tip_compliance_m_N;
+  const RodPrior prior = Prior(options_, z, estimate.model);
   RodFit fit(shaft, z, prior, options_.use_positions, solver_);
   RodParameters x = prior.mean;
   x.tail<3>() = last_force_N_ / fit.ForceUnit();
 
+  if (!IsPlain(change.effects) && last_force_N_.isZero(0.0)) {
+    // Without a past the steps may be long. The plain shaft's force is a start near enough.
+    ShaftProblem plain = shaft;
+    plain.rod.effects = RodEffects();
+    RodFit first(plain, z, prior, options_.use_positions, solver_);
+    if (!Fit(first, x, estimate)) x = prior.mean;
+    if (!Fit(fit, x, estimate)) x = prior.mean;  // one round more
+  }
   if (!Fit(fit, x, estimate)) {
     estimate.status = EstimateStatus::kNotConverged;
     last_force_N_.setZero();
@@ -123,9 +140,9 @@ bool ShaftEstimator::Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate)
 }
 
 void ShaftEstimator::Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate) {
-  const RodState rod = solver_.Solve(fit.ProblemAt(x));
-  estimate.p_RE = rod.tip.p;
-  estimate.d_RE = rod.tip.t;
+  const ShaftRodState rod = solver_.Solve(fit.ProblemAt(x));
+  estimate.p_RE = rod.p_RE;
+  estimate.d_RE = rod.end.t;
   estimate.s_port_m = rod.s_port_m;
   // Observable: what the sensors say of the force across the shaft narrows the prior.
   const Eigen::Matrix3d force = estimate.covariance.bottomRightCorner<3, 3>();
@@ -137,7 +154,7 @@ void ShaftEstimator::Describe(const RodFit& fit, const RodParameters& x, ShaftEs
   // From units of EI / L^2 to newton.
   estimate.covariance.rightCols<3>() *= fit.ForceUnit();
   estimate.covariance.bottomRows<3>() *= fit.ForceUnit();
-  estimate.p_RE_covariance_m2 = rod.tip.dp * estimate.covariance * rod.tip.dp.transpose();
+  estimate.p_RE_covariance_m2 = rod.dp_RE * estimate.covariance * rod.dp_RE.transpose();
 }
 
 void ShaftEstimator::FillModel(const RodFit& fit, const RodParameters& x, const Measurements& z,
@@ -148,7 +165,7 @@ void ShaftEstimator::FillModel(const RodFit& fit, const RodParameters& x, const 
   model.f_tip_N = x.tail<3>() * fit.ForceUnit();
   model.force_known = true;
   last_force_N_ = model.f_tip_N;
-  model.beam = ChooseBeamFit(z, options_.instrument, model, options_.use_positions);
+  model.beam = ChooseBeamFit(z, model.instrument, model, options_.use_positions);
   if (options_.estimate_tissue) UpdateTissue(estimate);
   model.tissue_stiffness_N_m = tissue_stiffness_N_m_;
 }

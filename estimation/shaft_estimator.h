@@ -6,8 +6,9 @@
 
 #include "core/instrument.h"
 #include "estimation/measurements.h"
+#include "estimation/shaft_change.h"
 #include "estimation/shaft_model.h"
-#include "kinematics/rod.h"
+#include "estimation/shaft_rod.h"
 
 namespace flextip {
 
@@ -56,7 +57,8 @@ class ShaftEstimator {
  public:
   explicit ShaftEstimator(const EstimatorOptions& options);
 
-  ShaftEstimate Update(const Measurements& measurements);
+  /// `change`: how the instrument differs from its data at this instant, where a model was found.
+  ShaftEstimate Update(const Measurements& measurements, const ShaftChange& change = {});
 
   /// Forget the past: warm start and tissue.
   void Reset();
@@ -69,7 +71,7 @@ class ShaftEstimator {
   void UpdateTissue(const ShaftEstimate& estimate);
 
   EstimatorOptions options_;
-  RodSolver solver_;
+  ShaftRod solver_;
   Eigen::Vector3d last_force_N_ = Eigen::Vector3d::Zero();
   bool has_reference_ = false;  // of the tissue's secant
   Eigen::Vector3d reference_tip_ = Eigen::Vector3d::Zero();

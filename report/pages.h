@@ -22,5 +22,8 @@ void WriteShapeReport(const std::filesystem::path& folder);
 void WriteDetectReport(const std::filesystem::path& folder);
 /// Figures, pictures and residuals.csv of a calibration.
 void WriteCalibrateReport(const std::filesystem::path& folder);
+/// The verdict, its evidence and the gain, from diagnosis.json (which must be there) and
+/// residuals.csv.
+void WriteDiagnoseReport(const std::filesystem::path& folder);
 
 }  // namespace flextip

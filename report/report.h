@@ -46,6 +46,8 @@ class Report {
   void AddHeading(const std::string& text);
   void AddText(const std::string& text);
   void AddTable(const Table& table);
+  /// As it stands: for parts that a page draws itself. Its texts must be escaped already.
+  void AddHtml(const std::string& html) { body_ += html; }
   void AddPlot(const Plot& plot);
   /// Pictures side by side, each a PNG or JPEG file's bytes with a caption.
   void AddPictures(const std::vector<std::pair<std::string, std::string>>& bytes_and_captions);

@@ -33,7 +33,8 @@ class Loop {
       : setup_(setup),
         camera_(camera),
         plant_(setup.plant, setup.plant_options),
-        sensors_(WithoutTipIf(camera != nullptr, setup.sensors), setup.seed),
+        sensors_(WithoutTipIf(camera != nullptr, setup.sensors), setup.seed, setup.sensor_effects),
+        model_(setup.model ? setup.model() : nullptr),
         estimator_(MakeEstimatorOptions(setup)),
         controller_(setup.controller),
         p_RW_(setup.p_RW_start),
@@ -94,7 +95,7 @@ class Loop {
     const Eigen::Vector3d left = p_RW_command_ - p_RW_;
     const double reach = setup_.max_wrist_speed_m_s * dt_s;
     p_RW_ += left.norm() > reach ? Eigen::Vector3d(reach / left.norm() * left) : left;
-    shape_ = plant_.Solve(p_RW_);
+    shape_ = plant_.Solve(p_RW_, 1e-9 * static_cast<double>(t_ns_ - kSimulationStart_ns));
     if (!shape_.IsUsable()) {
       throw WorkError(fmt::format("the shaft lost its equilibrium {:.3f} s into the run: {}",
                                   static_cast<double>(t_ns_ - kSimulationStart_ns) * 1e-9,
@@ -159,10 +160,13 @@ class Loop {
 
   void Update() {
     if (camera_ != nullptr) See();
-    const Measurements z = Gather();
+    const Measurements measured = Gather();
+    if (model_) model_->Advance(t_ns_, measured, f_tip_N_);
+    const Measurements z = model_ ? model_->Correct(measured) : measured;
     ControlInput input;
     input.p_RW = z.p_RW;
-    const ShaftEstimate estimate = estimator_.Update(z);
+    const ShaftEstimate estimate = estimator_.Update(z, model_ ? model_->Shaft() : ShaftChange());
+    f_tip_N_ = estimate.model.f_tip_N;
     input.model = estimate.model;
     if (z.tip && z.tip->status != TipStatus::kLost) {
       input.tip_measured = true;
@@ -222,12 +226,14 @@ class Loop {
   const LoopCamera* camera_;
   Plant plant_;
   Sensors sensors_;
+  std::unique_ptr<InstrumentModel> model_;
   ShaftEstimator estimator_;
   TipController controller_;
   std::optional<TipTracker> tracker_;
   std::optional<TipPath> path_;
   PlantShape shape_;
   Eigen::Vector3d p_RW_, p_RW_command_;
+  Eigen::Vector3d f_tip_N_ = Eigen::Vector3d::Zero();  // as estimated last
   std::optional<Eigen::Vector3d> p_RE_known_;
   TimeNs t_ns_ = kSimulationStart_ns;
   double direction_noise_rad_ = 0.0, squared_direction_noise_ = 0.0, squared_deviation_ = 0.0;

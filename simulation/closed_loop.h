@@ -4,11 +4,13 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "control/controller.h"
 #include "core/image.h"
+#include "estimation/instrument_model.h"
 #include "recording/recording.h"
 #include "recording/truth.h"
 #include "simulation/laparoscope.h"
@@ -26,6 +28,10 @@ struct LoopSetup {
   Eigen::Vector3d p_RW_start = Eigen::Vector3d::Zero();
   double max_wrist_speed_m_s = 0.2;
   SensorSetup sensors;
+  SensorEffects sensor_effects;
+  /// Makes the found model that estimator and controller know of; empty: none. The plant does not
+  /// know it. Called for each run, perhaps by several at once.
+  std::function<std::unique_ptr<InstrumentModel>()> model;
   double update_rate_hz = 30.0;  ///< of the controller: the camera's
   PathSetup path;
   ControllerOptions controller;

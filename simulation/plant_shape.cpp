@@ -49,7 +49,7 @@ Eigen::Vector3d PlantShape::Position(double s_m) const {
 
 Eigen::Vector3d PlantShape::Moment(double s_m) const {
   const Part part = PartAt(s_m);
-  return Cubic(moments_, part.first, part.links + 1, (s_m - part.s_begin) / part.h);
+  return Cubic(moments_, part.first_moment, part.links + 1, (s_m - part.s_begin) / part.h);
 }
 
 Eigen::Vector3d PlantShape::Tangent(double s_m) const {
@@ -63,7 +63,11 @@ Pose PlantShape::Frame(double s_m) const {
   const int in_part =
       std::clamp(static_cast<int>((s_m - part.s_begin) / part.h), 0, part.links - 1);
   const int link = part.first + in_part;
-  return {RotationWithoutTwist(directions_[link], Tangent(s_m)) * frames_[link], Position(s_m)};
+  const Eigen::Matrix3d R = RotationWithoutTwist(directions_[link], Tangent(s_m)) * frames_[link];
+  if (twists_1_m_.empty()) return {R, Position(s_m)};
+  const double past_middle = s_m - part.s_begin - (in_part + 0.5) * part.h;
+  return {R * ExpRotation(past_middle * twists_1_m_[link] * Eigen::Vector3d::UnitX()),
+          Position(s_m)};
 }
 
 ShaftCurve PlantShape::Curve() const { return {nodes_, diameter_m, T_RE()}; }

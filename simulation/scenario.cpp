@@ -7,6 +7,7 @@
 #include "recording/camera_file.h"
 #include "recording/sensor_streams.h"
 #include "recording/yaml_map.h"
+#include "simulation/instrument_effects.h"
 
 namespace flextip {
 namespace {
@@ -35,6 +36,7 @@ class ScenarioReader {
     ReadLoad();
     ReadSensors();
     ReadCamera();
+    ReadEffects();
     ReadPath();
     ReadControllers();
     scenario_.loop.seed = static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
@@ -176,7 +178,10 @@ class ScenarioReader {
     scenario_.warnings.insert(scenario_.warnings.end(), log.warnings.begin(), log.warnings.end());
     if (map.Has("rate_hz")) loop.base.cam0->calibration.rate_hz = map.Positive("rate_hz");
     loop.update_rate_hz = loop.base.cam0->calibration.rate_hz;
-    if (loop.sensors.tip) loop.sensors.tip->rate_hz = loop.update_rate_hz;
+    if (loop.sensors.tip) {
+      loop.sensors.tip->rate_hz = loop.update_rate_hz;
+      loop.sensors.tip->T_RC = loop.base.cam0->calibration.T_RC;
+    }
     scenario_.has_camera = true;
 
     LaparoscopeOptions& scope = scenario_.laparoscope;
@@ -214,6 +219,44 @@ class ScenarioReader {
     if (map.Has("first_frame")) occluder.first_frame = static_cast<int>(map.Integer("first_frame"));
     if (map.Has("last_frame")) occluder.last_frame = static_cast<int>(map.Integer("last_frame"));
     scenario_.laparoscope.occluders.push_back(occluder);
+  }
+
+  /// effects: {NAME: {PARAMETER: number or list}}, of plant and sensors.
+  void ReadEffects() {
+    if (!top_.Has("effects")) return;
+    const YamlMap map = Section(top_, "effects");
+    LoopSetup& loop = scenario_.loop;
+    std::map<std::string, EffectParameters> values;
+    const Eigen::Vector3d to_port = (loop.base.p_RP - loop.p_RW_start).normalized();
+    Eigen::Vector3d em_centre = loop.p_RW_start + loop.base.instrument.length_m * to_port;
+    for (const std::string& name : map.Keys()) {
+      const YamlMap effect = Section(map, name);
+      if (name == "em_distortion") em_centre = VectorOr(effect, "centre_m", em_centre);
+      for (const std::string& key : effect.Keys()) {
+        if (name == "em_distortion" && key == "centre_m") continue;
+        values[name][key] =
+            effect.IsList(key) ? effect.Numbers(key) : std::vector<double>{effect.Number(key)};
+      }
+      CheckEffect(map, name, values);
+    }
+    const InstrumentEffects effects = EffectsByName(values, loop.base.instrument);
+    loop.plant.effects = effects.plant;
+    loop.plant.gravity_m_s2 = loop.base.gravity_m_s2;
+    loop.sensor_effects = effects.sensors;
+    loop.sensor_effects.em_centre_m = em_centre;
+    if (*WhatIsWrong(loop.plant) != '\0') throw top_.Error("effects", WhatIsWrong(loop.plant));
+  }
+
+  /// So that a complaint names the line.
+  void CheckEffect(const YamlMap& map, const std::string& name,
+                   const std::map<std::string, EffectParameters>& values) const {
+    const bool of_camera = name == "hand_eye" || name == "focal_length";
+    if (of_camera && !scenario_.has_camera) throw map.Error(name, "needs a section camera");
+    try {
+      EffectsByName(values, scenario_.loop.base.instrument);
+    } catch (const InputError& error) {
+      throw map.Error(name, error.what());
+    }
   }
 
   void ReadPath() {

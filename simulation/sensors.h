@@ -11,7 +11,10 @@
 
 #include "core/time_series.h"
 #include "recording/recording.h"
+#include "simulation/em_field.h"
 #include "simulation/plant_shape.h"
+#include "simulation/pose_history.h"
+#include "simulation/sensor_effects.h"
 
 namespace flextip {
 
@@ -23,6 +26,8 @@ struct TipSensorSetup {
   double depth_noise_m = 0.0005;
   double direction_noise_rad = 0.003;
   Eigen::Vector3d line_of_sight = Eigen::Vector3d::UnitZ();  ///< in R, unit
+  Pose T_RC;  ///< camera as registered: matters only where it or its focal length is off
+  std::string comment = "tip tracker, simulated by its figures";
 };
 
 /// Which sensors there are. The streams' samples are empty here: they state rates and noises.
@@ -34,28 +39,35 @@ struct SensorSetup {
   std::optional<TipSensorSetup> tip;
 };
 
-/// Noise of one sensor.
+/// Noise of one sensor: white, or with `correlation` a from sample to sample,
+/// x_k = a x_{k-1} + sqrt(1 - a^2) w_k, of the same variance.
 class SensorNoise {
  public:
-  SensorNoise(std::uint64_t seed, NoiseDistribution distribution)
-      : rng_(seed), distribution_(distribution) {}
-  /// Standard deviation `sd` per axis; a uniform distribution has the same one.
-  Eigen::Vector3d Vector(double sd);
+  SensorNoise(std::uint64_t seed, NoiseDistribution distribution, double scale = 1.0,
+              double correlation = 0.0)
+      : rng_(seed), distribution_(distribution), scale_(scale), correlation_(correlation) {}
+  /// Standard deviation `sd` per axis, times the scale; a uniform distribution has the same one.
+  /// `which` of the sensor's vectors it is: each has its own past.
+  Eigen::Vector3d Vector(double sd, int which = 0);
 
  private:
   double Draw();
   std::mt19937_64 rng_;
   NoiseDistribution distribution_;
+  double scale_, correlation_;
+  std::optional<Eigen::Vector3d> last_[2];
   std::normal_distribution<double> normal_;
 };
 
 /// Samples every sensor that is due.
 class Sensors {
  public:
-  Sensors(const SensorSetup& setup, std::uint64_t seed);
+  Sensors(const SensorSetup& setup, std::uint64_t seed, const SensorEffects& effects = {});
 
   /// Adds the samples that fall due in (last call, t_ns] to `recording`'s streams, all taken from
-  /// `shape` at the time they are due. Call it with increasing times.
+  /// `shape` at the time they are due; a sensor with latency takes it from what it was then. Call
+  /// it with increasing times, and for latency often enough that a cubic follows the motion.
+  /// Before kSimulationStart_ns nothing is due: such calls only give the latencies their past.
   void Sample(const PlantShape& shape, TimeNs t_ns, Recording& recording);
 
  private:
@@ -66,16 +78,19 @@ class Sensors {
     /// Whether a sample is due at `t_ns`; moves the clock on.
     bool Due(double rate_hz, TimeNs t_ns);
   };
-  static Channel MakeChannel(std::uint64_t seed, int sensor,
-                             const std::optional<EmStream>& em = {});
+  Channel MakeChannel(std::uint64_t seed, int sensor, const std::optional<EmStream>& em = {}) const;
 
-  void SampleWrist(const PlantShape& shape, TimeNs t_ns, Recording& recording);
+  void Remember(const PlantShape& shape, TimeNs t_ns);
+  void SampleWrist(const Pose& T_RW, TimeNs t_ns, Recording& recording);
   void SampleEm(const Pose& T_RS, TimeNs t_ns, const EmStream& setup, Channel& channel,
                 std::optional<EmStream>& stream);
   void SampleStrain(const PlantShape& shape, TimeNs t_ns, Recording& recording);
-  void SampleTip(const PlantShape& shape, TimeNs t_ns, Recording& recording);
+  void SampleTip(const Pose& T_RE, TimeNs t_ns, Recording& recording);
 
   SensorSetup setup_;
+  SensorEffects effects_;
+  EmField em_field_;
+  PoseHistory em0_history_, em1_history_, tip_history_;
   Channel wrist_, em0_, em1_, strain_, load_, tip_;
 };
 

@@ -36,6 +36,52 @@ TEST(SimulateCommand, WritesARecordingPerControllerThatEstimateReads) {
               StartsWith("#timestamp [ns],p_RE_x [m],"));
 }
 
+/// A plant with an effect, controlled and estimated with and without knowing of it.
+TEST(SimulateCommand, AFoundModelHelpsTheControllersAndTheEstimate) {
+  const TestFolder folder;
+  std::string text = ReadText(kScenario);
+  text.replace(text.find("controllers: all"), 16, "controllers: [rod-calculate]");
+  const auto scenario =
+      folder.Write("s.yaml", text + "\neffects:\n  precurvature: {curvature_1_m: [0.05, 0.04]}\n");
+  const auto model =
+      folder.Write("model.yaml",
+                   "format: flextip-model\nversion: 1\ncentre_m: [0, 0, 0]\nstart_ns: 0\n"
+                   "effects:\n  precurvature: {curvature_1_m: [0.05, 0.04]}\n");
+  const auto run = [&](std::vector<std::string> command, const std::string& name) {
+    const auto out = (folder / name).string();
+    command.insert(command.end(), {"-o", out});
+    const auto result = RunProgram(command);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(ReadText(folder / (name + "/summary.json")));
+  };
+  const auto deviation = [](const nlohmann::json& summary) {
+    return summary["controllers"]["rod-calculate"]["rms_deviation_m"].get<double>();
+  };
+  const auto without = run({"simulate", scenario}, "without");
+  const auto with = run({"simulate", scenario, "--model", model}, "with");
+  EXPECT_LT(deviation(with), 0.2 * deviation(without));
+  EXPECT_EQ(with["model"], "model.yaml");
+  const std::string recording = (folder / "without").string();
+  const auto blind = run({"estimate", recording, "--without-positions"}, "blind");
+  const auto knowing =
+      run({"estimate", recording, "--without-positions", "--model", model}, "knowing");
+  EXPECT_LT(knowing["tip_rms_error_m"].get<double>(), 0.2 * blind["tip_rms_error_m"].get<double>());
+}
+
+TEST(SimulateCommand, RefusesModelsThatMeanNothing) {
+  const TestFolder folder;
+  const auto out = (folder / "out").string();
+  const auto model = folder.Write("model.yaml",
+                                  "format: flextip-model\nversion: 1\ncentre_m: [0, 0, 0]\n"
+                                  "start_ns: 0\neffects:\n  rust: {depth_m: 1}\n");
+  EXPECT_TRUE(IsRefused(RunProgram({"simulate", kScenario, "--model", model, "-o", out}),
+                        {"model.yaml:6:", "rust"}));
+  EXPECT_TRUE(IsRefused(
+      RunProgram({"simulate", kScenario, "--model", (folder / "none.yaml").string(), "-o", out}),
+      {"none.yaml"}));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 TEST(SimulateCommand, RefusesScenariosItCannotRun) {
   const TestFolder folder;
   const auto out = (folder / "out").string();

@@ -76,6 +76,90 @@ TEST(Controller, RodTrackReachesTheGoalOnTheRodInTwoSteps) {
   EXPECT_LT((input.p_RE_measured - input.p_RE_desired).norm(), 1e-6);
 }
 
+/// Chapter 4's with all that may act on the shaft.
+ControlInput InputWithEffects() {
+  ControlInput input = Chapter4Input();
+  RodEffects& effects = input.model.effects;
+  effects.curvature_1_m = {0.1, -0.05};
+  effects.port_compliance_m_N = 3e-4;
+  effects.wrist_compliance_m_N = 5e-4;
+  effects.port_couple_Nm = {0.1, 0.0, 0.02};
+  effects.q_inside_N_m = {0.0, 0.3, 0.1};
+  input.model.tip_compliance_m_N = 5e-4;
+  return input;
+}
+
+TEST(Controller, JacobianOfAShaftWithEffectsByDifferences) {
+  ControlInput input = InputWithEffects();
+  TipController controller(Options(ControllerKind::kRodCalculate));
+  const Eigen::Matrix3d J = controller.Step(input).J_tip_wrist;
+  const double h = 1e-5;
+  for (int i = 0; i < 3; ++i) {
+    ControlInput plus = input, minus = input;
+    plus.p_RW[i] += h;
+    minus.p_RW[i] -= h;
+    const Eigen::Vector3d numeric =
+        (controller.Step(plus).p_RE_used - controller.Step(minus).p_RE_used) / (2 * h);
+    EXPECT_LT((J.col(i) - numeric).norm(), 1e-5) << i;
+  }
+  // The arm that yields makes the tip follow less, or more, than the rigid one.
+  input.model.effects.wrist_compliance_m_N = 0.0;
+  EXPECT_GT((controller.Step(input).J_tip_wrist - J).norm(), 1e-3);
+}
+
+/// A wrist with play by the play's definition, moved to a goal and back: the controller that leads
+/// by the play is there after two steps, the one that does not know of it is still crossing it.
+TEST(Controller, LeadsByThePlayOfTheWrist) {
+  constexpr double kPlay_m = 0.001;
+  for (const bool knows : {true, false}) {
+    ControlInput input = Chapter4Input();
+    const Eigen::Vector3d start = input.p_RE_measured;
+    TipController controller(Options(ControllerKind::kRodTrack));
+    Eigen::Vector3d wrist = input.p_RW;  // the true one
+    double worst_m = 0.0;
+    for (int i = 0; i < 40; ++i) {
+      input.p_RE_desired = start + Eigen::Vector3d(0.0, 0.0, (i / 10) % 2 == 0 ? 0.0005 : 0.0);
+      input.model.wrist_play_m = knows ? kPlay_m : 0.0;
+      input.model.wrist_shift_m =
+          knows ? Eigen::Vector3d(wrist - input.p_RW) : Eigen::Vector3d(0, 0, 0);
+      input.p_RW = controller.Step(input).p_RW_command;
+      const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * kPlay_m);
+      wrist = wrist.cwiseMax(input.p_RW - half).cwiseMin(input.p_RW + half);
+      input.p_RE_measured =
+          RodSolver()
+              .Solve({0.6, 0.304, wrist, input.model.p_RP, input.model.f_tip_N, {0, 0, 0}})
+              .tip.p;
+      if (i >= 10 && i % 10 == 1)
+        worst_m = std::max(worst_m, (input.p_RE_measured - input.p_RE_desired).norm());
+    }
+    if (knows) {
+      EXPECT_LT(worst_m, 3e-5);
+    } else {
+      EXPECT_GT(worst_m, 1e-4);
+    }
+  }
+}
+
+TEST(Controller, APlayThatIsNotThereDoesNotMakeTheLoopSwing) {
+  ControlInput input = Chapter4Input();
+  TipController controller(Options(ControllerKind::kRodTrack));
+  Eigen::Vector3d believed = input.p_RW;
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.0005);
+  double last_m = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    input.model.wrist_play_m = 0.001;
+    input.model.wrist_shift_m = believed - input.p_RW;
+    input.p_RW = controller.Step(input).p_RW_command;
+    believed = believed.cwiseMax(input.p_RW - half).cwiseMin(input.p_RW + half);
+    input.p_RE_measured =
+        RodSolver()
+            .Solve({0.6, 0.304, input.p_RW, input.model.p_RP, input.model.f_tip_N, {0, 0, 0}})
+            .tip.p;
+    last_m = (input.p_RE_measured - input.p_RE_desired).norm();
+    EXPECT_LT(last_m, 4e-3) << i;
+  }
+}
+
 TEST(Controller, StraightJacobianIsTheLeversByDifferences) {
   const ControlInput input = Chapter4Input();
   const auto tip = [&](const Eigen::VectorXd& w) -> Eigen::VectorXd {
@@ -210,7 +294,8 @@ TEST(Controller, StepAllocatesNothing) {
 #endif
   for (const ControllerKind kind : AllKinds()) {
     TipController controller(Options(kind));
-    ControlInput input = Chapter4Input();
+    ControlInput input = InputWithEffects();
+    input.model.wrist_play_m = 0.001;
     controller.Step(input);  // cold
     const long before = AllocationCount();
     for (int i = 0; i < 10; ++i) input.p_RW = controller.Step(input).p_RW_command;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "estimation/moment_fit.h"
+#include "estimation/shaft_estimator.h"
 #include "estimation/three_slope_fit.h"
 #include "kinematics/arm.h"
 #include "kinematics/joint_step.h"
@@ -38,6 +39,32 @@ TEST(BeamAllocation, NothingInsideAControlStepAllocates) {
   EXPECT_EQ(AllocationCount(), before);
   EXPECT_TRUE(std::isfinite(sum));
   EXPECT_TRUE(three.beam.IsUsable() && by_moments.IsUsable() && solved.IsUsable());
+}
+
+TEST(BeamAllocation, AnEstimateAllocatesNothingWithEffectsAndWithout) {
+  EstimatorOptions options;
+  options.instrument = {0.6, 0.00238, 0.304, 0.0};
+  options.p_RP = {0.28, 0.0, 0.0};
+  Measurements z;
+  z.R_RW = Eigen::Matrix3d::Identity();
+  z.wrist_orientation_noise_rad = 3e-4;
+  z.wrist_position_noise_m = 5e-5;
+  z.strain.emplace();
+  z.strain->moments_Nm << 0.02, 0.1, 0.03, 0.1;
+  z.strain->station_from_wrist_m[0] = 0.12;
+  z.strain->station_from_wrist_m[1] = 0.5;
+  z.strain->moment_noise_Nm = 8e-4;
+  ShaftChange bent;
+  bent.effects.curvature_1_m = {0.05, 0.02};
+  bent.tip_compliance_m_N = 1e-4;
+  for (const ShaftChange& change : {ShaftChange(), bent}) {
+    ShaftEstimator estimator(options);
+    estimator.Update(z, change);
+    const long before = AllocationCount();
+    const ShaftEstimate estimate = estimator.Update(z, change);
+    EXPECT_EQ(AllocationCount(), before);
+    EXPECT_EQ(estimate.status, EstimateStatus::kOk);
+  }
 }
 
 }  // namespace

@@ -236,14 +236,30 @@ TEST(ShaftEstimator, FindsTheTissuesStiffness) {
   EXPECT_GT(e.model.tissue_stiffness_N_m(1, 1), -60.0 * 1.1);
 }
 
-TEST(RodFit, JacobianAgainstDifferences) {
+/// The derivatives of every sensor's residuals, with all that may act on the shaft and without.
+class RodFitDerivatives : public testing::TestWithParam<bool> {};
+
+TEST_P(RodFitDerivatives, AgreeWithDifferences) {
   Bench bench;
   const Measurements z = bench.Measure(Shaft(), 127, 1.0);
   RodPrior prior;
   prior.mean << z.p_RW, kPort, Eigen::Vector3d::Zero();
   prior.sd << Eigen::Vector3d::Constant(5e-5), Eigen::Vector3d::Constant(3e-4), 4, 4, 4;
-  RodSolver solver;
-  const RodProblem shaft{kL, kEI, {}, {}, {}, {0, 0, 0}};
+  ShaftRod solver;
+  ShaftProblem shaft;
+  shaft.rod.rod.length_m = kL;
+  shaft.rod.rod.bending_stiffness_Nm2 = kEI;
+  if (GetParam()) {
+    RodEffects& effects = shaft.rod.effects;
+    effects.y_wrist = z.R_RW->col(1);
+    effects.curvature_1_m = {0.15, -0.1};
+    effects.port_compliance_m_N = 4e-4;
+    effects.wrist_compliance_m_N = 3e-4;
+    effects.port_couple_Nm = {0.1, 0.02, -0.01};
+    effects.port_friction = -0.2;
+    effects.q_inside_N_m = {0.1, 0.3, -0.2};
+    shaft.tip_compliance_m_N = 5e-4;
+  }
   const RodFit fit(shaft, z, prior, true, solver);
   RodParameters x = prior.mean;
   x.tail<3>() = kForce / fit.ForceUnit();
@@ -260,6 +276,82 @@ TEST(RodFit, JacobianAgainstDifferences) {
   for (int i = 0; i < J.rows(); ++i) {
     EXPECT_LT((J.row(i) - numeric.row(i)).norm(), 1e-5 * (numeric.row(i).norm() + 1e-3)) << i;
   }
+}
+INSTANTIATE_TEST_SUITE_P(PlainAndWithEffects, RodFitDerivatives, testing::Bool());
+
+/// The rod with an effect so small that it does nothing, against the plain solver: one answer.
+TEST(ShaftRod, BothSolversAgree) {
+  ShaftProblem plain;
+  plain.rod.rod = Shaft();
+  plain.rod.rod.q_weight = {0.0, 0.0, -0.3};
+  ShaftProblem other = plain;
+  other.rod.effects.wrist_compliance_m_N = 1e-15;
+  const RodStation stations[3] = {{0.12, false}, {0.02, true}, {0.0, true}};
+  ShaftRod a, b;
+  const ShaftRodState x = a.Solve(plain, stations), y = b.Solve(other, stations);
+  ASSERT_TRUE(x.IsUsable() && y.IsUsable());
+  EXPECT_FALSE(x.has_axes);
+  EXPECT_TRUE(y.has_axes);
+  EXPECT_NEAR(x.s_port_m, y.s_port_m, 1e-9);
+  EXPECT_LT((x.p_RE - y.p_RE).norm(), 1e-9);
+  EXPECT_LT((x.dp_RE - y.dp_RE).norm(), 1e-6 * x.dp_RE.norm());
+  EXPECT_LT((x.t_port - y.t_port).norm(), 1e-8);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_LT((x.stations[i].p - y.stations[i].p).norm(), 1e-9) << i;
+    EXPECT_LT((x.stations[i].t - y.stations[i].t).norm(), 1e-8) << i;
+    EXPECT_LT((x.stations[i].m - y.stations[i].m).norm(), 1e-8) << i;
+    EXPECT_LT((x.stations[i].dm - y.stations[i].dm).norm(), 1e-5) << i;
+  }
+  EXPECT_LT((x.stations[2].p - x.end.p).norm(), 1e-12);
+}
+
+TEST(ShaftRod, TipComplianceMovesTheTipAndNotTheShaft) {
+  ShaftProblem problem;
+  problem.rod.rod = Shaft();
+  ShaftRod solver;
+  const ShaftRodState stiff = solver.Solve(problem);
+  problem.tip_compliance_m_N = 1e-3;
+  const ShaftRodState soft = solver.Solve(problem);
+  EXPECT_LT((stiff.end.p - soft.end.p).norm(), 1e-10);
+  EXPECT_LT((soft.p_RE - stiff.p_RE - 1e-3 * kForce).norm(), 1e-10);
+  const Eigen::Matrix3d more = (soft.dp_RE - stiff.dp_RE).rightCols<3>();
+  EXPECT_LT((more - 1e-3 * Eigen::Matrix3d::Identity()).norm(), 1e-9);
+}
+
+/// Measured on a rod with effects, estimated with and without knowing of them.
+TEST(ShaftEstimator, FindsTheTipOfAShaftWhoseEffectsAreKnown) {
+  ShaftProblem truth;
+  truth.rod.rod = Shaft();
+  truth.rod.rod.bending_stiffness_Nm2 *= 0.8;
+  truth.rod.rod.length_m += 0.004;
+  truth.rod.rod.p_port += Eigen::Vector3d(0.0, 0.003, -0.002);
+  truth.rod.effects.curvature_1_m = {0.1, 0.05};
+  truth.rod.effects.port_couple_Nm = {0.1, 0.0, 0.0};
+  truth.tip_compliance_m_N = 5e-4;
+  ShaftRod solver;
+  const ShaftRodState rod = solver.Solve(truth);
+  ASSERT_TRUE(rod.IsUsable());
+  Measurements z;
+  z.wrist_position_noise_m = 5e-5;
+  z.wrist_orientation_noise_rad = 3e-4;
+  z.R_RW.emplace();
+  z.R_RW->col(0) = rod.wrist.t;
+  z.R_RW->col(1) = rod.wrist.y;
+  z.R_RW->col(2) = rod.wrist.t.cross(rod.wrist.y);
+  z.load = LoadMeasurement{kForce, 0.005};
+  ShaftChange change;
+  change.stiffness_scale = 0.8;
+  change.length_delta_m = 0.004;
+  change.port_shift_m = {0.0, 0.003, -0.002};
+  change.effects = truth.rod.effects;
+  change.effects.y_wrist = rod.wrist.y;
+  change.tip_compliance_m_N = 5e-4;
+  const ShaftEstimate known = ShaftEstimator(Options(false)).Update(z, change);
+  ASSERT_EQ(known.status, EstimateStatus::kOk);
+  EXPECT_LT((known.p_RE - rod.p_RE).norm(), 1e-6);  // the force's prior pulls a little
+  EXPECT_DOUBLE_EQ(known.model.instrument.length_m, kL + 0.004);
+  const ShaftEstimate nominal = ShaftEstimator(Options(false)).Update(z);
+  EXPECT_GT((nominal.p_RE - rod.p_RE).norm(), 5e-3);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"yaml-cpp/", {"recording", "simulation", "diagnosis", "apps"}},
       {"tbb/", {"vision", "simulation", "diagnosis", "apps", "bench"}},
       {"nlohmann/", {"report", "diagnosis", "apps", "bench"}},
-      {"CLI/", {"apps"}},
+      {"CLI/", {"apps", "bench"}},
   };
   return foreign;
 }

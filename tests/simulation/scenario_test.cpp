@@ -71,6 +71,48 @@ TEST(Scenario, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(Complaint("controllers: all", "controllers: [rod-track, flex-track]"), "");
 }
 
+/// The press with a section of effects.
+std::string EffectComplaint(const std::string& effects) {
+  return Complaint("controllers: all", "effects:\n" + effects + "controllers: all");
+}
+
+TEST(Scenario, EffectsAreGivenByNameAndParameter) {
+  std::string text = PressText();
+  text +=
+      "effects:\n"
+      "  stiffness: {scale: 0.8}\n"
+      "  port_moment: {stiffness_Nm_rad: 0.2, rest_axis: [0, 0.6, 0.8]}\n"
+      "  self_weight: {mass_per_length_kg_m: 0.03}\n"
+      "  em_distortion: {gradient: [1, 2, 3, 4, 5, 6, 7, 8, 9], centre_m: [0.1, 0.2, 0.3]}\n"
+      "  hand_eye: {rotation_rad: [0.01, 0, 0]}\n";
+  const fs::path file = fs::path(testing::TempDir()) / "scenario_effects_test.yaml";
+  std::ofstream(file) << text;
+  const LoopSetup loop = ReadScenario(file).loop;
+  EXPECT_DOUBLE_EQ(loop.plant.effects.stiffness_scale, 0.8);
+  EXPECT_DOUBLE_EQ(loop.plant.effects.port_stiffness_Nm_rad, 0.2);
+  EXPECT_EQ(loop.plant.effects.port_rest_axis, Eigen::Vector3d(0, 0.6, 0.8));
+  EXPECT_DOUBLE_EQ(loop.plant.effects.mass_per_length_kg_m, 0.03);  // the nominal one has none
+  EXPECT_EQ(loop.sensor_effects.em_gradient(0, 1), 2.0);
+  EXPECT_EQ(loop.sensor_effects.em_centre_m, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(loop.sensor_effects.hand_eye_rotation_rad.x(), 0.01);
+  EXPECT_EQ(loop.sensor_effects.hand_eye_translation_m.norm(), 0.0);
+  // What is not named is neutral.
+  EXPECT_EQ(loop.plant.effects.length_delta_m, 0.0);
+  EXPECT_EQ(loop.plant.effects.backlash_m, 0.0);
+  EXPECT_EQ(loop.sensor_effects.focal_scale, 1.0);
+}
+
+TEST(Scenario, SaysWhatIsWrongWithItsEffects) {
+  EXPECT_EQ(EffectComplaint("  stiffness: {scale: 0.8}\n"), "");
+  EXPECT_THAT(EffectComplaint("  rust: {depth_m: 1}\n"), HasSubstr("'rust'"));
+  EXPECT_THAT(EffectComplaint("  stiffness: {factor: 1}\n"), HasSubstr("'factor'"));
+  EXPECT_THAT(EffectComplaint("  port_offset: {offset_m: [1, 2]}\n"), HasSubstr("2 numbers"));
+  EXPECT_THAT(EffectComplaint("  port_offset: {offset_m: a}\n"), HasSubstr("offset_m"));
+  EXPECT_THAT(EffectComplaint("  stiffness: {scale: -1}\n"), HasSubstr("not positive"));
+  EXPECT_THAT(EffectComplaint("  backlash: {width_m: -0.1}\n"), HasSubstr("negative"));
+  EXPECT_THAT(EffectComplaint("  backlash: {width_m: .nan}\n"), HasSubstr("width_m"));
+}
+
 TEST(Scenario, NamesAFileOfTheCameraThatIsMissing) {
   const fs::path file = fs::path(testing::TempDir()) / "scenario_camera_test.yaml";
   std::ofstream(file) << std::ifstream(kPress).rdbuf();  // its ../cameras is not there

@@ -1,0 +1,145 @@
+// flextip diagnose: what the simulation gets wrong, why, and what an extended model gains.
+#include "diagnosis/diagnose.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/closed_loop_gain.h"
+#include "apps/commands.h"
+#include "apps/output.h"
+#include "core/error.h"
+#include "diagnosis/catalogue.h"
+#include "diagnosis/extended_model.h"
+#include "recording/recording_reader.h"
+#include "recording/sensor_streams.h"
+#include "recording/text.h"
+#include "report/pages.h"
+
+namespace flextip {
+namespace {
+
+struct Options {
+  std::filesystem::path recording, tracked, out;
+  std::vector<std::string> without;
+  bool closed_loop = true, force = false;
+};
+
+Recording ReadInput(const Options& options, std::vector<std::string>& warnings) {
+  ReadResult read = ReadRecording(options.recording, {.check_frames = false});
+  warnings = read.warnings;
+  if (!options.tracked.empty()) {
+    ReadLog log;
+    read.recording.vision0 = ReadVision(options.tracked / "vision0", log);
+    warnings.insert(warnings.end(), log.warnings.begin(), log.warnings.end());
+  }
+  return std::move(read.recording);
+}
+
+nlohmann::json Deviations(double max_m, double rms_m) {
+  return {{"max_deviation_m", max_m}, {"rms_deviation_m", rms_m}};
+}
+
+nlohmann::json Compared(const ControllerGain& gain) {
+  return {{"controller", Name(gain.kind)},
+          {"before", Deviations(gain.base.max_m, gain.base.rms_m)},
+          {"after", Deviations(gain.extended.max_m, gain.extended.rms_m)}};
+}
+
+/// The controllers with and without what was found, on a plant that has it.
+void AddClosedLoop(const Recording& recording, const ExtendedModel& model, OutputFolder& output,
+                   nlohmann::ordered_json& json) {
+  for (const ControllerGain& gain : MeasureClosedLoopGain(recording, model).controllers) {
+    if (!gain.ran) {
+      output.Warn(fmt::format("closed loop: the simulated instrument lost its equilibrium under {}",
+                              Name(gain.kind)));
+      continue;
+    }
+    json["closed_loop_runs"] += nlohmann::ordered_json(Compared(gain));
+    if (gain.kind == ControllerKind::kRodTrack) json["closed_loop"] = Compared(gain);
+  }
+}
+
+bool IsKnown(const DiagnosisResult& result) {
+  return result.verdict != Verdict{"none"} && result.verdict != Verdict{"unknown"};
+}
+
+void PrintAnswer(const DiagnosisResult& result, const Options& options) {
+  fmt::print("{} ({:.0f} %)", Joined(result.verdict), 100 * result.probabilities[0].probability);
+  for (std::size_t i = 0; i < result.indistinguishable.size(); ++i) {
+    const auto& group = result.indistinguishable[i];
+    if (group.size() > 1)
+      fmt::print("; {} could as well be {}", group[0],
+                 fmt::join(group.begin() + 1, group.end(), " or "));
+  }
+  if (result.gain.measured)
+    fmt::print("; held-out error {:.2f} of the base's", result.gain.heldout_error_ratio);
+  fmt::print("\n");
+  if (!result.separating_motion.empty())
+    fmt::print("to tell them apart: {}\n", result.separating_motion);
+  fmt::print("{}\n", (options.out / "report.html").string());
+}
+
+void CheckNames(const std::vector<std::string>& effects) {
+  for (const std::string& name : effects)
+    if (!MakeEffect(name))
+      throw InputError(
+          fmt::format("--without {}: no effect of that name is in the catalogue", name));
+}
+
+void Run(const Options& options, bool quiet) {
+  CheckNames(options.without);
+  std::vector<std::string> warnings;
+  const Recording recording = ReadInput(options, warnings);
+  OutputFolder output(options.out, "diagnose",
+                      {.force = options.force, .inputs = {options.recording}});
+  output.Warn(warnings);
+  const DiagnosisResult result =
+      Diagnose(recording, options.recording.string(), {.without = options.without});
+  output.Warn(result.warnings);
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(DiagnosisJson(result));
+  const ExtendedModel model = FromResult(result);
+  if (options.closed_loop && IsKnown(result)) AddClosedLoop(recording, model, output, json);
+  WriteTextFile(output.folder() / "diagnosis.json", json.dump(2) + "\n");
+  WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result));
+  WriteModel(output.folder() / "model.yaml", model);
+  output.WriteSummary({{"verdicts", result.verdict},
+                       {"samples", result.samples},
+                       {"rounds", result.rounds},
+                       {"converged", result.converged}});
+  WriteDiagnoseReport(output.folder());
+  output.Commit();
+  if (!quiet) PrintAnswer(result, options);
+}
+
+}  // namespace
+
+void AddDiagnose(CLI::App& app, AppContext& context) {
+  auto* command = app.add_subcommand(
+      "diagnose", "What the simulation gets wrong, why, and what an extended model gains");
+  auto options = std::make_shared<Options>();
+  command->add_option("recording", options->recording, "Folder of the recording")
+      ->required()
+      ->type_name("RECORDING");
+  command->add_option("-o,--output", options->out, "Folder for the results")
+      ->required()
+      ->type_name("OUT");
+  command->add_option("--tracked", options->tracked,
+                      "Take the tip from this result of flextip track instead of vision0");
+  command
+      ->add_option("--without", options->without,
+                   "Effects to leave out of the catalogue (once for each)")
+      ->type_name("EFFECT");
+  command->add_flag("!--no-closed-loop", options->closed_loop,
+                    "Do not run the controllers with and without the model on a simulated plant "
+                    "that has what was found");
+  command->add_flag("--force", options->force, "Replace the folder of an earlier run");
+  command->footer("Example:\n  flextip diagnose recording -o diagnosis\n");
+  OnRun(*command, context, [options, &context] { Run(*options, context.quiet); });
+}
+
+}  // namespace flextip

@@ -1,0 +1,179 @@
+#include "bench/matrix_run.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "diagnosis/diagnose.h"
+#include "recording/recording_reader.h"
+
+namespace flextip {
+namespace {
+
+/// A folder that is gone when this is.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    static std::atomic<int> count{0};
+    path_ = std::filesystem::temp_directory_path() /
+            fmt::format("flextip_matrix_{}_{}", ::getpid(), count++);
+    std::filesystem::remove_all(path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& Path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+EffectNames Sorted(EffectNames names) {
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void SetLabel(const HiddenRecording& hidden, MatrixRecord& record) {
+  record.motion = Name(hidden.scene.motion_setup.kind);
+  record.load = Name(hidden.scene.load.kind);
+  record.attempt = hidden.attempt;
+  record.label = Sorted(hidden.label.present);
+  if (record.label.empty()) record.label = {"none"};
+  for (const std::string& form : OtherForms()) {
+    if (record.label == EffectNames{form}) {
+      record.form = form;
+      record.label = {"unknown"};
+    }
+  }
+}
+
+bool IsFinite(const MatrixRecord& r) {
+  double sum = r.p_verdict + r.p_truth + r.heldout_error_ratio + r.tip_error_ratio +
+               r.extended_weighted_rms + r.base_chi2_per_dof + r.extended_chi2_per_dof;
+  for (const auto& [names, probability] : r.probabilities) sum += probability;
+  for (const JudgedParameter& p : r.parameters) sum += p.truth + p.value + p.sd;
+  return std::isfinite(sum);
+}
+
+/// The label's numbers in the terms the diagnosis reports in.
+EffectParameters TruthOf(const HiddenRecording& hidden, const std::string& effect,
+                         const EffectFit& fit) {
+  EffectParameters truth = hidden.label.parameters.at(effect);
+  if (effect == "self_weight") {  // drawn beyond the nominal one
+    truth["mass_per_length_kg_m"][0] += hidden.recording.instrument.mass_per_length_kg_m;
+  }
+  if (effect == "port_motion") {  // -a with phase + pi is the same motion
+    const auto& value = fit.parameters.at(0).value;
+    auto& amplitude = truth["amplitude_m"];
+    double product = 0.0;
+    for (int i = 0; i < 3; ++i) product += amplitude[i] * value.at(i);
+    if (product < 0) {
+      for (double& a : amplitude) a = -a;
+      truth["phase_rad"][0] += std::numbers::pi;
+    }
+  }
+  return truth;
+}
+
+void JudgeParameters(const HiddenRecording& hidden, const DiagnosisResult& result,
+                     MatrixRecord& record) {
+  for (const EffectFit& fit : result.parameters) {
+    const auto& present = hidden.label.present;
+    if (std::find(present.begin(), present.end(), fit.effect) == present.end()) continue;
+    EffectParameters truth = TruthOf(hidden, fit.effect, fit);
+    for (const ReportedParameter& parameter : fit.parameters) {
+      if (!truth.contains(parameter.name)) continue;
+      const std::vector<double>& values = truth.at(parameter.name);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const double value = parameter.value.at(i);
+        double expected = values[i];
+        if (parameter.name == "phase_rad") {
+          expected = value + std::remainder(expected - value, 2.0 * std::numbers::pi);
+        }
+        record.parameters.push_back(
+            {fit.effect, parameter.name, static_cast<int>(i), expected, value, parameter.sd.at(i)});
+      }
+    }
+  }
+}
+
+void SetProbabilities(const DiagnosisResult& result, MatrixRecord& record) {
+  for (const HypothesisProbability& h : result.probabilities) {
+    const EffectNames names = Sorted(h.verdict);
+    if (record.probabilities.size() < 8) record.probabilities.emplace_back(names, h.probability);
+    if (names == record.verdict) record.p_verdict = h.probability;
+    if (names == record.label) record.p_truth = h.probability;
+  }
+  for (const Verdict& verdict : result.credible_set) {
+    record.truth_in_credible_set |= Sorted(verdict) == record.label;
+  }
+  record.credible_set_size = static_cast<int>(result.credible_set.size());
+}
+
+void SetResult(const DiagnosisResult& result, MatrixRecord& record) {
+  record.verdict = Sorted(result.verdict);
+  SetProbabilities(result, record);
+  record.indistinguishable = result.indistinguishable;
+  record.gain_measured = result.gain.measured;
+  record.heldout_error_ratio = result.gain.heldout_error_ratio;
+  record.tip_error_ratio = result.gain.tip_error_ratio;
+  record.extended_weighted_rms = result.extended.weighted_rms;
+  record.base_chi2_per_dof = result.base.chi2_per_dof;
+  record.extended_chi2_per_dof = result.extended.chi2_per_dof;
+  record.rounds = result.rounds;
+  record.converged = result.converged;
+  record.warnings = result.warnings;
+}
+
+MatrixRecord Judge(const Recording& recording, const HiddenRecording& hidden, MatrixRecord record) {
+  const std::string name = "recording";
+  DiagnoseOptions options;
+  if (!record.made.without.empty()) {
+    options.measure_gain = false;
+    const DiagnosisResult full = Diagnose(recording, name, options);
+    record.full_verdict = Sorted(full.verdict);
+    record.full_indistinguishable = full.indistinguishable;
+    options.without = {record.made.without};
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const DiagnosisResult result = Diagnose(recording, name, options);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  record.seconds = seconds.count();
+  if (!record.made.without.empty()) record.label = {"unknown"};
+  SetResult(result, record);
+  JudgeParameters(hidden, result, record);
+  if (!IsFinite(record)) throw WorkError("the result holds a number that is not finite");
+  return record;
+}
+
+}  // namespace
+
+MatrixRecord RunMatrixCase(const MatrixCase& one) {
+  MatrixRecord record;
+  record.made = one;
+  record.key = one.Key();
+  try {
+    const HiddenRecording hidden = MakeHidden(HiddenOptionsOf(one), one.seed);
+    SetLabel(hidden, record);
+    const TemporaryFolder folder;
+    WriteHidden(folder.Path(), hidden);
+    const Recording recording = ReadRecording(folder.Path()).recording;
+    record = Judge(recording, hidden, record);
+  } catch (const InputError& error) {
+    record.error = error.what();
+  } catch (const WorkError& error) {
+    record.error = error.what();
+  }
+  return record;
+}
+
+}  // namespace flextip

@@ -1,0 +1,44 @@
+// The matrix in figures: how often the diagnosis is right, how sure it is, how good its numbers.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/matrix_record.h"
+
+namespace flextip {
+
+/// One figure over a group of cases.
+struct MatrixFigure {
+  std::string figure, group;
+  double value = 0.0;
+  int of = 0;  ///< so many cases (or numbers) it is a figure of
+  std::string target;
+};
+
+/// In the order of printing; figures without cases are left out.
+std::vector<MatrixFigure> Figures(const std::vector<MatrixRecord>& records);
+
+std::string FigureTable(const std::vector<MatrixFigure>& figures);
+
+/// Cases in rows (what was hidden) and columns (what was answered).
+struct Confusion {
+  std::string title;
+  std::vector<std::string> rows, columns;
+  std::vector<std::vector<int>> counts;  ///< [row][column]
+  std::vector<int> right;                ///< the row's right column
+};
+
+/// One for each size, then for cases without a size (none, forms outside the catalogue).
+std::vector<Confusion> Confusions(const std::vector<MatrixRecord>& records);
+/// One for each sensor left out, then for effects left out of the catalogue.
+std::vector<Confusion> LeaveOutConfusions(const std::vector<MatrixRecord>& records);
+
+/// summary.json.
+std::string SummaryJson(const std::vector<MatrixFigure>& figures,
+                        const std::vector<Confusion>& confusions);
+
+/// misses.txt: each case whose verdict is not its label, with what makes its recording again.
+std::string Misses(const std::vector<MatrixRecord>& records);
+
+}  // namespace flextip

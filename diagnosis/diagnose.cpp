@@ -1,0 +1,170 @@
+#include "diagnosis/diagnose.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "diagnosis/ambiguity.h"
+#include "diagnosis/heldout.h"
+#include "diagnosis/probabilities.h"
+#include "diagnosis/signature.h"
+
+namespace flextip {
+namespace {
+
+/// What the stages work on. The layout refers to the samples, the replays to both.
+struct Work {
+  SampleSet samples;
+  ParameterLayout layout;
+  Replay base, extended;
+
+  Work(const Recording& recording, const std::string& name, const DiagnoseOptions& options)
+      : samples(MakeSampleSet(recording, name)),
+        layout(samples, MakeCatalogue(samples, options.without)),
+        base(samples, layout),
+        extended(samples, layout) {}
+};
+
+/// The base simulation, with the sensors' frames registered as well as the data allow.
+void ReplayBase(Work& work, const std::string& name) {
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(work.layout.Size());
+  if (!work.base.Settle(theta)) {
+    throw WorkError(fmt::format(
+        "{}: the nominal instrument has no equilibrium in {} of {} samples: check length, port and "
+        "load",
+        name, work.base.FailedSamples(), work.samples.samples.size()));
+  }
+  const bool uncertain = std::any_of(work.layout.Blocks().begin(), work.layout.Blocks().end(),
+                                     [](const auto& block) { return block.nuisance; });
+  for (int i = 0; uncertain && i < 3; ++i) {
+    theta = BaseParameters(MakeLinearProblem(work.base, {}, 1).total, work.layout);
+    work.base.Settle(theta);
+  }
+}
+
+Eigen::VectorXd ReportedValues(const ParameterLayout::Block& block, const Eigen::VectorXd& theta,
+                               const Eigen::MatrixXd& covariance) {
+  std::vector<double> values;
+  for (const auto& p : block.effect->Report(theta, covariance))
+    values.insert(values.end(), p.value.begin(), p.value.end());
+  return Eigen::Map<Eigen::VectorXd>(values.data(), Eigen::Index(values.size()));
+}
+
+/// Of the reported numbers of `blocks`, from that of the fitted ones by differences.
+Eigen::MatrixXd ReportedCovariance(const ParameterLayout& layout, const std::vector<int>& blocks,
+                                   const Eigen::VectorXd& theta,
+                                   const Eigen::MatrixXd& covariance) {
+  Eigen::MatrixXd J(0, theta.size());
+  for (const int b : blocks) {
+    const auto& block = layout.Blocks()[b];
+    const Eigen::VectorXd own = theta.segment(block.first, block.size);
+    const Eigen::MatrixXd C = covariance.block(block.first, block.first, block.size, block.size);
+    const auto rows = ReportedValues(block, own, C).size();
+    J.conservativeResize(J.rows() + rows, Eigen::NoChange);
+    J.bottomRows(rows).setZero();
+    for (int j = 0; j < block.size; ++j) {
+      const Eigen::VectorXd h = 1e-3 * std::sqrt(C(j, j)) * Eigen::VectorXd::Unit(block.size, j);
+      J.col(block.first + j).tail(rows) =
+          (ReportedValues(block, own + h, C) - ReportedValues(block, own - h, C)) / (2 * h[j]);
+    }
+  }
+  return J * covariance.topLeftCorner(theta.size(), theta.size()) * J.transpose();
+}
+
+/// The catalogue's best answer, whatever the verdict: what the extended model is made of.
+void DescribeParameters(const Work& work, const Selection& selection,
+                        const WeighedHypothesis& weighed, DiagnosisResult& result) {
+  const Evidence evidence(selection.problem.total, work.layout, selection.generic_sd,
+                          {.unknown_sd = {}});
+  const Eigen::MatrixXd covariance = evidence.Covariance(weighed);
+  const auto& theta = work.extended.Theta();
+  result.covariance =
+      ReportedCovariance(work.layout, weighed.hypothesis.effects, theta, covariance);
+  for (int b = 0; b < work.layout.EffectCount(); ++b) {
+    const auto& block = work.layout.Blocks()[b];
+    EffectFit fit{
+        block.effect->Name(),
+        block.effect->Report(theta.segment(block.first, block.size),
+                             covariance.block(block.first, block.first, block.size, block.size))};
+    const auto& present = weighed.hypothesis.effects;
+    const bool is_present = std::find(present.begin(), present.end(), b) != present.end();
+    (is_present ? result.parameters : result.within_tolerance).push_back(std::move(fit));
+  }
+}
+
+void DescribeAmbiguity(const Work& work, const Selection& selection,
+                       const WeighedHypothesis& weighed, DiagnosisResult& result) {
+  const Ambiguity ambiguity = FindAmbiguity(work.extended, work.layout, selection, weighed);
+  for (const auto& group : ambiguity.groups) {
+    std::vector<std::string> names;
+    names.reserve(group.size());
+    for (const int b : group) names.push_back(work.layout.Blocks()[b].effect->Name());
+    result.indistinguishable.push_back(names);
+  }
+  result.separating_motion = ambiguity.separating_motion;
+  result.separating_motion_score = ambiguity.separating_score;
+}
+
+void DescribeRecording(const Work& work, const Selection& selection, const Recording& recording,
+                       DiagnosisResult& result) {
+  result.samples = int(work.samples.samples.size());
+  result.failed_samples = work.extended.FailedSamples();
+  result.rounds = selection.rounds;
+  result.converged = selection.converged;
+  result.has_load = work.samples.has_load;
+  result.warnings = work.samples.warnings;
+  result.noise_scale = work.extended.NoiseScales();
+  result.centre_m = work.samples.centre;
+  result.start_ns = recording.wrist0->samples.front().t_ns;
+  for (int b = 0; b < work.layout.EffectCount(); ++b) {
+    const auto& block = work.layout.Blocks()[b];
+    result.catalogue.push_back(block.effect->Name());
+    const Eigen::VectorXd tolerance = work.layout.Tolerances().segment(block.first, block.size);
+    result.nominal.push_back(
+        {block.effect->Name(), block.effect->Report(Eigen::VectorXd::Zero(block.size),
+                                                    tolerance.cwiseAbs2().asDiagonal())});
+  }
+  const Rows sd = work.extended.RowNoise(work.samples.samples.size() / 2);
+  for (int c = 0; c < kChannelCount; ++c)
+    result.noise_sd[c] = std::sqrt(
+        sd.segment(kChannels[c].first_row, kChannels[c].rows).squaredNorm() / kChannels[c].rows);
+}
+
+}  // namespace
+
+std::string Joined(const Verdict& verdict) {
+  std::string joined;
+  for (const auto& name : verdict) joined += (joined.empty() ? "" : "+") + name;
+  return joined;
+}
+
+DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
+                         const DiagnoseOptions& options) {
+  DiagnosisResult result;
+  Work work(recording, name, options);
+  ReplayBase(work, name);
+  result.signatures = FindSignatures(work.base);
+  const SelectionOptions selection_options;
+  const Selection selection = Select(work.extended, work.layout, selection_options);
+  const Probabilities probabilities = MakeProbabilities(selection, work.layout, selection_options);
+  result.probabilities = probabilities.hypotheses;
+  result.presence = probabilities.presence;
+  result.credible_set = probabilities.credible_set;
+  result.verdict = probabilities.hypotheses.front().verdict;
+  const WeighedHypothesis& known = selection.BestKnown();
+  DescribeParameters(work, selection, known, result);
+  if (result.verdict != Verdict{"none"} && result.verdict != Verdict{"unknown"})
+    DescribeAmbiguity(work, selection, known, result);
+  work.base.SetNoiseScale(work.extended.NoiseScales());
+  if (options.measure_gain) {
+    const HeldOut heldout = MeasureHeldOut(work.base, work.extended, selection, known);
+    result.base = heldout.base;
+    result.extended = heldout.extended;
+    result.gain = heldout.gain;
+  }
+  result.residuals = MakeResidualTable(work.base, work.extended);
+  DescribeRecording(work, selection, recording, result);
+  return result;
+}
+
+}  // namespace flextip

@@ -1,0 +1,105 @@
+// The whole diagnosis of a recording: what the simulation gets wrong, why, what an extended model
+// gains. The main flow is Diagnose() in diagnose.cpp, one stage a line.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "diagnosis/effect.h"
+#include "recording/recording.h"
+
+namespace flextip {
+
+struct DiagnoseOptions {
+  std::vector<std::string> without;  ///< effects left out of the catalogue
+  bool measure_gain = true;          ///< fits on parts of the recording, judged on the rest
+};
+
+/// Effects together, in alphabetical order; {"none"} and {"unknown"} are answers too.
+using Verdict = std::vector<std::string>;
+/// "a" or "a+b".
+std::string Joined(const Verdict& verdict);
+
+struct HypothesisProbability {
+  Verdict verdict;
+  double probability = 0.0;
+  double log_evidence = 0.0;  ///< against none
+};
+
+struct EffectFit {
+  std::string effect;
+  std::vector<ReportedParameter> parameters;
+};
+
+/// Errors on parts of the recording that were not fitted; channels without measurements are left
+/// out. Root mean squares in the channel's unit, of a position's or direction's whole vector and of
+/// single gages.
+struct ModelScore {
+  std::map<std::string, double> heldout_rms;
+  double tip_prediction_rms_m = 0.0;  ///< of the tip (or EM sensor) from all other sensors
+  double weighted_rms = 0.0;          ///< of all channels, in standard deviations
+  double chi2_per_dof = 0.0;          ///< of the whole recording
+};
+
+struct Gain {
+  bool measured = false;
+  double heldout_error_ratio = 1.0;  ///< extended over base, weighted RMS
+  double tip_error_ratio = 1.0;
+  double heldout_error_ratio_low = 1.0, heldout_error_ratio_high = 1.0;  ///< 90 % interval
+};
+
+/// How strongly a channel's base residual depends on something: the score is in standard
+/// deviations of what chance gives.
+struct Signature {
+  std::string channel, against;
+  double score = 0.0;
+};
+
+/// For pictures: residuals of every sample in standard deviations of each channel's noise (what
+/// the tip's force explains taken out), with the base simulation and the extended model.
+struct ResidualTable {
+  std::vector<std::string> columns;  ///< names: t_s, regressors, base.CHANNEL.i, extended.CHANNEL.i
+  std::vector<std::vector<double>> rows;  ///< NaN-free; absent measurements are empty cells:
+  std::vector<std::vector<bool>> present;
+};
+
+struct DiagnosisResult {
+  Verdict verdict{"none"};
+  std::vector<HypothesisProbability> probabilities;         ///< most likely first, sum one
+  std::map<std::string, double> presence;                   ///< of each effect in whatever company
+  std::vector<Verdict> credible_set;                        ///< hypotheses that hold 90 %
+  std::vector<std::vector<std::string>> indistinguishable;  ///< one group for each verdict
+  std::string separating_motion;  ///< the motion that would tell a group apart; empty: none needed
+  double separating_motion_score = 0.0;
+  std::vector<EffectFit> parameters;        ///< of the verdict's effects
+  std::vector<EffectFit> within_tolerance;  ///< of all others, as far as the data moved them
+  Eigen::MatrixXd covariance;  ///< of the verdict's parameters as listed, all numbers in order
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< in R, which EM gradients are about
+  TimeNs start_ns = 0;                                 ///< when t = 0, for phases and drifts
+  ModelScore base, extended;
+  Gain gain;
+  std::vector<Signature> signatures;  ///< of the base residual, strongest first
+  ResidualTable residuals;
+  std::array<double, 7> noise_scale{};  ///< measured noise over the data sheet's, by channel
+  std::array<double, 7> noise_sd{};     ///< as taken, of one component, by channel
+  std::vector<EffectFit> nominal;       ///< of every effect: the base's values, sd the tolerances
+  int samples = 0, failed_samples = 0, rounds = 0;
+  bool converged = false, has_load = false;
+  std::vector<std::string> catalogue;  ///< effects that this recording could show
+  std::vector<std::string> warnings;
+};
+
+/// Throws InputError where nothing can be judged (sample_set.h); `name` is the recording's in
+/// messages.
+DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
+                         const DiagnoseOptions& options = {});
+
+/// diagnosis.json (docs/formats.md).
+std::string DiagnosisJson(const DiagnosisResult& result);
+/// residuals.csv: the ResidualTable.
+std::string ResidualsCsv(const DiagnosisResult& result);
+
+}  // namespace flextip

@@ -1,0 +1,28 @@
+#include "diagnosis/catalogue.h"
+
+namespace flextip {
+namespace {
+
+class EmLatency : public DirectEffect {
+ public:
+  std::string Name() const override { return "em_latency"; }
+  std::string Summary() const override { return "EM samples are stamped late"; }
+  bool Applies(const SampleSet& samples) const override {
+    return samples.has_em && samples.resolved_in_time;
+  }
+  std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
+    return WithTypical(ToleranceOf(samples, Name(), "delay_s", 0.003), 0.04);
+  }
+  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
+    change.Linear(0, model_input::kEmDelay, 1.0);
+  }
+
+ protected:
+  std::vector<Named> Names() const override { return {{"delay_s"}}; }
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> MakeEmLatency() { return std::make_unique<EmLatency>(); }
+
+}  // namespace flextip

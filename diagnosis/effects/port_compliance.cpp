@@ -1,0 +1,26 @@
+#include "diagnosis/catalogue.h"
+
+namespace flextip {
+namespace {
+
+class PortCompliance : public DirectEffect {
+ public:
+  std::string Name() const override { return "port_compliance"; }
+  std::string Summary() const override { return "the body wall yields under the port force"; }
+  bool Applies(const SampleSet&) const override { return true; }
+  std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
+    return Positive(WithTypical(ToleranceOf(samples, Name(), "compliance_m_N", 3e-05), 0.0008));
+  }
+  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
+    change.Linear(0, model_input::kPortCompliance, 1.0);
+  }
+
+ protected:
+  std::vector<Named> Names() const override { return {{"compliance_m_N"}}; }
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> MakePortCompliance() { return std::make_unique<PortCompliance>(); }
+
+}  // namespace flextip

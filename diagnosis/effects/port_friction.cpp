@@ -1,0 +1,46 @@
+#include <algorithm>
+
+#include "diagnosis/catalogue.h"
+
+namespace flextip {
+namespace {
+
+/// Coulomb friction that sticks. While it sticks the port stays at its place on the shaft: the
+/// ratio of axial to lateral force that holds it there follows from how the place depends on that
+/// ratio, and is cut off at the coefficient (a return mapping, exact as far as that dependence is
+/// linear).
+class PortFriction : public DirectEffect {
+ public:
+  std::string Name() const override { return "port_friction"; }
+  std::string Summary() const override { return "the shaft rubs in the port, and sticks"; }
+  bool Applies(const SampleSet&) const override { return true; }
+  std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
+    return Positive(WithTypical(ToleranceOf(samples, Name(), "coefficient", 0.03), 0.3));
+  }
+  void Apply(const double* theta, const Moment& now, EffectMemory& memory,
+             InputChange& change) const override {
+    if (now.ds_port_dfriction_m == 0.0) return;  // before the first replay
+    // Without friction yet, its direction is that of a moderate one.
+    const double coefficient = std::max(theta[0], kReference);
+    double& started = memory[0];
+    double& s_last_m = memory[1];
+    if (started == 0.0) s_last_m = now.s_port_free_m;
+    started = 1.0;
+    const double holding = (s_last_m - now.s_port_free_m) / now.ds_port_dfriction_m;
+    const double ratio = std::clamp(holding, -coefficient, coefficient);
+    s_last_m = now.s_port_free_m + now.ds_port_dfriction_m * ratio;
+    change.Linear(0, model_input::kPortFriction, ratio / coefficient);
+  }
+
+ protected:
+  std::vector<Named> Names() const override { return {{"coefficient"}}; }
+
+ private:
+  static constexpr double kReference = 0.1;
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> MakePortFriction() { return std::make_unique<PortFriction>(); }
+
+}  // namespace flextip

@@ -1,0 +1,195 @@
+#include "diagnosis/linear_problem.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace flextip {
+namespace {
+
+/// Adds one stretch of samples to `sums`. The generic columns are Kronecker products of the rows'
+/// units with the basis, so their sums are too.
+class BlockBuilder {
+ public:
+  BlockBuilder(const Replay& replay, const WhitenedRows& rows, const Eigen::MatrixXd& basis,
+               const std::vector<int>& row_place)
+      : theta_(replay.Theta()), rows_(rows), basis_(basis), row_place_(row_place) {}
+
+  NormalSums Build(std::size_t begin, std::size_t end, Eigen::Index size) const {
+    NormalSums sums(size);
+    const int first = rows_.first_row[begin], count = rows_.first_row[end] - first;
+    const auto P = rows_.X.cols();
+    if (count == 0) return sums;
+    const auto X = rows_.X.middleRows(first, count);
+    const Eigen::VectorXd z = rows_.e.segment(first, count) + X * theta_;
+    sums.H.topLeftCorner(P, P).noalias() = X.transpose() * X;
+    sums.g.head(P).noalias() = X.transpose() * z;
+    sums.c = z.squaredNorm();
+    sums.rows = count;
+    if (basis_.cols() > 0)
+      for (std::size_t k = begin; k < end; ++k) AddGeneric(k, z, first, sums);
+    return sums;
+  }
+
+ private:
+  void AddGeneric(std::size_t k, const Eigen::VectorXd& z, int first, NormalSums& sums) const {
+    const int n = rows_.Rows(k);
+    if (n == 0) return;
+    const auto P = rows_.X.cols(), J = basis_.cols();
+    const Eigen::RowVectorXd phi = basis_.row(Eigen::Index(k));
+    const Eigen::MatrixXd phi2 = phi.transpose() * phi;
+    const Eigen::MatrixXd& U = rows_.units[k];
+    const Eigen::MatrixXd UU = U.transpose() * U;
+    const Eigen::MatrixXd XU = rows_.X.middleRows(rows_.first_row[k], n).transpose() * U;
+    const Eigen::VectorXd Uz = U.transpose() * z.segment(rows_.first_row[k] - first, n);
+    for (int a = 0; a < n; ++a) {
+      const Eigen::Index at = P + row_place_[rows_.rows[k][a]] * J;
+      sums.g.segment(at, J) += Uz[a] * phi.transpose();
+      sums.H.block(0, at, P, J).noalias() += XU.col(a) * phi;
+      for (int b = a; b < n; ++b) {
+        const Eigen::Index bt = P + row_place_[rows_.rows[k][b]] * J;
+        sums.H.block(at, bt, J, J) += UU(a, b) * phi2;
+      }
+    }
+  }
+
+  const Eigen::VectorXd& theta_;
+  const WhitenedRows& rows_;
+  const Eigen::MatrixXd& basis_;
+  const std::vector<int>& row_place_;
+};
+
+void FillSizes(const Replay& replay, LinearProblem& problem) {
+  Rows residual = Rows::Zero(), signal = Rows::Zero(), count = Rows::Zero();
+  const auto free = replay.ForceFreeResiduals();
+  const Eigen::VectorXd& theta = replay.Theta();
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const ReplayedSample& sample = replay.Samples()[k];
+    if (!sample.ok) continue;
+    const Rows sd = replay.RowNoise(k);
+    Rows moved = Rows::Zero();
+    for (const auto& column : sample.columns)
+      moved += column.value * theta[column.parameter] * sample.compared.by_inputs.col(column.input);
+    for (int r = 0; r < row::kCount; ++r) {
+      if (!replay.Set().samples[k].present[r] || sd[r] <= 0.0) continue;
+      residual[r] += std::pow(free[k][r] / sd[r], 2);
+      signal[r] += std::pow(moved[r] / sd[r], 2);
+      count[r] += 1.0;
+    }
+  }
+  for (int r = 0; r < row::kCount; ++r) {
+    if (count[r] == 0.0) continue;
+    problem.residual_size[r] = std::sqrt(residual[r] / count[r]);
+    problem.signal_size[r] = std::sqrt(signal[r] / count[r]);
+  }
+}
+
+constexpr std::size_t kVolumeSamples = 100;
+
+/// A compliance: it scales how much the force shows in the sensors.
+bool ChangesFeeling(const Replay& replay, int parameter) {
+  using namespace model_input;
+  for (const auto& column : replay.Samples()[replay.Samples().size() / 2].columns) {
+    const int input = column.input;
+    const bool scales =
+        input == kTipCompliance || input == kPortCompliance || input == kWristCompliance;
+    if (column.parameter == parameter && scales) return true;
+  }
+  return false;
+}
+
+/// Sum over samples of log |C|.
+double LogVolume(const Replay& replay) {
+  const WhitenedRows rows = replay.Whiten();
+  double sum = 0.0;
+  for (std::size_t k = 0; k < rows.rows.size(); ++k)
+    if (rows.Rows(k) > 0) sum -= 2.0 * rows.units[k].diagonal().array().log().sum();
+  return sum;
+}
+
+/// Every so many of the samples.
+SampleSet Thinned(const SampleSet& samples, std::size_t stride) {
+  SampleSet thin = samples;
+  thin.samples.clear();
+  for (std::size_t k = 0; k < samples.samples.size(); k += stride)
+    thin.samples.push_back(samples.samples[k]);
+  thin.resolved_in_time = false;  // rates do not matter here
+  return thin;
+}
+
+}  // namespace
+
+void AddForceVolume(const Replay& replay, LinearProblem& problem) {
+  if (replay.Set().has_load) return;
+  const std::size_t stride = std::max<std::size_t>(1, replay.Samples().size() / kVolumeSamples);
+  const SampleSet samples = Thinned(replay.Set(), stride);
+  const ParameterLayout& layout = replay.Layout();
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(problem.Size());
+  std::vector<Eigen::Vector3d> forces;
+  for (std::size_t k = 0; k < replay.Samples().size(); k += stride)
+    forces.push_back(replay.Samples()[k].f_tip_N);
+  Replay thin(samples, layout);
+  thin.TakeSettings(replay);
+  thin.SetForces(forces);
+  if (!thin.EvaluateWithForces(replay.Theta())) return;
+  const double here = LogVolume(thin);
+  for (const auto& block : layout.Blocks()) {
+    for (int j = block.first; j < block.first + block.size; ++j) {
+      if (!ChangesFeeling(replay, j)) continue;
+      const double step = 0.3 * layout.Tolerances()[j];
+      Eigen::VectorXd theta = replay.Theta();
+      theta[j] += step;
+      if (thin.EvaluateWithForces(theta))
+        slope[j] = (LogVolume(thin) - here) / step * double(stride);
+    }
+  }
+  for (NormalSums& block : problem.blocks)
+    block.volume = slope * (double(block.rows) / double(problem.total.rows));
+  problem.total.volume = slope;
+}
+
+void NormalSums::Add(const NormalSums& other, double weight) {
+  H += weight * other.H;
+  g += weight * other.g;
+  volume += weight * other.volume;
+  c += weight * other.c;
+  rows += std::lround(weight * double(other.rows));
+}
+
+LinearProblem MakeLinearProblem(const Replay& replay, const Eigen::MatrixXd& basis, int blocks) {
+  const WhitenedRows rows = replay.Whiten();
+  LinearProblem problem;
+  problem.parameters = int(rows.X.cols());
+  std::vector<int> row_place(row::kCount, -1);
+  std::vector<int> used;
+  for (const auto& of_sample : rows.rows)
+    for (const int r : of_sample)
+      if (row_place[r] < 0) row_place[r] = 0;
+  for (int r = 0; r < row::kCount; ++r) {
+    if (row_place[r] < 0 || basis.cols() == 0) continue;
+    row_place[r] = int(used.size());
+    used.push_back(r);
+    for (Eigen::Index j = 0; j < basis.cols(); ++j) problem.generic_row.push_back(r);
+  }
+  problem.blocks.resize(blocks);
+  const std::size_t n = replay.Samples().size();
+  const BlockBuilder builder(replay, rows, basis, row_place);
+  tbb::parallel_for(0, blocks, [&](int b) {
+    problem.blocks[b] = builder.Build(n * b / blocks, n * (b + 1) / blocks, problem.Size());
+  });
+  problem.total = NormalSums(problem.Size());
+  for (const NormalSums& block : problem.blocks) problem.total.Add(block);
+  FillSizes(replay, problem);
+  // Only upper halves were summed.
+  for (NormalSums* sums : {&problem.total}) {
+    sums->H.triangularView<Eigen::StrictlyLower>() =
+        sums->H.transpose().triangularView<Eigen::StrictlyLower>();
+  }
+  for (NormalSums& sums : problem.blocks)
+    sums.H.triangularView<Eigen::StrictlyLower>() =
+        sums.H.transpose().triangularView<Eigen::StrictlyLower>();
+  return problem;
+}
+
+}  // namespace flextip

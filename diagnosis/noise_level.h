@@ -1,0 +1,16 @@
+// How much noise there really is, from differences of neighbouring residuals: what a slow misfit
+// leaves untouched.
+#pragma once
+
+#include <array>
+
+#include "diagnosis/replay.h"
+
+namespace flextip {
+
+/// Factors on the data sheets' standard deviations, at least one, by channel: noise that is larger,
+/// and noise that remembers (AR(1) with coefficient phi), which tells a slow pattern from chance as
+/// noise sqrt((1 + phi) / (1 - phi)) times as large would.
+std::array<double, kChannelCount> NoiseScale(const Replay& replay);
+
+}  // namespace flextip

@@ -1,0 +1,89 @@
+#include "diagnosis/probabilities.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace flextip {
+namespace {
+
+/// Sums over as many blocks as there are, drawn with replacement.
+NormalSums DrawBag(const LinearProblem& problem, std::mt19937_64& rng) {
+  const auto n = problem.blocks.size();
+  std::vector<int> count(n, 0);
+  for (std::size_t i = 0; i < n; ++i)
+    ++count[std::uniform_int_distribution<std::size_t>(0, n - 1)(rng)];
+  NormalSums sums(problem.Size());
+  for (std::size_t b = 0; b < n; ++b)
+    if (count[b] > 0) sums.Add(problem.blocks[b], count[b]);
+  return sums;
+}
+
+std::vector<double> Softmax(const std::vector<ScoredHypothesis>& scored, double temperature) {
+  std::vector<double> p;
+  const double largest = scored.front().log_posterior;
+  double sum = 0.0;
+  for (const auto& s : scored) p.push_back(std::exp((s.log_posterior - largest) / temperature));
+  for (const double value : p) sum += value;
+  for (double& value : p) value /= sum;
+  return p;
+}
+
+void FillCredibleSet(double credible, Probabilities& result) {
+  double sum = 0.0;
+  for (const auto& h : result.hypotheses) {
+    result.credible_set.push_back(h.verdict);
+    sum += h.probability;
+    if (sum >= credible) return;
+  }
+}
+
+}  // namespace
+
+Verdict VerdictOf(const Hypothesis& hypothesis, const ParameterLayout& layout) {
+  if (hypothesis.unknown) return {"unknown"};
+  if (hypothesis.effects.empty()) return {"none"};
+  Verdict verdict;
+  for (const int b : hypothesis.effects) verdict.push_back(layout.Blocks()[b].effect->Name());
+  std::sort(verdict.begin(), verdict.end());
+  return verdict;
+}
+
+Probabilities MakeProbabilities(const Selection& selection, const ParameterLayout& layout,
+                                const SelectionOptions& selection_options,
+                                const ProbabilityOptions& options) {
+  std::map<Verdict, double> probability, evidence;
+  const auto add = [&](const std::vector<ScoredHypothesis>& scored, double weight) {
+    const auto p = Softmax(scored, options.temperature);
+    for (std::size_t i = 0; i < scored.size(); ++i) {
+      const Verdict verdict = VerdictOf(scored[i].weighed.hypothesis, layout);
+      probability[verdict] += weight * p[i];
+      evidence.try_emplace(verdict, scored[i].weighed.log_evidence);
+    }
+  };
+  // The whole recording counts as much as all bags together.
+  add(selection.scored, options.bags > 0 ? 0.5 : 1.0);
+  std::vector<Hypothesis> leaders;
+  for (const auto& s : selection.scored)
+    if (int(leaders.size()) < options.leaders || s.weighed.hypothesis.effects.empty())
+      leaders.push_back(s.weighed.hypothesis);
+  std::mt19937_64 rng(options.seed);
+  for (int bag = 0; bag < options.bags; ++bag) {
+    const NormalSums sums = DrawBag(selection.problem, rng);
+    add(ScoreSome(sums, layout, selection.generic_sd, leaders, selection_options,
+                  {.scales = {0.3, 1.0, 3.0}, .unknown_sd = {0.3, 1.0}}),
+        0.5 / options.bags);
+  }
+  Probabilities result;
+  for (const auto& [verdict, p] : probability) {
+    result.hypotheses.push_back({verdict, p, evidence[verdict]});
+    if (verdict != Verdict{"none"} && verdict != Verdict{"unknown"})
+      for (const auto& name : verdict) result.presence[name] += p;
+  }
+  std::stable_sort(result.hypotheses.begin(), result.hypotheses.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  FillCredibleSet(options.credible, result);
+  return result;
+}
+
+}  // namespace flextip

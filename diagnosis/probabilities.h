@@ -1,0 +1,31 @@
+// From evidence to probabilities that mean what they say.
+#pragma once
+
+#include "diagnosis/diagnose.h"
+#include "diagnosis/selection.h"
+
+namespace flextip {
+
+struct ProbabilityOptions {
+  int bags = 8;              ///< resamplings of the blocks of time
+  int leaders = 30;          ///< hypotheses that take part in them
+  double temperature = 1.0;  ///< log odds are divided by this; from recordings made for tuning
+  double credible = 0.9;
+  std::uint64_t seed = 1;
+};
+
+struct Probabilities {
+  std::vector<HypothesisProbability> hypotheses;  ///< most likely first, the unknown as one
+  std::map<std::string, double> presence;
+  std::vector<Verdict> credible_set;
+};
+
+/// Averages over bags of blocks of time: what hangs on a few seconds of the recording counts less.
+Probabilities MakeProbabilities(const Selection& selection, const ParameterLayout& layout,
+                                const SelectionOptions& selection_options,
+                                const ProbabilityOptions& options = {});
+
+/// The names of a hypothesis' effects, sorted; none and unknown by those names.
+Verdict VerdictOf(const Hypothesis& hypothesis, const ParameterLayout& layout);
+
+}  // namespace flextip

@@ -1,0 +1,124 @@
+// The replay: what the model with given parameters predicts for every sample of a recording, what
+// is left of the measurements, and how that depends on the parameters.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <bitset>
+#include <vector>
+
+#include "diagnosis/parameter_layout.h"
+#include "diagnosis/retiming.h"
+#include "diagnosis/sensor_model.h"
+
+namespace flextip {
+
+/// One sample after a replay.
+struct ReplayedSample {
+  bool ok = false;  ///< the rod has an equilibrium
+  SolvedSample solved;
+  ModelInputs inputs = ModelInputs::Zero();
+  std::vector<InputChange::Column> columns;  ///< of the inputs, by parameter
+  Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
+  DiagnosisSample measured;  ///< what the sensors say of this time, latency taken off
+  SampleResidual compared;
+  double force_merit = 0.0;  ///< squared residual that an unknown force was fitted to
+};
+
+/// All samples' residuals with unit covariance, and their derivatives: measured - predicted =
+/// e - X dtheta + noise. What wrist noise and the tip's force (unknown, or known with noise) may
+/// explain is projected out by the covariance: variable projection with a prior.
+struct WhitenedRows {
+  Eigen::VectorXd e;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> X;
+  std::vector<int> first_row;          ///< of each sample, and one past the last: samples + 1
+  std::vector<std::vector<int>> rows;  ///< of each sample: which measured rows these are
+  /// Of each sample: what an error of one standard deviation in each measured row becomes.
+  std::vector<Eigen::MatrixXd> units;
+
+  int Rows(std::size_t k) const { return first_row[k + 1] - first_row[k]; }
+};
+
+class Replay {
+ public:
+  /// Both must outlive the replay.
+  Replay(const SampleSet& samples, const ParameterLayout& layout);
+
+  /// Predicts all samples with parameters `theta`. Unknown tip forces are fitted sample by sample,
+  /// from where they were. False where more than a tenth of the samples have no equilibrium.
+  bool Evaluate(const Eigen::VectorXd& theta);
+  /// The same with the forces left as they are.
+  bool EvaluateWithForces(const Eigen::VectorXd& theta);
+
+  /// Evaluate twice: what hangs on neighbouring samples (latency, history) is then that of `theta`.
+  bool Settle(const Eigen::VectorXd& theta);
+
+  /// Moves unknown tip forces to where they will be, to first order, when the parameters move by
+  /// `dtheta`.
+  void PredictForces(const Eigen::VectorXd& dtheta);
+
+  /// The tip forces the replay stands on, and back to others.
+  std::vector<Eigen::Vector3d> Forces() const;
+  void SetForces(const std::vector<Eigen::Vector3d>& forces_N);
+
+  /// Sets how wide the prior of an unknown force along the shaft is from how large the forces
+  /// across it are.
+  void AdaptForcePrior();
+
+  /// `sensors_used`: rows of absent sensors are left out, besides the absent ones.
+  WhitenedRows Whiten(const std::bitset<row::kCount>& rows_used = AllRows()) const;
+
+  /// Per sample: the residual less what an unknown tip force explains, unwhitened; absent rows
+  /// zero. With `hidden` rows, the force is found without them: their residual is a prediction
+  /// error. `dtheta` moves the parameters, to first order; empty: not.
+  std::vector<Rows> ForceFreeResiduals(const std::bitset<row::kCount>& hidden = {},
+                                       const Eigen::VectorXd& dtheta = {}) const;
+
+  const Eigen::VectorXd& Theta() const { return theta_; }
+  const std::vector<ReplayedSample>& Samples() const { return replayed_; }
+  const SampleSet& Set() const { return samples_; }
+  const ParameterLayout& Layout() const { return layout_; }
+  int FailedSamples() const { return failed_; }
+  /// Factors on the data sheets' noise, by channel; at least one.
+  void SetNoiseScale(const std::array<double, kChannelCount>& scale) { noise_scale_ = scale; }
+  const std::array<double, kChannelCount>& NoiseScales() const { return noise_scale_; }
+  /// Noise factors and the width of the force's prior, as another replay of the same recording has
+  /// them.
+  void TakeSettings(const Replay& other);
+
+  /// Standard deviation of each row's own noise in sample `k` (the diagonal).
+  Rows RowNoise(std::size_t k) const;
+
+  static std::bitset<row::kCount> AllRows() { return std::bitset<row::kCount>().set(); }
+
+ private:
+  struct Statistics;  // covariance of a sample's rows and what the force has to do with them
+
+  bool Finish();
+  void ApplyEffects(const Eigen::VectorXd& theta);
+  void SolveRods();
+  void Retime();
+  void FitForces();
+  void FitForce(std::size_t k, EffectRodSolver& solver);
+  bool TryForce(std::size_t k, const Eigen::Vector3d& f_N, EffectRodSolver& solver);
+  void CompareSamples();
+  TimedGeometry WithRate(std::size_t k) const;
+  double ForceUnit(std::size_t k) const;
+  Eigen::Matrix3d ForcePrior(std::size_t k) const;
+  double ByInput(std::size_t k, int r, int input) const;
+  Eigen::MatrixXd OwnCovariance(std::size_t k, const std::vector<int>& rows) const;
+  Statistics StatisticsOf(std::size_t k, const std::bitset<row::kCount>& rows_used) const;
+  Eigen::MatrixXd Derivatives(std::size_t k, const std::vector<int>& rows) const;
+
+  const SampleSet& samples_;
+  const ParameterLayout& layout_;
+  Retiming retiming_;
+  double force_unit_N_;
+  Eigen::VectorXd theta_;
+  std::vector<ReplayedSample> replayed_;
+  std::array<double, kChannelCount> noise_scale_;
+  double along_prior_;  // of an unknown force along the shaft, in units of EI / L^2
+  int failed_ = 0;
+};
+
+}  // namespace flextip

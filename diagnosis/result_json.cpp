@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "diagnosis/catalogue.h"
+#include "diagnosis/diagnose.h"
+#include "diagnosis/model_input.h"
+
+namespace flextip {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A number, or a list where there are several.
+Json Value(const std::vector<double>& values) {
+  return values.size() == 1 ? Json(values[0]) : Json(values);
+}
+
+Json Fits(const std::vector<EffectFit>& fits) {
+  Json json = Json::object();
+  for (const EffectFit& fit : fits)
+    for (const ReportedParameter& p : fit.parameters)
+      json[fit.effect][p.name] = {{"value", Value(p.value)}, {"sd", Value(p.sd)}};
+  return json;
+}
+
+Json Score(const ModelScore& score) {
+  return {{"heldout_rms", score.heldout_rms},
+          {"tip_prediction_rms_m", score.tip_prediction_rms_m},
+          {"weighted_rms", score.weighted_rms},
+          {"chi2_per_dof", score.chi2_per_dof}};
+}
+
+/// Hypotheses that could matter to anybody, and always none and unknown.
+Json ProbabilitiesOf(const DiagnosisResult& result) {
+  Json json = Json::object();
+  for (const auto& h : result.probabilities) {
+    const bool always = h.verdict.size() == 1;
+    if (always || h.probability > 1e-4) json[Joined(h.verdict)] = h.probability;
+  }
+  return json;
+}
+
+Json Signatures(const std::vector<Signature>& signatures) {
+  Json json = Json::array();
+  for (const Signature& s : signatures)
+    json.push_back({{"channel", s.channel}, {"against", s.against}, {"score", s.score}});
+  return json;
+}
+
+/// A number for each channel that was measured.
+Json ByChannel(const DiagnosisResult& result, const std::array<double, kChannelCount>& values) {
+  Json json = Json::object();
+  for (int c = 0; c < kChannelCount; ++c) {
+    const bool measured = result.base.heldout_rms.contains(kChannels[c].name);
+    if (measured) json[kChannels[c].name] = values[c];
+  }
+  return json;
+}
+
+/// Of the base simulation: its parameters' values, or their tolerances.
+Json Nominal(const DiagnosisResult& result, bool tolerances) {
+  Json json = Json::object();
+  for (const EffectFit& fit : result.nominal)
+    for (const ReportedParameter& p : fit.parameters)
+      json[fit.effect][p.name] = Value(tolerances ? p.sd : p.value);
+  return json;
+}
+
+Json Summaries(const DiagnosisResult& result) {
+  Json json = Json::object();
+  for (const auto& name : result.catalogue) json[name] = MakeEffect(name)->Summary();
+  return json;
+}
+
+}  // namespace
+
+std::string DiagnosisJson(const DiagnosisResult& result) {
+  const bool known = result.verdict != Verdict{"none"} && result.verdict != Verdict{"unknown"};
+  Json json;
+  json["verdict"] = result.verdict.front();
+  json["verdicts"] = result.verdict;
+  json["probabilities"] = ProbabilitiesOf(result);
+  json["presence"] = result.presence;
+  json["credible_set_90"] = result.credible_set;
+  json["indistinguishable"] = result.indistinguishable;
+  json["separating_motion"] = result.separating_motion;
+  json["parameters"] = known ? Fits(result.parameters) : Json::object();
+  json["within_tolerance"] = Fits(result.within_tolerance);
+  json["base"] = Score(result.base);
+  json["extended"] = Score(result.extended);
+  if (result.gain.measured)
+    json["gain"] = {{"heldout_error_ratio", result.gain.heldout_error_ratio},
+                    {"heldout_error_ratio_interval",
+                     {result.gain.heldout_error_ratio_low, result.gain.heldout_error_ratio_high}},
+                    {"tip_error_ratio", result.gain.tip_error_ratio}};
+  json["residual_signature"] = Signatures(result.signatures);
+  json["noise_scale"] = ByChannel(result, result.noise_scale);
+  json["noise_sd"] = ByChannel(result, result.noise_sd);
+  json["nominals"] = Nominal(result, false);
+  json["tolerances"] = Nominal(result, true);
+  json["catalogue"] = result.catalogue;
+  json["summaries"] = Summaries(result);
+  json["samples"] = result.samples;
+  json["failed_samples"] = result.failed_samples;
+  json["rounds"] = result.rounds;
+  json["converged"] = result.converged;
+  json["has_load"] = result.has_load;
+  json["warnings"] = result.warnings;
+  return json.dump(2) + "\n";
+}
+
+std::string ResidualsCsv(const DiagnosisResult& result) {
+  std::string text = "#";
+  for (std::size_t c = 0; c < result.residuals.columns.size(); ++c)
+    text += (c > 0 ? "," : "") + result.residuals.columns[c];
+  text += "\n";
+  for (std::size_t k = 0; k < result.residuals.rows.size(); ++k) {
+    for (std::size_t c = 0; c < result.residuals.columns.size(); ++c) {
+      if (c > 0) text += ",";
+      if (result.residuals.present[k][c])
+        text += fmt::format("{:.6g}", result.residuals.rows[k][c]);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace flextip

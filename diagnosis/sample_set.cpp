@@ -1,0 +1,334 @@
+#include "diagnosis/sample_set.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/rotation.h"
+#include "diagnosis/smoothing.h"
+
+namespace flextip {
+namespace {
+
+constexpr int kMinSamples = 40;
+constexpr double kMaxRate_hz = 60.0;
+constexpr double kMinResolvedRate_hz = 5.0;
+constexpr double kLongestDelay_s = 0.25;
+
+/// The wrist's samples, thinned where they come faster than the diagnosis needs.
+std::vector<Sample<WristSample>> WristSamples(const WristStream& stream) {
+  const auto& all = stream.samples;
+  if (all.size() < 2) return all;
+  const double span_s = double(all.back().t_ns - all.front().t_ns) * 1e-9;
+  const double rate_hz = double(all.size() - 1) / span_s;
+  const auto stride = std::size_t(std::max(1.0, std::floor(rate_hz / (0.8 * kMaxRate_hz))));
+  std::vector<Sample<WristSample>> kept;
+  for (std::size_t i = 0; i < all.size(); i += stride) kept.push_back(all[i]);
+  return kept;
+}
+
+/// For each of `times` the index of the stream's sample nearest to it, within half a period; -1 for
+/// none. A sample belongs to one time only.
+template <class T>
+std::vector<long> Nearest(const Series<T>& series, const std::vector<TimeNs>& times,
+                          TimeNs half_period_ns) {
+  std::vector<long> nearest(times.size(), -1);
+  for (std::size_t j = 0; j < series.size(); ++j) {
+    const TimeNs t = series[j].t_ns;
+    const auto after = std::lower_bound(times.begin(), times.end(), t);
+    auto k = std::size_t(after - times.begin());
+    if (k == times.size() || (k > 0 && t - times[k - 1] < times[k] - t)) --k;
+    const TimeNs distance = std::abs(t - times[k]);
+    if (distance > half_period_ns) continue;
+    const long other = nearest[k];
+    if (other < 0 || distance < std::abs(series[other].t_ns - times[k])) nearest[k] = long(j);
+  }
+  return nearest;
+}
+
+/// Whether a value ever changes.
+template <class T, class Get>
+bool IsDead(const Series<T>& series, Get get) {
+  if (series.size() < 2) return false;
+  const auto first = get(series.front().value);
+  return std::all_of(series.begin(), series.end(),
+                     [&](const auto& s) { return get(s.value) == first; });
+}
+
+class Builder {
+ public:
+  Builder(const Recording& recording, std::string name) : recording_(recording), name_(name) {}
+
+  SampleSet Build() {
+    if (!recording_.wrist0) {
+      throw InputError(name_ + ": no wrist0, without which nothing can be replayed");
+    }
+    CopyConstants();
+    AddWrist();
+    AddEm();
+    AddStrain();
+    AddVision();
+    AddLoad();
+    DropEnd();
+    FindCentre();
+    CheckRedundancy();
+    return std::move(set_);
+  }
+
+ private:
+  void Warn(const std::string& text) { set_.warnings.push_back(text); }
+
+  void CopyConstants() {
+    set_.instrument = recording_.instrument;
+    set_.p_RP = recording_.p_RP;
+    set_.gravity_m_s2 = recording_.gravity_m_s2;
+    set_.tolerances = recording_.tolerances;
+    if (recording_.cam0) {
+      set_.has_camera = true;
+      set_.T_RC = recording_.cam0->calibration.T_RC;
+    }
+  }
+
+  void AddWrist() {
+    const WristStream& stream = *recording_.wrist0;
+    const auto kept = WristSamples(stream);
+    if (int(kept.size()) < kMinSamples) {
+      throw InputError(fmt::format("{}: {} samples of the wrist, at least {} are needed to judge",
+                                   name_, kept.size(), kMinSamples));
+    }
+    std::vector<double> t_s;
+    std::vector<Eigen::Vector3d> p_RW;
+    for (const auto& sample : kept) {
+      times_.push_back(sample.t_ns);
+      t_s.push_back(double(sample.t_ns - kept.front().t_ns) * 1e-9);
+      p_RW.push_back(sample.value.p_RW);
+    }
+    std::vector<double> periods;
+    for (std::size_t k = 1; k < t_s.size(); ++k) periods.push_back(t_s[k] - t_s[k - 1]);
+    std::nth_element(periods.begin(), periods.begin() + periods.size() / 2, periods.end());
+    set_.period_s = periods[periods.size() / 2];
+    set_.resolved_in_time = set_.period_s * kMinResolvedRate_hz < 1.0;
+    set_.noise.wrist_position_m = stream.position_noise_m;
+    set_.noise.wrist_direction_rad = stream.orientation_noise_rad;
+    Smoothed smoothed{p_RW, std::vector<double>(p_RW.size(), stream.position_noise_m)};
+    if (set_.resolved_in_time) smoothed = Smooth(t_s, p_RW, stream.position_noise_m);
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      DiagnosisSample sample;
+      sample.t_s = t_s[k];
+      sample.p_RW = smoothed.value[k];
+      // Smoothing takes out fast noise only: against slow patterns there is as much as before.
+      sample.p_RW_noise_m = stream.position_noise_m;
+      AddWristOrientation(kept[k].value, sample);
+      set_.samples.push_back(sample);
+    }
+  }
+
+  void AddWristOrientation(const WristSample& wrist, DiagnosisSample& sample) {
+    Eigen::Matrix3d R_RW = Eigen::Matrix3d::Identity();
+    if (wrist.q_RW) {
+      R_RW = wrist.q_RW->toRotationMatrix();
+      if (set_.noise.wrist_direction_rad > 0.0) {
+        sample.d_wrist = R_RW.col(0);
+        SetPresent(sample, row::kWristDirection, 2);
+        set_.has_wrist_direction = true;
+      }
+    } else {  // the axes of R, turned without twist toward the port
+      const Eigen::Vector3d to_port = (set_.p_RP - wrist.p_RW).normalized();
+      R_RW = RotationWithoutTwist(Eigen::Vector3d::UnitX(), to_port);
+    }
+    sample.y_wrist = R_RW.col(1);
+  }
+
+  void AddEm() {
+    if (recording_.em0 && !recording_.em0->samples.empty()) AddTipEm(*recording_.em0);
+    if (recording_.em1 && !recording_.em1->samples.empty()) AddPortEm(*recording_.em1);
+  }
+
+  void AddTipEm(const EmStream& em) {
+    if (IsDead(em.samples, [](const EmSample& s) { return s.p_RS; })) {
+      return Warn("em0 always says the same: left out");
+    }
+    set_.has_em = true;
+    set_.em_from_tip_m = em.distance_from_tip_m;
+    set_.noise.em_position_m = em.position_noise_m;
+    set_.noise.em_direction_rad = em.orientation_noise_rad;
+    set_.noise.em_registration_m = em.registration_noise_m;
+    set_.noise.em_registration_rad = em.registration_noise_rad;
+    const auto nearest = Nearest(em.samples, times_, HalfPeriod());
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      if (nearest[k] < 0) continue;
+      DiagnosisSample& sample = set_.samples[k];
+      const auto& from = em.samples[nearest[k]];
+      sample.dt_em_s = double(from.t_ns - times_[k]) * 1e-9;
+      sample.p_RS = from.value.p_RS;
+      sample.d_em = from.value.q_RS * Eigen::Vector3d::UnitX();
+      if (em.position_noise_m > 0.0) SetPresent(sample, row::kEmPosition, 3);
+      if (em.orientation_noise_rad > 0.0) SetPresent(sample, row::kEmDirection, 2);
+    }
+  }
+
+  void AddPortEm(const EmStream& em) {
+    if (IsDead(em.samples, [](const EmSample& s) { return s.q_RS.coeffs(); })) {
+      return Warn("em1 always says the same: left out");
+    }
+    if (em.orientation_noise_rad <= 0.0) return;
+    set_.has_port_direction = true;
+    set_.noise.port_direction_rad = em.orientation_noise_rad;
+    const auto nearest = Nearest(em.samples, times_, HalfPeriod());
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      if (nearest[k] < 0) continue;
+      DiagnosisSample& sample = set_.samples[k];
+      const auto& from = em.samples[nearest[k]];
+      sample.dt_port_s = double(from.t_ns - times_[k]) * 1e-9;
+      sample.d_port = from.value.q_RS * Eigen::Vector3d::UnitX();
+      SetPresent(sample, row::kPortDirection, 2);
+    }
+  }
+
+  void AddStrain() {
+    if (!recording_.strain0 || recording_.strain0->moments_Nm.empty()) return;
+    const StrainStream& strain = *recording_.strain0;
+    if (strain.moment_noise_Nm <= 0.0) return Warn("strain0 states no noise: left out");
+    std::bitset<4> dead;
+    for (int i = 0; i < 4; ++i)
+      dead[i] = IsDead(strain.moments_Nm, [i](const Eigen::Vector4d& m) { return m[i]; });
+    if (dead.any()) {
+      Warn(fmt::format("strain0: {} of 4 gages always say the same: left out", dead.count()));
+    }
+    if (dead.all()) return;
+    set_.has_strain = true;
+    set_.noise.moment_Nm = strain.moment_noise_Nm;
+    set_.strain_from_wrist_m = {strain.station_from_wrist_m[0], strain.station_from_wrist_m[1]};
+    const auto nearest = Nearest(strain.moments_Nm, times_, HalfPeriod());
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      if (nearest[k] < 0) continue;
+      DiagnosisSample& sample = set_.samples[k];
+      sample.dt_strain_s = double(strain.moments_Nm[nearest[k]].t_ns - times_[k]) * 1e-9;
+      sample.moments_Nm = strain.moments_Nm[nearest[k]].value;
+      for (int i = 0; i < 4; ++i) sample.present[row::kStrain + i] = !dead[i];
+    }
+  }
+
+  void AddVision() {
+    if (!recording_.vision0) return;
+    const VisionStream& vision = *recording_.vision0;
+    Series<TipObservation> seen;
+    for (const auto& tip : vision.tips)
+      if (tip.value.status == TipStatus::kOk) seen.push_back(tip);
+    if (seen.empty()) return;
+    if (IsDead(seen, [](const TipObservation& t) { return t.p_RE; })) {
+      return Warn("vision0 always says the same: left out");
+    }
+    set_.has_tip = true;
+    set_.noise.tip_direction_rad = vision.direction_noise_rad;
+    set_.noise.vision_registration_m = vision.registration_noise_m;
+    set_.noise.vision_registration_rad = vision.registration_noise_rad;
+    const auto nearest = Nearest(seen, times_, HalfPeriod());
+    for (std::size_t k = 0; k < times_.size(); ++k)
+      if (nearest[k] >= 0) AddTip(seen[nearest[k]], times_[k], set_.samples[k]);
+  }
+
+  void AddTip(const Sample<TipObservation>& from, TimeNs t_ns, DiagnosisSample& sample) {
+    sample.dt_tip_s = double(from.t_ns - t_ns) * 1e-9;
+    sample.p_RE = from.value.p_RE;
+    sample.p_RE_covariance_m2 = from.value.covariance_m2;
+    SetPresent(sample, row::kTipPosition, 3);
+    if (from.value.d_RE && set_.noise.tip_direction_rad > 0.0) {
+      sample.d_tip = *from.value.d_RE;
+      SetPresent(sample, row::kTipDirection, 2);
+      set_.has_tip_direction = true;
+    }
+  }
+
+  void AddLoad() {
+    if (!recording_.load0 || recording_.load0->f_tip_N.empty()) return;
+    const LoadStream& load = *recording_.load0;
+    set_.noise.force_N = load.force_noise_N;
+    int known = 0;
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      const auto f = ValueAt(load.f_tip_N, times_[k]);
+      if (!f) continue;
+      set_.samples[k].f_tip_N = *f;
+      ++known;
+    }
+    // Samples outside the load's time would need a load of their own: leave them out.
+    set_.has_load = known > int(times_.size()) / 2;
+    if (!set_.has_load) return Warn("load0 covers less than half of the recording: left out");
+    SmoothLoad();
+    if (known == int(times_.size())) return;
+    for (std::size_t k = 0; k < times_.size(); ++k)
+      if (!ValueAt(load.f_tip_N, times_[k])) set_.samples[k].present.reset();
+  }
+
+  /// Sensors that speak late look back at other samples' loads: noise must not differ from one to
+  /// the next.
+  void SmoothLoad() {
+    std::vector<double> t_s;
+    std::vector<Eigen::Vector3d> f_N;
+    for (const auto& sample : set_.samples) {
+      t_s.push_back(sample.t_s);
+      f_N.push_back(sample.f_tip_N);
+    }
+    Smoothed smoothed{f_N, std::vector<double>(f_N.size(), set_.noise.force_N)};
+    if (set_.resolved_in_time) smoothed = Smooth(t_s, f_N, set_.noise.force_N);
+    for (std::size_t k = 0; k < set_.samples.size(); ++k) {
+      set_.samples[k].f_tip_N = smoothed.value[k];
+      set_.samples[k].force_noise_N = set_.noise.force_N;
+    }
+  }
+
+  /// What late sensors say of the end may have been stamped after the recording.
+  void DropEnd() {
+    if (!set_.resolved_in_time) return;
+    const double last_s = set_.samples.back().t_s;
+    for (auto& sample : set_.samples) {
+      if (sample.t_s < last_s - kLongestDelay_s) continue;
+      for (int r = row::kEmPosition; r < row::kStrain; ++r) sample.present.reset(r);
+      for (int r = row::kTipPosition; r < row::kPortDirection; ++r) sample.present.reset(r);
+    }
+  }
+
+  void FindCentre() {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int n = 0;
+    for (const auto& sample : set_.samples) {
+      if (sample.Has(row::kEmPosition) || sample.Has(row::kTipPosition)) {
+        sum += sample.Has(row::kEmPosition) ? sample.p_RS : sample.p_RE;
+        ++n;
+      }
+    }
+    set_.centre = n > 0 ? Eigen::Vector3d(sum / n) : set_.p_RP;
+  }
+
+  void CheckRedundancy() {
+    const std::size_t latent = set_.has_load ? 0 : 3;
+    double spare = 0.0;
+    for (const auto& sample : set_.samples)
+      if (sample.present.count() > latent) spare += double(sample.present.count() - latent);
+    if (spare < 2 * kMinSamples) {
+      throw InputError(fmt::format(
+          "{}: the sensors measure no more than {} (beside wrist0 it takes a load0 and one of "
+          "vision0, "
+          "em0 and strain0, or two of them): there is nothing to judge the simulation by",
+          name_, latent == 0 ? "a handful of values" : "the unknown load takes"));
+    }
+  }
+
+  static void SetPresent(DiagnosisSample& sample, int first_row, int rows) {
+    for (int i = 0; i < rows; ++i) sample.present.set(first_row + i);
+  }
+  TimeNs HalfPeriod() const { return TimeNs(0.51e9 * set_.period_s); }
+
+  const Recording& recording_;
+  std::string name_;
+  std::vector<TimeNs> times_;
+  SampleSet set_;
+};
+
+}  // namespace
+
+SampleSet MakeSampleSet(const Recording& recording, const std::string& name) {
+  return Builder(recording, name).Build();
+}
+
+}  // namespace flextip

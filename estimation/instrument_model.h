@@ -1,0 +1,32 @@
+// A found model as estimation and the closed loop use it. Implemented where the model is known
+// (diagnosis/), so that neither needs to know what effects there are.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "core/time_series.h"
+#include "estimation/measurements.h"
+#include "estimation/shaft_change.h"
+
+namespace flextip {
+
+/// The instrument and its sensors as they are at one instant after the other: what rubs or has play
+/// remembers where it came from.
+class InstrumentModel {
+ public:
+  virtual ~InstrumentModel() = default;
+
+  /// Moves on to `t_ns` (not before the last one). `f_tip_N` is the tip force last known.
+  virtual void Advance(TimeNs t_ns, const Measurements& measured,
+                       const Eigen::Vector3d& f_tip_N) = 0;
+  virtual const ShaftChange& Shaft() const = 0;
+  /// What sensors without their own effects would have said. Latencies are left as they are.
+  virtual Measurements Correct(const Measurements& measured) const = 0;
+
+ protected:
+  InstrumentModel() = default;
+  InstrumentModel(const InstrumentModel&) = default;
+  InstrumentModel& operator=(const InstrumentModel&) = default;
+};
+
+}  // namespace flextip

@@ -1,0 +1,283 @@
+// Derivatives of the replay's residuals against differences, and their size against the noise.
+#include "diagnosis/replay.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/diagnosis/small_recording.h"
+
+namespace flextip {
+namespace {
+
+/// All samples' rows in standard deviations; absent ones zero.
+Eigen::VectorXd Residuals(const Replay& replay) {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(row::kCount * Eigen::Index(replay.Samples().size()));
+  for (std::size_t k = 0; k < replay.Samples().size(); ++k) {
+    const Rows sd = replay.RowNoise(k);
+    for (int r = 0; r < row::kCount; ++r)
+      if (replay.Set().samples[k].present[r])
+        all[row::kCount * Eigen::Index(k) + r] = replay.Samples()[k].compared.residual[r] / sd[r];
+  }
+  return all;
+}
+
+/// What the whitened X says of Residuals' derivative (its negative): units is L^-1 times the rows'
+/// standard deviations, X is L^-1 times the derivative.
+Eigen::MatrixXd Derivatives(const Replay& replay) {
+  const WhitenedRows rows = replay.Whiten();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(row::kCount * Eigen::Index(replay.Samples().size()),
+                                              replay.Layout().Size());
+  for (std::size_t k = 0; k < replay.Samples().size(); ++k) {
+    const Eigen::MatrixXd X = rows.X.middleRows(rows.first_row[k], rows.Rows(k));
+    const Eigen::MatrixXd D = rows.units[k].triangularView<Eigen::Lower>().solve(X);
+    for (int i = 0; i < rows.Rows(k); ++i)
+      all.row(row::kCount * Eigen::Index(k) + rows.rows[k][i]) = D.row(i);
+  }
+  return all;
+}
+
+class ReplayDerivatives : public testing::TestWithParam<bool> {
+ protected:
+  ReplayDerivatives()
+      : samples_(ThirdOf(SmallSamples(4.2, GetParam(), 41, {}, true))),
+        layout_(samples_, MakeCatalogue(samples_)),
+        replay_(samples_, layout_),
+        theta_(Eigen::VectorXd::Zero(layout_.Size())) {}
+
+  /// Every third sample, for time's sake, with frames that are not well registered.
+  static SampleSet ThirdOf(SampleSet samples) {
+    std::vector<DiagnosisSample> third;
+    for (std::size_t k = 0; k < samples.samples.size(); k += 3) third.push_back(samples.samples[k]);
+    samples.samples = third;
+    samples.period_s *= 3.0;
+    samples.noise.em_registration_m = samples.noise.vision_registration_m = 0.002;
+    samples.noise.em_registration_rad = samples.noise.vision_registration_rad = 0.01;
+    return samples;
+  }
+
+  /// The block's parameters, of alternating signs where they may be negative.
+  void SwitchOn(const std::string& effect, double share_of_typical) {
+    const auto& block = layout_.Blocks()[layout_.Find(effect)];
+    for (int j = block.first; j < block.first + block.size; ++j) {
+      const FitParameter& p = layout_.Parameter(j);
+      theta_[j] = share_of_typical * p.typical * (p.positive || j % 2 == 0 ? 1.0 : -0.7);
+    }
+  }
+  /// Forces are fitted here, and then stay.
+  void Settle() {
+    ASSERT_TRUE(replay_.Settle(theta_));
+    forces_N_ = replay_.Forces();
+    At(theta_);
+  }
+  /// An unknown force counts in units of EI / L^2: a stiffer shaft's is as much larger.
+  Eigen::VectorXd At(const Eigen::VectorXd& theta, int passes = 2) {
+    const int j = Index("stiffness");
+    const double stiffer = samples_.has_load ? 1.0 : std::exp(theta[j] - theta_[j]);
+    auto forces_N = forces_N_;
+    for (Eigen::Vector3d& f : forces_N) f *= stiffer;
+    replay_.SetForces(forces_N);
+    for (int i = 0; i < passes; ++i) EXPECT_TRUE(replay_.EvaluateWithForces(theta));
+    EXPECT_EQ(replay_.FailedSamples(), 0);
+    return Residuals(replay_);
+  }
+  Eigen::VectorXd Difference(int j, double h) {
+    const Eigen::VectorXd e = h * Eigen::VectorXd::Unit(layout_.Size(), j);
+    // Friction takes a second pass: where the port would be without comes from the one before.
+    const int passes = NameOf(j).starts_with("port_friction") ? 2 : 1;
+    return (At(theta_ + e, passes) - At(theta_ - e, passes)) / (2.0 * h);
+  }
+  /// By central differences of second order, extrapolated where that matters.
+  Eigen::VectorXd Numeric(int j) {
+    const double h = 0.02 * layout_.Parameter(j).typical;
+    return (4.0 * Difference(j, 0.5 * h) - Difference(j, h)) / 3.0;
+  }
+
+  std::string NameOf(int j) const {
+    for (const auto& block : layout_.Blocks())
+      if (j >= block.first && j < block.first + block.size)
+        return block.effect->Name() + '[' + std::to_string(j - block.first) + ']';
+    return "";
+  }
+  /// Every parameter's column against differences, about the point as it is, to `tolerance` of the
+  /// column's norm.
+  void CheckAll(double tolerance = 1e-5) {
+    Settle();
+    const Eigen::MatrixXd X = Derivatives(replay_);
+    const bool breathes = theta_[Index("port_motion")] != 0.0;
+    for (int j = 0; j < layout_.Size(); ++j) {
+      const Eigen::VectorXd numeric = -Numeric(j);
+      const std::string name = NameOf(j);
+      if (name == "port_motion[12]" && !breathes) {  // the frequency of nothing
+        EXPECT_EQ(numeric.norm() + X.col(j).norm(), 0.0);
+        continue;
+      }
+      // The column has the predicted rate of change, the differences the measured one.
+      const bool late = name.find("latency") != std::string::npos;
+      EXPECT_GT(numeric.norm(), 0.0) << name;
+      EXPECT_LT((X.col(j) - numeric).norm(), (late ? 0.25 : tolerance) * numeric.norm())
+          << name << ": " << (X.col(j) - numeric).norm() / numeric.norm();
+    }
+  }
+  int Index(const std::string& effect) const {
+    return layout_.Blocks()[layout_.Find(effect)].first;
+  }
+
+  SampleSet samples_;
+  ParameterLayout layout_;
+  Replay replay_;
+  Eigen::VectorXd theta_;
+  std::vector<Eigen::Vector3d> forces_N_;
+};
+
+TEST_P(ReplayDerivatives, OfAllParametersAtTheBase) {
+  ASSERT_EQ(layout_.EffectCount(), 21);
+  ASSERT_EQ(layout_.Blocks().size(), 22U);
+  CheckAll();
+}
+
+TEST_P(ReplayDerivatives, OfAllParametersAmongEffectsOnTheShaft) {
+  for (const std::string effect :
+       {"stiffness", "length", "self_weight", "precurvature", "port_offset", "port_motion",
+        "port_compliance", "port_moment", "shaft_load", "wrist_compliance"})
+    SwitchOn(effect, 0.4);
+  CheckAll();
+}
+
+TEST_P(ReplayDerivatives, OfAllParametersAmongEffectsOnSensors) {
+  for (const std::string effect : {"tip_compliance", "em_distortion", "em_latency",
+                                   "camera_latency", "strain_gain", "strain_drift"})
+    SwitchOn(effect, 0.4);
+  theta_[Index("focal_length")] = 0.02;
+  theta_[Index("hand_eye") + 4] = 0.001;
+  CheckAll();
+}
+
+/// A camera turned by w is differentiated as if it were not (relative error |w| / 2), and how the
+/// tags' lever and a pose's turn by the focal length change with the shape is left out.
+TEST_P(ReplayDerivatives, AmongLargeTurnsAreRightToASmallPart) {
+  SwitchOn("hand_eye", 0.4);
+  SwitchOn("tag_offset", 0.4);
+  SwitchOn("focal_length", 0.4);
+  CheckAll(0.01);
+}
+
+/// The play operator, once more: how far the true wrist is from the measured one, over the width,
+/// is half to one side or the other while the wrist is dragged along.
+std::vector<bool> Dragged(const SampleSet& samples, double width_m) {
+  std::vector<bool> dragged;
+  Eigen::Vector3d wrist = samples.samples[0].p_RW;
+  for (const DiagnosisSample& sample : samples.samples) {
+    bool all = true;
+    for (int i = 0; i < 3; ++i) {
+      const double ahead = sample.p_RW[i] - wrist[i];
+      all = all && std::abs(ahead) > 0.55 * width_m;
+      if (ahead > 0.5 * width_m) wrist[i] = sample.p_RW[i] - 0.5 * width_m;
+      if (ahead < -0.5 * width_m) wrist[i] = sample.p_RW[i] + 0.5 * width_m;
+    }
+    dragged.push_back(all);
+  }
+  return dragged;
+}
+
+/// A column against differences in those of the samples that `use` says.
+void CheckSamples(const Eigen::VectorXd& column, const Eigen::VectorXd& numeric,
+                  const std::vector<bool>& use) {
+  int used = 0;
+  double error2 = 0.0, size2 = 0.0;
+  for (std::size_t k = 0; k < use.size(); ++k) {
+    if (!use[k]) continue;
+    ++used;
+    const Eigen::Index at = row::kCount * Eigen::Index(k);
+    error2 += (column - numeric).segment<row::kCount>(at).squaredNorm();
+    size2 += numeric.segment<row::kCount>(at).squaredNorm();
+  }
+  EXPECT_GT(used, 5);
+  EXPECT_GT(size2, 0.0);
+  EXPECT_LT(std::sqrt(error2 / size2), 1e-5);
+}
+
+TEST_P(ReplayDerivatives, OfPlayWhileTheWristIsDragged) {
+  SwitchOn("backlash", 0.6);
+  SwitchOn("port_offset", 0.4);
+  Settle();
+  const int j = Index("backlash");
+  const Eigen::MatrixXd X = Derivatives(replay_);
+  CheckSamples(X.col(j), -Numeric(j), Dragged(samples_, theta_[j]));
+}
+
+TEST_P(ReplayDerivatives, OfFrictionWhileTheShaftSlides) {
+  SwitchOn("port_friction", 0.5);
+  SwitchOn("precurvature", 0.4);
+  Settle();
+  At(theta_, 4);
+  const int j = Index("port_friction");
+  std::vector<bool> slides;
+  for (const ReplayedSample& sample : replay_.Samples())
+    slides.push_back(std::abs(sample.inputs[model_input::kPortFriction]) == theta_[j]);
+  const Eigen::MatrixXd X = Derivatives(replay_);
+  // Those that stick at one of the points of the differences show it in their input.
+  const double h = 0.02 * layout_.Parameter(j).typical;
+  for (const double step : {-h, -0.5 * h, 0.5 * h, h}) {
+    At(theta_ + step * Eigen::VectorXd::Unit(layout_.Size(), j));
+    for (std::size_t k = 0; k < slides.size(); ++k) {
+      const double ratio = replay_.Samples()[k].inputs[model_input::kPortFriction];
+      slides[k] = slides[k] && std::abs(std::abs(ratio) - theta_[j] - step) < 1e-12;
+    }
+  }
+  CheckSamples(X.col(j), -Numeric(j), slides);
+}
+
+INSTANTIATE_TEST_SUITE_P(Load, ReplayDerivatives, testing::Bool(),
+                         [](const auto& test) { return test.param ? "Known" : "Unknown"; });
+
+/// Mean square of the whitened residuals of a healthy recording, nothing off.
+double MeanSquare(const WhitenedRows& rows) { return rows.e.squaredNorm() / double(rows.e.size()); }
+
+TEST(ReplayResiduals, OfAHealthyRecordingAreTheNoise) {
+  const SampleSet samples = SmallSamples(20.0, true, 42);
+  const ParameterLayout layout(samples, MakeCatalogue(samples));
+  Replay replay(samples, layout);
+  ASSERT_TRUE(replay.Settle(Eigen::VectorXd::Zero(layout.Size())));
+  const WhitenedRows rows = replay.Whiten();
+  EXPECT_GT(rows.e.size(), 10000);
+  // The covariance still counts the fast noise that smoothing took out of wrist and load.
+  EXPECT_LT(MeanSquare(rows), 1.05);
+  EXPECT_GT(MeanSquare(rows), 0.7);
+}
+
+/// An unknown force takes three of a sample's rows for itself.
+TEST(ReplayResiduals, WithAnUnknownLoadAreShortOfThreeRows) {
+  const SampleSet samples = SmallSamples(20.0, false, 42);
+  const ParameterLayout layout(samples, MakeCatalogue(samples));
+  Replay replay(samples, layout);
+  const Eigen::VectorXd base = Eigen::VectorXd::Zero(layout.Size());
+  ASSERT_TRUE(replay.Settle(base));
+  const WhitenedRows rows = replay.Whiten();
+  double taken = 0.0;
+  for (std::size_t k = 0; k < samples.samples.size(); ++k) taken += rows.Rows(k) > 3 ? 3.0 : 0.0;
+  const double expected = 1.0 - taken / double(rows.e.size());
+  EXPECT_LT(expected, 0.85);
+  EXPECT_LT(MeanSquare(rows), 1.05 * expected);
+  EXPECT_GT(MeanSquare(rows), 0.7 * expected);
+}
+
+/// What a known effect adds to the residuals is what its derivative says, in whitened rows too.
+TEST(ReplayResiduals, AreFreeOfAnEffectThatIsSwitchedOn) {
+  const HiddenRecording hidden = SmallHidden(8.0, true, 43, {"tag_offset"});
+  const SampleSet samples = MakeSampleSet(hidden.recording, "small");
+  const ParameterLayout layout(samples, MakeCatalogue(samples));
+  Replay replay(samples, layout);
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(layout.Size());
+  ASSERT_TRUE(replay.Settle(theta));
+  EXPECT_GT(MeanSquare(replay.Whiten()), 2.0);
+  const auto& truth = hidden.label.parameters.at("tag_offset").at("offset_m");
+  const int first = layout.Blocks()[layout.Find("tag_offset")].first;
+  for (int i = 0; i < 3; ++i) theta[first + i] = truth[i];
+  ASSERT_TRUE(replay.Settle(theta));
+  EXPECT_LT(MeanSquare(replay.Whiten()), 1.08);
+  EXPECT_GT(MeanSquare(replay.Whiten()), 0.7);
+}
+
+}  // namespace
+}  // namespace flextip

@@ -1,0 +1,167 @@
+// From recordings to the diagnosis's samples: what is refused, left out, thinned and dropped.
+#include "diagnosis/sample_set.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "simulation/hidden_recording.h"
+
+namespace flextip {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+/// 3 s at 50 Hz, the tip at 25 Hz.
+Recording MakeRecording() {
+  HiddenOptions options{.exact = true};
+  options.scene.duration_s = 3.0;
+  options.scene.load = LoadKind::kVarying;
+  return MakeHidden(options, 21).recording;
+}
+
+std::string RefusalOf(const Recording& recording) {
+  try {
+    MakeSampleSet(recording, "folder");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+class SampleSetTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { healthy_ = new Recording(MakeRecording()); }
+  static void TearDownTestSuite() { delete healthy_; }
+  void ExpectRefused(const std::string& part) const {
+    const std::string line = RefusalOf(recording_);
+    EXPECT_THAT(line, StartsWith("folder: "));
+    EXPECT_THAT(line, HasSubstr(part));
+    EXPECT_THAT(line, Not(HasSubstr("\n")));
+  }
+
+  static Recording* healthy_;
+  Recording recording_ = *healthy_;
+};
+Recording* SampleSetTest::healthy_ = nullptr;
+
+TEST_F(SampleSetTest, TakesTheMeasuredValuesAsTheyAre) {
+  const SampleSet set = MakeSampleSet(recording_, "folder");
+  ASSERT_EQ(set.samples.size(), recording_.wrist0->samples.size());
+  EXPECT_THAT(set.warnings, IsEmpty());
+  EXPECT_TRUE(set.has_em && set.has_strain && set.has_tip && set.has_tip_direction);
+  EXPECT_TRUE(set.has_load && set.has_wrist_direction && set.has_camera && set.resolved_in_time);
+  EXPECT_NEAR(set.period_s, 0.02, 1e-9);
+  int seen = 0;
+  for (std::size_t k = 0; k < set.samples.size(); ++k) {
+    const DiagnosisSample& sample = set.samples[k];
+    const TimeNs t_ns = recording_.wrist0->samples[k].t_ns;
+    EXPECT_NEAR(sample.t_s, double(t_ns - recording_.wrist0->samples[0].t_ns) * 1e-9, 1e-12);
+    const auto strain = std::ranges::find_if(recording_.strain0->moments_Nm,
+                                             [&](const auto& s) { return s.t_ns == t_ns; });
+    ASSERT_NE(strain, recording_.strain0->moments_Nm.end());
+    EXPECT_EQ(sample.moments_Nm, strain->value);
+    if (!sample.Has(row::kTipPosition)) continue;
+    ++seen;
+    const auto tip = std::ranges::find_if(recording_.vision0->tips,
+                                          [&](const auto& s) { return s.t_ns == t_ns; });
+    ASSERT_NE(tip, recording_.vision0->tips.end());
+    EXPECT_EQ(sample.p_RE, tip->value.p_RE);
+  }
+  EXPECT_GT(seen, 60);  // every second sample, less the end
+  EXPECT_LT(seen, 80);
+}
+
+TEST_F(SampleSetTest, RefusesWithoutAWrist) {
+  recording_.wrist0.reset();
+  ExpectRefused("no wrist0");
+}
+
+TEST_F(SampleSetTest, RefusesWhatIsTooShort) {
+  recording_.wrist0->samples.resize(39);
+  ExpectRefused("39 samples of the wrist, at least 40");
+  recording_.wrist0->samples.clear();
+  ExpectRefused("0 samples of the wrist");
+}
+
+TEST_F(SampleSetTest, RefusesWithoutRedundancy) {
+  recording_.em0.reset();
+  recording_.vision0.reset();
+  recording_.load0.reset();
+  recording_.strain0.reset();
+  ExpectRefused("nothing to judge the simulation by");
+}
+
+TEST_F(SampleSetTest, AKnownLoadMakesOneSensorEnough) {
+  recording_.em0.reset();
+  recording_.vision0.reset();
+  recording_.strain0.reset();
+  EXPECT_EQ(RefusalOf(recording_), "");
+}
+
+TEST_F(SampleSetTest, LeavesDeadSensorsOutWithAWarning) {
+  for (auto& sample : recording_.em0->samples)
+    sample.value.p_RS = recording_.em0->samples[0].value.p_RS;
+  for (auto& tip : recording_.vision0->tips)
+    tip.value.p_RE = recording_.vision0->tips[0].value.p_RE;
+  for (auto& sample : recording_.strain0->moments_Nm) sample.value[2] = 0.1;
+  const SampleSet set = MakeSampleSet(recording_, "folder");
+  EXPECT_THAT(set.warnings, ElementsAre("em0 always says the same: left out",
+                                        "strain0: 1 of 4 gages always say the same: left out",
+                                        "vision0 always says the same: left out"));
+  EXPECT_FALSE(set.has_em || set.has_tip);
+  EXPECT_TRUE(set.has_strain);
+  for (const DiagnosisSample& sample : set.samples) {
+    EXPECT_FALSE(sample.Has(row::kEmPosition) || sample.Has(row::kTipPosition));
+    EXPECT_FALSE(sample.Has(row::kStrain + 2));
+    EXPECT_TRUE(sample.Has(row::kStrain) && sample.Has(row::kStrain + 3));
+  }
+}
+
+TEST_F(SampleSetTest, LeavesOutALoadThatCoversLessThanHalf) {
+  recording_.load0->f_tip_N.resize(recording_.load0->f_tip_N.size() / 3);
+  const SampleSet set = MakeSampleSet(recording_, "folder");
+  EXPECT_FALSE(set.has_load);
+  EXPECT_THAT(set.warnings, ElementsAre(HasSubstr("load0")));
+}
+
+TEST_F(SampleSetTest, ThinsAFastWrist) {
+  Series<WristSample> fast;  // 500 Hz
+  const auto slow = recording_.wrist0->samples;
+  for (std::size_t k = 0; k + 1 < slow.size(); ++k) {
+    for (int i = 0; i < 10; ++i) {
+      const double u = 0.1 * i;
+      fast.push_back({slow[k].t_ns + TimeNs(u * double(slow[k + 1].t_ns - slow[k].t_ns)),
+                      {Interpolate(slow[k].value.p_RW, slow[k + 1].value.p_RW, u),
+                       Interpolate(*slow[k].value.q_RW, *slow[k + 1].value.q_RW, u)}});
+    }
+  }
+  recording_.wrist0->samples = fast;
+  const SampleSet set = MakeSampleSet(recording_, "folder");
+  EXPECT_NEAR(set.period_s, 0.02, 1e-6);
+  EXPECT_EQ(set.samples.size(), slow.size() - 1);
+}
+
+TEST_F(SampleSetTest, DropsWhatLateSensorsSayOfTheEnd) {
+  const SampleSet set = MakeSampleSet(recording_, "folder");
+  const double last_s = set.samples.back().t_s;
+  for (const DiagnosisSample& sample : set.samples) {
+    EXPECT_TRUE(sample.Has(row::kWristDirection) && sample.Has(row::kStrain));
+    const bool at_end = sample.t_s > last_s - 0.249;
+    if (at_end) {
+      EXPECT_FALSE(sample.Has(row::kEmPosition) || sample.Has(row::kEmDirection) ||
+                   sample.Has(row::kTipPosition) || sample.Has(row::kTipDirection));
+    } else if (sample.t_s < last_s - 0.251) {
+      EXPECT_TRUE(sample.Has(row::kEmPosition) && sample.Has(row::kEmDirection)) << sample.t_s;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flextip

@@ -1,0 +1,190 @@
+// model.yaml: what is written is read, and what means nothing is refused in one line.
+#include "diagnosis/extended_model.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "core/error.h"
+#include "core/rotation.h"
+#include "diagnosis/catalogue.h"
+#include "diagnosis/extended_effect.h"
+#include "diagnosis/model_at.h"
+#include "estimation/shaft_rod.h"
+#include "simulation/hidden_draw.h"
+
+namespace flextip {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class ModelFile : public testing::Test {
+ protected:
+  ~ModelFile() override { fs::remove(file_); }
+  ExtendedModel Read(const std::string& text) {
+    std::ofstream(file_) << text;
+    return ReadModel(file_);
+  }
+  std::string Complaint(const std::string& text) {
+    try {
+      Read(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  const fs::path file_ =
+      fs::temp_directory_path() /
+      ("flextip_model_" +
+       std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".yaml");
+};
+
+/// Every effect of the catalogue once, with numbers that have no short decimal form.
+ExtendedModel Everything() {
+  ExtendedModel model;
+  double x = 0.1;
+  int count = 0;
+  std::vector<std::string> names = CatalogueEffects();
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) {
+    EffectFit fit{name, ParametersOf(*MakeEffect(name))};
+    for (ReportedParameter& parameter : fit.parameters)
+      for (double& value : parameter.value) {
+        value = (x += 1.0 / 3.0);
+        parameter.sd.push_back(x / 7.0);
+      }
+    (count++ < 4 ? model.effects : model.within_tolerance).push_back(fit);
+  }
+  const auto n = static_cast<Eigen::Index>(NumberNames(model.effects).size());
+  model.covariance = Eigen::MatrixXd::Identity(n, n) / 3.0;
+  model.covariance(0, 1) = model.covariance(1, 0) = 1.0 / 7.0;
+  model.centre_m = {0.1, 1.0 / 3.0, -2.0};
+  model.start_ns = 1'700'000'000'123'456'789;
+  return model;
+}
+
+void ExpectSame(const std::vector<EffectFit>& a, const std::vector<EffectFit>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].effect, b[i].effect);
+    ASSERT_EQ(a[i].parameters.size(), b[i].parameters.size());
+    for (std::size_t j = 0; j < a[i].parameters.size(); ++j) {
+      EXPECT_EQ(a[i].parameters[j].name, b[i].parameters[j].name);
+      EXPECT_EQ(a[i].parameters[j].value, b[i].parameters[j].value);
+      EXPECT_EQ(a[i].parameters[j].sd, b[i].parameters[j].sd);
+    }
+  }
+}
+
+const std::string kHead = "format: flextip-model\nversion: 1\ncentre_m: [0, 0, 0]\nstart_ns: 0\n";
+
+TEST_F(ModelFile, RoundTripIsExact) {
+  const ExtendedModel model = Everything();
+  const ExtendedModel read = Read(ModelYaml(model));
+  ExpectSame(read.effects, model.effects);
+  ExpectSame(read.within_tolerance, model.within_tolerance);
+  EXPECT_EQ(read.covariance, model.covariance);
+  EXPECT_EQ(read.centre_m, model.centre_m);
+  EXPECT_EQ(read.start_ns, model.start_ns);
+  EXPECT_EQ(ModelYaml(read), ModelYaml(model));
+}
+
+TEST_F(ModelFile, CovarianceKeepsItsRowsInAnyOrder) {
+  const ExtendedModel read =
+      Read(kHead +
+           "effects:\n  stiffness: {scale: 1.1}\n  length: {delta_m: 0.1}\n"
+           "covariance: {parameters: [\"stiffness.scale[0]\", \"length.delta_m[0]\"], "
+           "data: [1, 2, 2, 3]}\n");
+  ASSERT_EQ(read.effects[0].effect, "length");
+  EXPECT_EQ(read.covariance(0, 0), 3.0);
+  EXPECT_EQ(read.covariance(0, 1), 2.0);
+  EXPECT_EQ(read.covariance(1, 1), 1.0);
+}
+
+TEST_F(ModelFile, NothingFoundIsAModelToo) {
+  const ExtendedModel read = Read(ModelYaml(ExtendedModel{}));
+  EXPECT_TRUE(read.effects.empty() && read.within_tolerance.empty());
+  EXPECT_EQ(read.covariance.size(), 0);
+}
+
+TEST_F(ModelFile, BadFilesAreRefusedInOneLine) {
+  const struct {
+    std::string text;
+    std::vector<std::string> says;
+  } cases[] = {
+      {"format: flextip-recording\nversion: 1\n", {":1:", "flextip-recording", "flextip-model"}},
+      {"format: flextip-model\nversion: 2\n", {":2:", "2", "expected 1"}},
+      {kHead, {"effects"}},
+      {kHead + "effects:\n  rust: {depth_m: 1}\n", {":6:", "rust", "unknown"}},
+      {kHead + "effects:\n  stiffness: {scale: 1.1, factor: 2}\n", {":6:", "factor"}},
+      {kHead + "effects:\n  stiffness: {}\n", {":6:", "scale"}},
+      {kHead + "effects:\n  stiffness: {scale: stiff}\n", {":6:", "stiff"}},
+      {kHead + "effects:\n  stiffness: {scale: -1}\n", {":6:", "positive"}},
+      {kHead + "effects:\n  port_friction: {coefficient: -0.2}\n", {":6:", "at least 0"}},
+      {kHead + "effects:\n  strain_gain: {gain: [1, 1, 0, 1]}\n", {":6:", "more than 0"}},
+      {kHead + "effects:\n  port_offset: {offset_m: [1, 2]}\n", {":6:", "offset_m", "3"}},
+      {kHead + "effects:\n  length: {delta_m: .nan}\n", {":6:", "delta_m"}},
+      {kHead + "effects: {}\nsurprise: 1\n", {":6:", "surprise"}},
+      {kHead + "effects:\n  length: {delta_m: 0.1}\nwithin_tolerance:\n  length: {delta_m: 0}\n",
+       {":8:", "length"}},
+      {kHead + "effects:\n  length: {delta_m: 0.1}\nsd:\n  stiffness: {scale: 1}\n",
+       {":8:", "stiffness"}},
+      {kHead + "effects:\n  length: {delta_m: 0.1}\nsd:\n  length: {delta_m: -1}\n",
+       {":8:", "delta_m"}},
+      {kHead + "effects:\n  length: {delta_m: 0.1}\ncovariance: {parameters: [x], data: [1]}\n",
+       {":7:", "length.delta_m[0]"}},
+      {kHead +
+           "effects:\n  length: {delta_m: 0.1}\ncovariance: {parameters: [\"length.delta_m[0]\"], "
+           "data: [1, 2]}\n",
+       {":7:", "2", "1"}},
+      {"effects: [\n", {":"}},
+  };
+  for (const auto& c : cases) {
+    const std::string complaint = Complaint(c.text);
+    EXPECT_THAT(complaint, HasSubstr(file_.string())) << c.text;
+    EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
+    for (const std::string& part : c.says) EXPECT_THAT(complaint, HasSubstr(part)) << c.text;
+  }
+  EXPECT_THROW(ReadModel("/no/such/model.yaml"), InputError);
+}
+
+TEST(ModelAt, LatenciesMoveTheirStreamsOnly) {
+  Recording recording;
+  recording.wrist0.emplace().samples = {{100, {}}};
+  recording.em0.emplace().samples = {{1'000'000'000, {}}};
+  recording.vision0.emplace().tips = {{1'000'000'000, {}}};
+  ExtendedModel model;
+  model.effects = {{"camera_latency", {{"delay_s", {0.02}, {}}}}};
+  model.within_tolerance = {{"em_latency", {{"delay_s", {0.003}, {}}}}};
+  const Recording moved = WithoutLatency(recording, model);
+  EXPECT_EQ(moved.wrist0->samples[0].t_ns, 100);
+  EXPECT_EQ(moved.em0->samples[0].t_ns, 997'000'000);
+  EXPECT_EQ(moved.vision0->tips[0].t_ns, 980'000'000);
+}
+
+TEST(ModelAt, AnEmptyModelChangesNothing) {
+  Recording base;
+  base.instrument = {0.5, 0.003, 0.3, 0.0};
+  base.p_RP = {0.25, 0.0, 0.0};
+  ModelAt model(ExtendedModel{}, base);
+  Measurements z;
+  z.em = EmMeasurement{{ExpRotation({0.1, 0.2, 0.3}), {0.4, 0.01, 0.02}}, 0.02, 1e-4, 1e-3};
+  z.tip = TipObservation{TipStatus::kOk,
+                         {0.5, 0.0, 0.1},
+                         Eigen::Matrix3d::Identity() * 1e-8,
+                         Eigen::Vector3d::UnitX()};
+  model.Advance(5, z, Eigen::Vector3d::Zero());
+  EXPECT_TRUE(IsPlain(model.Shaft().effects));
+  EXPECT_EQ(model.Shaft().stiffness_scale, 1.0);
+  const Measurements same = model.Correct(z);
+  EXPECT_LT((same.em->T_RS.p - z.em->T_RS.p).norm(), 1e-15);
+  EXPECT_LT((same.tip->p_RE - z.tip->p_RE).norm(), 1e-15);
+  EXPECT_LT((same.tip->covariance_m2 - z.tip->covariance_m2).norm(), 1e-20);
+}
+
+}  // namespace
+}  // namespace flextip

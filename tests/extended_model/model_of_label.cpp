@@ -1,0 +1,34 @@
+#include "tests/extended_model/model_of_label.h"
+
+#include "diagnosis/catalogue.h"
+#include "diagnosis/extended_effect.h"
+#include "simulation/sensors.h"
+
+namespace flextip {
+
+ExtendedModel ModelOfLabel(const HiddenRecording& hidden) {
+  ExtendedModel model;
+  model.start_ns = kSimulationStart_ns;
+  int count = 0;
+  if (hidden.recording.em0) {  // measured with less bias than matters
+    for (const auto& sample : hidden.recording.em0->samples) {
+      model.centre_m += sample.value.p_RS;
+      ++count;
+    }
+    model.centre_m /= count;
+  }
+  for (const std::string& name : hidden.label.present) {
+    EffectFit fit{name, ParametersOf(*MakeEffect(name))};
+    const EffectParameters& label = hidden.label.parameters.at(name);
+    for (ReportedParameter& parameter : fit.parameters) {
+      if (parameter.name == "offset_at_centre_m") continue;  // none in the simulation
+      parameter.value = label.at(parameter.name);
+      // The label's mass is beyond the nominal one.
+      if (name == "self_weight") parameter.value[0] += hidden.scene.instrument.mass_per_length_kg_m;
+    }
+    model.effects.push_back(fit);
+  }
+  return model;
+}
+
+}  // namespace flextip

@@ -1,0 +1,183 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <regex>
+
+#include "core/error.h"
+#include "report/diagnose_residuals.h"
+#include "report/embedded.h"
+#include "tests/report/diagnose_fixture.h"
+
+namespace flextip {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// A table in which em0's y follows the sign of the sliding velocity with the base model, and
+/// nothing else is more than white noise; every other vision sample is absent.
+std::string Residuals(int samples, double friction) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise;
+  std::string text =
+      "#t_s,insertion_depth,sliding_velocity,base.em0_position_m.0,base.em0_position_m.1,"
+      "base.vision0_position_m.0,extended.em0_position_m.0,extended.em0_position_m.1,"
+      "extended.vision0_position_m.0\n";
+  for (int k = 0; k < samples; ++k) {
+    const double t = 0.02 * k, velocity = 0.05 * std::cos(t);
+    const double x = noise(random), y = noise(random);
+    const std::string seen = k % 2 == 0 ? std::to_string(noise(random)) : "";
+    text += std::to_string(t) + "," + std::to_string(0.3 + 0.05 * std::sin(t)) + "," +
+            std::to_string(velocity) + "," + std::to_string(x) + "," +
+            std::to_string(y + std::copysign(friction, velocity)) + "," + seen + "," +
+            std::to_string(x) + "," + std::to_string(y) + "," + seen + "\n";
+  }
+  return text;
+}
+
+/// The page without the plotting library.
+std::string Own(std::string html) {
+  const auto at = html.find(PlotlyJs());
+  if (at != std::string::npos) html.erase(at, PlotlyJs().size());
+  return html;
+}
+
+TEST_F(DiagnosePage, StandsByItselfAndStatesTheVerdict) {
+  Write("residuals.csv", Residuals(1000, 5.0));
+  const std::string html = Page(Friction()), own = Own(html);
+  EXPECT_THAT(html, HasSubstr("Plotly.newPlot"));
+  EXPECT_FALSE(
+      std::regex_search(own, std::regex("https?://|src=\"(?!data:)|<link|@import|url\\(")));
+  EXPECT_THAT(own, HasSubstr("<title>Diagnosis: port friction</title>"));
+  EXPECT_THAT(own, HasSubstr("coefficient 0.213 ± 0.011 (98 %)"));
+  EXPECT_THAT(own, HasSubstr("diagnose rec   (flextip 9.8.7)"));
+  EXPECT_THAT(own, HasSubstr("the strain gages say nothing"));
+  EXPECT_LT(own.find("coefficient 0.213"), own.find("the strain gages"));
+}
+
+TEST_F(DiagnosePage, AlwaysShowsNoneAndUnknown) {
+  auto json = Friction();
+  for (int i = 0; i < 20; ++i) json["probabilities"]["e" + std::to_string(i)] = 0.01;
+  const std::string html = Page(json);
+  EXPECT_THAT(html, HasSubstr(">none</span>"));
+  EXPECT_THAT(html, HasSubstr(">unknown</span>"));
+  EXPECT_THAT(html, Not(HasSubstr(">e9</span>")));
+  EXPECT_THAT(html, HasSubstr("<i class=\"bar strong\" style=\"width:98.10%\">"));
+}
+
+TEST_F(DiagnosePage, CountsParametersInTolerances) {
+  const std::string html = Page(Friction());
+  EXPECT_THAT(html, HasSubstr("<td>coefficient</td><td>0.213 ± 0.011</td><td>0.03</td>"
+                              "<td>7.1</td>"));
+  // Folded: what moved by more than half a tolerance, which is the y of three components.
+  EXPECT_THAT(html, HasSubstr("2 parameters moved within tolerance"));
+  EXPECT_THAT(html, HasSubstr("<td>offset y</td><td>-0.16 ± 0.05 mm</td><td>0.2 mm</td>"
+                              "<td>0.8</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>scale</td><td>1.013 ± 0.006</td>"));  // nominal is one
+  EXPECT_THAT(html, Not(HasSubstr("<td>offset x</td>")));
+}
+
+TEST_F(DiagnosePage, ShowsErrorsInReadableUnits) {
+  auto json = Friction();
+  std::string html = Page(json);
+  EXPECT_THAT(html, HasSubstr("<td>EM position</td><td>0.9</td><td>0.14</td><td>mm</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>strain</td><td>4</td><td>1</td><td>mN m</td><td>0.25</td>"));
+  EXPECT_THAT(html, Not(HasSubstr("in units of noise")));  // neither noise nor residuals known
+  json["noise_sd"] = {{"em0_position_m", 0.0002}};
+  html = Page(json);
+  EXPECT_THAT(html, HasSubstr("Held-out error, in units of noise"));
+  EXPECT_THAT(html, HasSubstr("4.50 → 0.70"));
+  json.erase("noise_sd");
+  Write("residuals.csv", Residuals(1000, 5.0));
+  EXPECT_THAT(Page(json), HasSubstr("Error by channel over the whole recording"));
+}
+
+TEST_F(DiagnosePage, DrawsTheStrongestPatternOfTheTellingComponent) {
+  Write("residuals.csv", Residuals(1000, 5.0));
+  const auto html = Page(Friction());
+  EXPECT_THAT(html, HasSubstr("The strongest pattern: EM position, 2 against sliding velocity"));
+  const auto plots = Plots(html);
+  ASSERT_EQ(plots.size(), 3U);  // pattern, time, memory
+  const auto& means = plots[0]["traces"][2];
+  EXPECT_EQ(means["name"], "base, mean");
+  EXPECT_NEAR(means["y"].front().get<double>(), -5.0, 0.6);  // 5 sd of the mean of 50
+  EXPECT_NEAR(means["y"].back().get<double>(), 5.0, 0.6);
+  EXPECT_NEAR(plots[0]["traces"][3]["y"].back().get<double>(), 0.0, 0.6);
+  EXPECT_EQ(plots[0]["x_label"], "sliding velocity (mm/s)");
+  EXPECT_THAT(html, HasSubstr("within the band in every channel"));
+}
+
+TEST_F(DiagnosePage, StaysSmallWithALongRecordingAndKeepsSpikes) {
+  std::string table = Residuals(40000, 1.0);
+  table += "800.0,0.3,0.01,0,77.0,0,0,0,0\n";
+  Write("residuals.csv", table);
+  const auto html = Page(Friction());
+  for (const auto& plot : Plots(html)) {
+    for (const auto& trace : plot["traces"]) EXPECT_LE(trace["x"].size(), 1500U);
+  }
+  EXPECT_LT(Own(html).size(), 500000U);
+  const auto y = Plots(html).at(1)["traces"][0]["y"].get<std::vector<double>>();
+  EXPECT_EQ(*std::max_element(y.begin(), y.end()), 77.0);
+}
+
+TEST_F(DiagnosePage, TakesTextForTextAndNotForHtml) {
+  auto json = Friction();
+  json["summaries"]["port_friction"] = "<img src=x>";
+  json["separating_motion"] = "</script><script>alert(1)</script>";
+  json["residual_signature"][0]["channel"] = "<b>c";
+  json["catalogue"] = {"<i>e"};
+  json["warnings"] = {"<u>w"};
+  const std::string html = Own(Page(json));
+  for (const char* raw : {"<img src=x>", "<script>alert", "<b>c", "<i>e", "<u>w"}) {
+    EXPECT_THAT(html, Not(HasSubstr(raw)));
+  }
+  EXPECT_THAT(html, HasSubstr("&lt;img src=x&gt;"));
+}
+
+TEST_F(DiagnosePage, IsMadeOfTheLeastAnswerToo) {
+  const std::string html = Page({{"verdict", "none"}, {"probabilities", {{"none", 0.9}}}});
+  EXPECT_THAT(html, HasSubstr("Nothing is wrong beyond tolerance"));
+}
+
+TEST_F(DiagnosePage, SaysWhichFileIsWrong) {
+  Write("diagnosis.json", R"({"verdict": 3})");
+  try {
+    WriteDiagnoseReport(folder_);
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("diagnosis.json"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "report.html"));
+  std::filesystem::remove(folder_ / "diagnosis.json");
+  EXPECT_THROW(WriteDiagnoseReport(folder_), InputError);
+}
+
+/// AR(1) noise has the autocorrelation phi^lag.
+TEST(ResidualMemory, TellsNoiseThatRemembersFromWhite) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise;
+  ResultTable table{.names = {"t_s", "base.a.0", "extended.a.0", "base.b.0", "extended.b.0"},
+                    .numbers = std::vector<std::vector<double>>(5),
+                    .texts = {}};
+  double ar = 0.0;
+  for (int k = 0; k < 20000; ++k) {
+    ar = 0.8 * ar + noise(random);
+    const double white = noise(random);
+    const double row[] = {0.01 * k, ar, ar, white, white};
+    for (std::size_t i = 0; i < 5; ++i) table.numbers[i].push_back(row[i]);
+  }
+  const auto memory = ResidualMemory(table, "extended");
+  ASSERT_EQ(memory.plot.traces.size(), 3U);  // two channels and the band
+  for (std::size_t lag = 1; lag <= 5; ++lag) {
+    EXPECT_NEAR(memory.plot.traces[0].y.at(lag - 1), std::pow(0.8, double(lag)), 0.05);
+  }
+  EXPECT_NEAR(memory.plot.traces[0].x.at(2), 0.03, 1e-9);
+  ASSERT_EQ(memory.not_white.size(), 1U);
+  EXPECT_THAT(memory.not_white[0], HasSubstr("a (0.8"));
+}
+
+}  // namespace
+}  // namespace flextip
