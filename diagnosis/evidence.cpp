@@ -5,17 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/half_normal.h"
+
 namespace flextip {
 namespace {
 
 double LogDeterminant(const Eigen::LLT<Eigen::MatrixXd>& llt) {
   return 2.0 * Eigen::VectorXd(llt.matrixLLT().diagonal()).array().log().sum();
-}
-
-/// log of the standard normal's distribution function.
-double LogPhi(double x) {
-  if (x < -8.0) return -0.5 * x * x - std::log(-x) - 0.919;
-  return std::log(0.5 * std::erfc(-x / std::sqrt(2.0)));
 }
 
 }  // namespace
@@ -37,7 +33,7 @@ Evidence::Evidence(const NormalSums& sums, const ParameterLayout& layout,
   contexts_.resize(widths.size());
   tbb::parallel_for(std::size_t{0}, widths.size(),
                     [&](std::size_t i) { contexts_[i] = MakeContext(widths[i]); });
-  none_ = contexts_[0].log_evidence - 0.5 * sums.c;
+  none_ = contexts_[0].log_evidence - 0.5 * (sums.c + sums.log_volume);
   for (std::size_t i = contexts_.size(); i-- > 0;)
     contexts_[i].log_evidence -= contexts_[0].log_evidence;
 }
@@ -53,6 +49,7 @@ Evidence::Context Evidence::MakeContext(double unknown_sd) const {
   context.covariance = llt.solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
   context.mean = context.covariance * g;
   context.log_evidence = 0.5 * (g.dot(context.mean) - LogDeterminant(llt));
+  if (unknown_sd > 0.0) context.log_evidence -= 0.5 * (sums_.log_volume_here - sums_.log_volume);
   return context;
 }
 
@@ -97,12 +94,12 @@ double Evidence::Change(const Marginal& marginal, const Eigen::VectorXd& wide,
   const Eigen::VectorXd mean = llt.solve(marginal.eta);
   double twice =
       marginal.eta.dot(mean) - LogDeterminant(llt) - 2.0 * wide.array().log().sum() - marginal.base;
-  for (std::size_t i = 0; i < subset.size(); ++i) {
-    if (!layout_.Parameter(subset[i]).positive) continue;
-    const auto ii = Eigen::Index(i);
-    const double variance = llt.solve(Eigen::VectorXd::Unit(mean.size(), ii))[ii];
-    twice += 2.0 * (std::log(2.0) + LogPhi(mean[ii] / std::sqrt(variance)));
-  }
+  std::vector<int> positive;
+  for (std::size_t i = 0; i < subset.size(); ++i)
+    if (layout_.Parameter(subset[i]).positive) positive.push_back(int(i));
+  if (positive.empty()) return twice;
+  const Eigen::MatrixXd C = llt.solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
+  twice += 2.0 * (double(positive.size()) * std::log(2.0) + LogPositive(mean, C, positive));
   return twice;
 }
 
@@ -159,12 +156,17 @@ Eigen::VectorXd Evidence::Information(bool unknown) const {
   return unknown ? sums_.g : Eigen::VectorXd(sums_.g - 0.5 * sums_.volume);
 }
 
-Eigen::VectorXd Evidence::Mean(const WeighedHypothesis& weighed) const {
-  return Covariance(weighed) * Information(weighed.hypothesis.unknown);
+double Evidence::Merit(const WeighedHypothesis& weighed, const Eigen::VectorXd& x) const {
+  return sums_.c + sums_.log_volume - 2.0 * Information(weighed.hypothesis.unknown).dot(x) +
+         x.dot(sums_.H * x) + x.cwiseQuotient(PriorSd(weighed)).squaredNorm();
 }
 
-double Evidence::Cost(const WeighedHypothesis& weighed) const {
-  return sums_.c - sums_.g.dot(Mean(weighed));
+Eigen::VectorXd Evidence::Mode(const WeighedHypothesis& weighed) const {
+  const Eigen::MatrixXd C = Covariance(weighed);
+  std::vector<int> positive;
+  for (const int j : Subset(weighed.hypothesis))
+    if (layout_.Parameter(j).positive) positive.push_back(j);
+  return PositiveMode(C * Information(weighed.hypothesis.unknown), C, positive);
 }
 
 }  // namespace flextip

@@ -41,13 +41,14 @@ class Evidence {
   /// problems made about different points.
   double LogEvidenceOfNone() const { return none_; }
 
-  /// Mean of all unknowns given that `weighed` holds, with its best widths.
-  Eigen::VectorXd Mean(const WeighedHypothesis& weighed) const;
+  /// The most likely unknowns given that `weighed` holds, with its best widths.
+  Eigen::VectorXd Mode(const WeighedHypothesis& weighed) const;
   Eigen::MatrixXd Covariance(const WeighedHypothesis& weighed) const;
+  /// Minus twice the log of how likely the unknowns `x` are under `weighed`, up to the constant
+  /// that LogEvidenceOfNone leaves out too.
+  double Merit(const WeighedHypothesis& weighed, const Eigen::VectorXd& x) const;
   /// Standard deviations of all unknowns' priors under `weighed`.
   Eigen::VectorXd PriorSd(const WeighedHypothesis& weighed) const;
-  /// Least value of |z - X x|^2 + x^T x / sd^2 under `weighed`.
-  double Cost(const WeighedHypothesis& weighed) const;
 
  private:
   /// All unknowns with the catalogue's parameters at their tolerances.
@@ -60,7 +61,6 @@ class Evidence {
   };
   Context MakeContext(double unknown_sd) const;
   Eigen::VectorXd Information(bool unknown) const;
-  /// Twice the change of log evidence in `context` when the prior of `subset` becomes `wide`.
   struct Marginal {
     Eigen::MatrixXd A;    ///< posterior precision of the subset
     Eigen::VectorXd eta;  ///< information vector

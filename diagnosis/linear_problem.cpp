@@ -61,98 +61,32 @@ class BlockBuilder {
 };
 
 void FillSizes(const Replay& replay, LinearProblem& problem) {
-  Rows residual = Rows::Zero(), signal = Rows::Zero(), count = Rows::Zero();
+  Rows residual = Rows::Zero(), count = Rows::Zero();
   const auto free = replay.ForceFreeResiduals();
-  const Eigen::VectorXd& theta = replay.Theta();
   for (std::size_t k = 0; k < free.size(); ++k) {
     const ReplayedSample& sample = replay.Samples()[k];
     if (!sample.ok) continue;
     const Rows sd = replay.RowNoise(k);
-    Rows moved = Rows::Zero();
-    for (const auto& column : sample.columns)
-      moved += column.value * theta[column.parameter] * sample.compared.by_inputs.col(column.input);
     for (int r = 0; r < row::kCount; ++r) {
       if (!replay.Set().samples[k].present[r] || sd[r] <= 0.0) continue;
       residual[r] += std::pow(free[k][r] / sd[r], 2);
-      signal[r] += std::pow(moved[r] / sd[r], 2);
       count[r] += 1.0;
     }
   }
   for (int r = 0; r < row::kCount; ++r) {
     if (count[r] == 0.0) continue;
     problem.residual_size[r] = std::sqrt(residual[r] / count[r]);
-    problem.signal_size[r] = std::sqrt(signal[r] / count[r]);
   }
-}
-
-constexpr std::size_t kVolumeSamples = 100;
-
-/// A compliance: it scales how much the force shows in the sensors.
-bool ChangesFeeling(const Replay& replay, int parameter) {
-  using namespace model_input;
-  for (const auto& column : replay.Samples()[replay.Samples().size() / 2].columns) {
-    const int input = column.input;
-    const bool scales =
-        input == kTipCompliance || input == kPortCompliance || input == kWristCompliance;
-    if (column.parameter == parameter && scales) return true;
-  }
-  return false;
-}
-
-/// Sum over samples of log |C|.
-double LogVolume(const Replay& replay) {
-  const WhitenedRows rows = replay.Whiten();
-  double sum = 0.0;
-  for (std::size_t k = 0; k < rows.rows.size(); ++k)
-    if (rows.Rows(k) > 0) sum -= 2.0 * rows.units[k].diagonal().array().log().sum();
-  return sum;
-}
-
-/// Every so many of the samples.
-SampleSet Thinned(const SampleSet& samples, std::size_t stride) {
-  SampleSet thin = samples;
-  thin.samples.clear();
-  for (std::size_t k = 0; k < samples.samples.size(); k += stride)
-    thin.samples.push_back(samples.samples[k]);
-  thin.resolved_in_time = false;  // rates do not matter here
-  return thin;
 }
 
 }  // namespace
-
-void AddForceVolume(const Replay& replay, LinearProblem& problem) {
-  if (replay.Set().has_load) return;
-  const std::size_t stride = std::max<std::size_t>(1, replay.Samples().size() / kVolumeSamples);
-  const SampleSet samples = Thinned(replay.Set(), stride);
-  const ParameterLayout& layout = replay.Layout();
-  Eigen::VectorXd slope = Eigen::VectorXd::Zero(problem.Size());
-  std::vector<Eigen::Vector3d> forces;
-  for (std::size_t k = 0; k < replay.Samples().size(); k += stride)
-    forces.push_back(replay.Samples()[k].f_tip_N);
-  Replay thin(samples, layout);
-  thin.TakeSettings(replay);
-  thin.SetForces(forces);
-  if (!thin.EvaluateWithForces(replay.Theta())) return;
-  const double here = LogVolume(thin);
-  for (const auto& block : layout.Blocks()) {
-    for (int j = block.first; j < block.first + block.size; ++j) {
-      if (!ChangesFeeling(replay, j)) continue;
-      const double step = 0.3 * layout.Tolerances()[j];
-      Eigen::VectorXd theta = replay.Theta();
-      theta[j] += step;
-      if (thin.EvaluateWithForces(theta))
-        slope[j] = (LogVolume(thin) - here) / step * double(stride);
-    }
-  }
-  for (NormalSums& block : problem.blocks)
-    block.volume = slope * (double(block.rows) / double(problem.total.rows));
-  problem.total.volume = slope;
-}
 
 void NormalSums::Add(const NormalSums& other, double weight) {
   H += weight * other.H;
   g += weight * other.g;
   volume += weight * other.volume;
+  log_volume += weight * other.log_volume;
+  log_volume_here += weight * other.log_volume_here;
   c += weight * other.c;
   rows += std::lround(weight * double(other.rows));
 }

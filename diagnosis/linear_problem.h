@@ -15,8 +15,10 @@ struct NormalSums {
   Eigen::MatrixXd H;  ///< X^T X
   Eigen::VectorXd g;  ///< X^T z
   double c = 0.0;     ///< z^T z
-  /// Slope of the log volume that unknown forces take up (AddForceVolume).
+  /// What unknown forces take up, to first order in the parameters (force_volume.h): slope, value
+  /// at the base simulation and at the point the problem is about.
   Eigen::VectorXd volume;
+  double log_volume = 0.0, log_volume_here = 0.0;
   long rows = 0;
 
   explicit NormalSums(Eigen::Index size = 0)
@@ -33,21 +35,14 @@ struct LinearProblem {
   std::vector<int> generic_row;    ///< of each generic unknown: the measured row
   std::vector<NormalSums> blocks;  ///< consecutive stretches of time
   NormalSums total;
-  /// Root mean square over the samples, per measured row in its standard deviations: of the
-  /// residual as it stands, and of what theta changes against the base simulation.
-  Rows residual_size = Rows::Zero(), signal_size = Rows::Zero();
+  /// Root mean square over the samples of the residual as it stands, per measured row in its
+  /// standard deviations.
+  Rows residual_size = Rows::Zero();
 
   int Size() const { return parameters + int(generic_row.size()); }
 };
 
 /// `basis` has one row a sample (generic_basis.h); empty: no generic terms.
 LinearProblem MakeLinearProblem(const Replay& replay, const Eigen::MatrixXd& basis, int blocks);
-
-/// Unknown tip forces take up more of the data the more each sensor feels them: the evidence falls
-/// with the logarithm of the determinant of each sample's covariance, whose slope in the parameters
-/// is set here. Without it, a yielding tip would look likely only because the least known force,
-/// that along the shaft, could then explain the tip's noise. Taken for the compliances, which scale
-/// what the force does; nothing for known loads.
-void AddForceVolume(const Replay& replay, LinearProblem& problem);
 
 }  // namespace flextip

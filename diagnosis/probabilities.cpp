@@ -70,8 +70,8 @@ Probabilities MakeProbabilities(const Selection& selection, const ParameterLayou
   std::mt19937_64 rng(options.seed);
   for (int bag = 0; bag < options.bags; ++bag) {
     const NormalSums sums = DrawBag(selection.problem, rng);
-    add(ScoreSome(sums, layout, selection.generic_sd, leaders, selection_options,
-                  {.scales = {0.3, 1.0, 3.0}, .unknown_sd = {0.3, 1.0}}),
+    add(Score(sums, layout, selection.generic_sd, leaders, selection_options,
+              {.scales = {0.3, 1.0, 3.0}, .unknown_sd = {0.3, 1.0}}, selection.corrections),
         0.5 / options.bags);
   }
   Probabilities result;

@@ -190,17 +190,25 @@ void Replay::FitForce(std::size_t k, EffectRodSolver& solver) {
   }
 }
 
+/// The last sample before `k` with the same sensors, from `begin` on; `k` where there is none.
+std::size_t Replay::LastAlike(std::size_t begin, std::size_t k) const {
+  for (std::size_t j = k; j-- > begin;)
+    if (replayed_[j].ok && samples_.samples[j].present == samples_.samples[k].present) return j;
+  return k;
+}
+
 /// Each sample from where it was; where that ends badly, from its neighbour's force.
 void Replay::FitForces() {
   ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
     EffectRodSolver solver;
     for (std::size_t k = begin; k < end; ++k) {
       FitForce(k, solver);
-      if (k == begin || !replayed_[k - 1].ok) continue;
+      const std::size_t alike = LastAlike(begin, k);
+      if (alike == k) continue;
       const ReplayedSample own = replayed_[k];
       const double rows = double(samples_.samples[k].present.count());
-      if (own.ok && own.force_merit < kBadFit * (replayed_[k - 1].force_merit + rows)) continue;
-      replayed_[k].f_tip_N = replayed_[k - 1].f_tip_N;
+      if (own.ok && own.force_merit < kBadFit * (replayed_[alike].force_merit + rows)) continue;
+      replayed_[k].f_tip_N = replayed_[alike].f_tip_N;
       FitForce(k, solver);
       if (own.ok && (!replayed_[k].ok || own.force_merit < replayed_[k].force_merit))
         replayed_[k] = own;
@@ -358,6 +366,7 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
   }
   all.e.resize(all.first_row.back());
   all.units.resize(replayed_.size());
+  all.log_determinant.assign(replayed_.size(), 0.0);
   all.rows.resize(replayed_.size());
   all.X.resize(all.first_row.back(), layout_.Size());
   ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
@@ -365,6 +374,8 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
       if (all.Rows(k) == 0) continue;
       const Statistics s = StatisticsOf(k, rows_used);
       const auto L = s.covariance.matrixL();
+      const auto diagonal = s.covariance.matrixLLT().diagonal();
+      all.log_determinant[k] = 2.0 * diagonal.array().log().sum();
       all.e.segment(all.first_row[k], all.Rows(k)) = L.solve(s.e);
       all.X.middleRows(all.first_row[k], all.Rows(k)) = L.solve(Derivatives(k, s.rows));
       const Rows sd = RowNoise(k);

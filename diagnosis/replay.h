@@ -35,6 +35,7 @@ struct WhitenedRows {
   std::vector<std::vector<int>> rows;  ///< of each sample: which measured rows these are
   /// Of each sample: what an error of one standard deviation in each measured row becomes.
   std::vector<Eigen::MatrixXd> units;
+  std::vector<double> log_determinant;  ///< of each sample's covariance
 
   int Rows(std::size_t k) const { return first_row[k + 1] - first_row[k]; }
 };
@@ -100,6 +101,7 @@ class Replay {
   void Retime();
   void FitForces();
   void FitForce(std::size_t k, EffectRodSolver& solver);
+  std::size_t LastAlike(std::size_t begin, std::size_t k) const;
   bool TryForce(std::size_t k, const Eigen::Vector3d& f_N, EffectRodSolver& solver);
   void CompareSamples();
   TimedGeometry WithRate(std::size_t k) const;

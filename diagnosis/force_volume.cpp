@@ -1,0 +1,105 @@
+#include "diagnosis/force_volume.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+namespace flextip {
+namespace {
+
+constexpr std::size_t kSamples = 100;
+constexpr double kStep = 0.3;  // of a tolerance
+
+/// The parameters that scale what the force does.
+std::vector<int> Compliances(const Replay& replay) {
+  using namespace model_input;
+  std::vector<int> found;
+  for (const auto& column : replay.Samples()[replay.Samples().size() / 2].columns)
+    if (column.input == kTipCompliance || column.input == kPortCompliance ||
+        column.input == kWristCompliance)
+      found.push_back(column.parameter);
+  return found;
+}
+
+/// A few of a replay's samples, with their forces.
+class Thinned {
+ public:
+  explicit Thinned(const Replay& replay)
+      : stride_(std::max<std::size_t>(1, replay.Samples().size() / kSamples)),
+        samples_(Take(replay.Set(), stride_)),
+        replay_(samples_, replay.Layout()) {
+    std::vector<Eigen::Vector3d> forces_N;
+    for (std::size_t k = 0; k < replay.Samples().size(); k += stride_)
+      forces_N.push_back(replay.Samples()[k].f_tip_N);
+    replay_.TakeSettings(replay);
+    replay_.SetForces(forces_N);
+  }
+
+  /// The whole recording's log determinant with parameters `theta`; empty: no equilibrium.
+  std::optional<double> At(const Eigen::VectorXd& theta) {
+    if (!replay_.EvaluateWithForces(theta)) return {};
+    const std::vector<double> logs = replay_.Whiten().log_determinant;
+    return double(stride_) * std::accumulate(logs.begin(), logs.end(), 0.0);
+  }
+
+ private:
+  static SampleSet Take(const SampleSet& samples, std::size_t stride) {
+    SampleSet thin = samples;
+    thin.samples.clear();
+    for (std::size_t k = 0; k < samples.samples.size(); k += stride)
+      thin.samples.push_back(samples.samples[k]);
+    thin.resolved_in_time = false;  // rates do not matter here
+    return thin;
+  }
+
+  std::size_t stride_;
+  SampleSet samples_;
+  Replay replay_;
+};
+
+double VolumeAgainstRigid(const Replay& replay, Thinned& thin) {
+  Eigen::VectorXd rigid = replay.Theta();
+  for (const int j : Compliances(replay)) rigid[j] = 0.0;
+  const auto here = thin.At(replay.Theta()), reference = thin.At(rigid);
+  return here && reference ? *here - *reference : 0.0;
+}
+
+}  // namespace
+
+double ForceVolume(const Replay& replay) {
+  if (replay.Set().has_load) return 0.0;
+  Thinned thin(replay);
+  return VolumeAgainstRigid(replay, thin);
+}
+
+void AddForceVolume(const Replay& replay, LinearProblem& problem) {
+  if (replay.Set().has_load) return;
+  Thinned thin(replay);
+  const double value = VolumeAgainstRigid(replay, thin);
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(problem.Size());
+  const int found = replay.Layout().Find("stiffness");
+  const int stiffness = found < 0 ? -1 : replay.Layout().Blocks()[found].first;
+  for (const int j : Compliances(replay)) {
+    const double step = kStep * replay.Layout().Tolerances()[j];
+    Eigen::VectorXd less = replay.Theta(), more = replay.Theta();
+    less[j] -= step;
+    more[j] += step;
+    const auto below = thin.At(less), above = thin.At(more);
+    if (!below || !above) continue;
+    slope[j] = (*above - *below) / (2.0 * step);
+    // Forces come in units of EI, so that what they do hangs on compliance times EI alone.
+    if (stiffness >= 0) slope[stiffness] += slope[j] * replay.Theta()[j];
+  }
+  const auto set = [&](NormalSums& sums) {
+    const double part = double(sums.rows) / double(problem.total.rows);
+    sums.volume = part * slope;
+    sums.log_volume_here = part * value;
+    sums.log_volume =
+        sums.log_volume_here - sums.volume.head(problem.parameters).dot(replay.Theta());
+  };
+  for (NormalSums& block : problem.blocks) set(block);
+  set(problem.total);
+}
+
+}  // namespace flextip
