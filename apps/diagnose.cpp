@@ -53,7 +53,9 @@ nlohmann::json Compared(const ControllerGain& gain) {
 /// The controllers with and without what was found, on a plant that has it.
 void AddClosedLoop(const Recording& recording, const ExtendedModel& model, OutputFolder& output,
                    nlohmann::ordered_json& json) {
-  for (const ControllerGain& gain : MeasureClosedLoopGain(recording, model).controllers) {
+  const ClosedLoopGain measured = MeasureClosedLoopGain(recording, model);
+  if (!measured.warning.empty()) output.Warn(measured.warning);
+  for (const ControllerGain& gain : measured.controllers) {
     if (!gain.ran) {
       output.Warn(fmt::format("closed loop: the simulated instrument lost its equilibrium under {}",
                               Name(gain.kind)));
