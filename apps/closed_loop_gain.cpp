@@ -1,5 +1,6 @@
 #include "apps/closed_loop_gain.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
@@ -92,13 +93,34 @@ PathSetup Square(const Eigen::Vector3d& along) {
   return path;
 }
 
+constexpr const char* kRegistration = "registration";  // of the recording's sensors, not of these
+
+/// `model` with what the simulation knows of it; the effects it does not know go to `left_out`.
+ExtendedModel Simulated(ExtendedModel model, std::vector<std::string>& left_out) {
+  for (auto* list : {&model.effects, &model.within_tolerance}) {
+    std::erase_if(*list, [&](const EffectFit& fit) {
+      const bool known = fit.effect == kRegistration || NeutralEffects().contains(fit.effect);
+      if (!known) left_out.push_back(fit.effect);
+      return !known;
+    });
+    for (EffectFit& fit : *list) {
+      for (ReportedParameter& parameter : fit.parameters)
+        if (parameter.name.starts_with("overtone_"))
+          parameter.value.assign(parameter.value.size(), 0.0);
+    }
+  }
+  return model;
+}
+
+/// What the simulation has a parameter for: it turns a pose by the focal length as it must.
 std::map<std::string, EffectParameters> ValuesOf(const ExtendedModel& model) {
   std::map<std::string, EffectParameters> values;
   for (const auto* list : {&model.effects, &model.within_tolerance}) {
     for (const EffectFit& fit : *list) {
-      if (fit.effect == "registration") continue;  // of the recording's sensors, not of these
+      if (fit.effect == kRegistration) continue;
+      const EffectParameters& known = NeutralEffects().at(fit.effect);
       for (const ReportedParameter& parameter : fit.parameters)
-        values[fit.effect][parameter.name] = parameter.value;
+        if (known.contains(parameter.name)) values[fit.effect][parameter.name] = parameter.value;
     }
   }
   return values;
@@ -153,10 +175,15 @@ PathDeviation Run(const LoopSetup& setup) {
 
 ClosedLoopGain MeasureClosedLoopGain(const Recording& recording, const ExtendedModel& model) {
   if (!recording.wrist0 || recording.wrist0->samples.empty()) return {};
-  const LoopSetup common = MakeSetup(recording, model);
-  ExtendedModel now = model;  // the simulated run's clock starts with it
-  now.start_ns = kSimulationStart_ns;
+  std::vector<std::string> left_out;
+  ExtendedModel now = Simulated(model, left_out);
+  const LoopSetup common = MakeSetup(recording, now);
+  now.start_ns = kSimulationStart_ns;  // the simulated run's clock starts with it
   ClosedLoopGain gain;
+  if (!left_out.empty()) {
+    gain.warning = fmt::format("closed loop: {} left out, which the simulation does not know",
+                               fmt::join(left_out, ", "));
+  }
   for (const ControllerKind kind : {ControllerKind::kRodCalculate, ControllerKind::kRodTrack})
     gain.controllers.push_back({kind, true, {}, {}});
   std::vector<char> ran(2 * gain.controllers.size(), 1);  // one for each run: no two threads' own

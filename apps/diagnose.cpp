@@ -12,11 +12,10 @@
 #include "apps/closed_loop_gain.h"
 #include "apps/commands.h"
 #include "apps/output.h"
+#include "apps/recording_input.h"
 #include "core/error.h"
 #include "diagnosis/catalogue.h"
 #include "diagnosis/extended_model.h"
-#include "recording/recording_reader.h"
-#include "recording/sensor_streams.h"
 #include "recording/text.h"
 #include "report/pages.h"
 
@@ -24,21 +23,10 @@ namespace flextip {
 namespace {
 
 struct Options {
-  std::filesystem::path recording, tracked, out;
+  RecordingInput input;
   std::vector<std::string> without;
   bool closed_loop = true, force = false;
 };
-
-Recording ReadInput(const Options& options, std::vector<std::string>& warnings) {
-  ReadResult read = ReadRecording(options.recording, {.check_frames = false});
-  warnings = read.warnings;
-  if (!options.tracked.empty()) {
-    ReadLog log;
-    read.recording.vision0 = ReadVision(options.tracked / "vision0", log);
-    warnings.insert(warnings.end(), log.warnings.begin(), log.warnings.end());
-  }
-  return std::move(read.recording);
-}
 
 nlohmann::json Deviations(double max_m, double rms_m) {
   return {{"max_deviation_m", max_m}, {"rms_deviation_m", rms_m}};
@@ -53,7 +41,9 @@ nlohmann::json Compared(const ControllerGain& gain) {
 /// The controllers with and without what was found, on a plant that has it.
 void AddClosedLoop(const Recording& recording, const ExtendedModel& model, OutputFolder& output,
                    nlohmann::ordered_json& json) {
-  for (const ControllerGain& gain : MeasureClosedLoopGain(recording, model).controllers) {
+  const ClosedLoopGain measured = MeasureClosedLoopGain(recording, model);
+  if (!measured.warning.empty()) output.Warn(measured.warning);
+  for (const ControllerGain& gain : measured.controllers) {
     if (!gain.ran) {
       output.Warn(fmt::format("closed loop: the simulated instrument lost its equilibrium under {}",
                               Name(gain.kind)));
@@ -81,7 +71,7 @@ void PrintAnswer(const DiagnosisResult& result, const Options& options) {
   fmt::print("\n");
   if (!result.separating_motion.empty())
     fmt::print("to tell them apart: {}\n", result.separating_motion);
-  fmt::print("{}\n", (options.out / "report.html").string());
+  fmt::print("{}\n", (options.input.out / "report.html").string());
 }
 
 void CheckNames(const std::vector<std::string>& effects) {
@@ -93,13 +83,13 @@ void CheckNames(const std::vector<std::string>& effects) {
 
 void Run(const Options& options, bool quiet) {
   CheckNames(options.without);
-  std::vector<std::string> warnings;
-  const Recording recording = ReadInput(options, warnings);
-  OutputFolder output(options.out, "diagnose",
-                      {.force = options.force, .inputs = {options.recording}});
-  output.Warn(warnings);
+  const ReadResult read = ReadInput(options.input);
+  const Recording& recording = read.recording;
+  OutputFolder output(options.input.out, "diagnose",
+                      {.force = options.force, .inputs = {options.input.recording}});
+  output.Warn(read.warnings);
   const DiagnosisResult result =
-      Diagnose(recording, options.recording.string(), {.without = options.without});
+      Diagnose(recording, options.input.recording.string(), {.without = options.without});
   output.Warn(result.warnings);
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(DiagnosisJson(result));
   const ExtendedModel model = FromResult(result);
@@ -122,14 +112,7 @@ void AddDiagnose(CLI::App& app, AppContext& context) {
   auto* command = app.add_subcommand(
       "diagnose", "What the simulation gets wrong, why, and what an extended model gains");
   auto options = std::make_shared<Options>();
-  command->add_option("recording", options->recording, "Folder of the recording")
-      ->required()
-      ->type_name("RECORDING");
-  command->add_option("-o,--output", options->out, "Folder for the results")
-      ->required()
-      ->type_name("OUT");
-  command->add_option("--tracked", options->tracked,
-                      "Take the tip from this result of flextip track instead of vision0");
+  AddRecordingInput(*command, options->input);
   command
       ->add_option("--without", options->without,
                    "Effects to leave out of the catalogue (once for each)")

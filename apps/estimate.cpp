@@ -12,13 +12,12 @@
 #include "apps/progress.h"
 #include "apps/recorded_estimates.h"
 #include "apps/recorded_measurements.h"
+#include "apps/recording_input.h"
 #include "apps/tip_score.h"
 #include "core/error.h"
 #include "diagnosis/model_at.h"
 #include "estimation/shaft_estimator.h"
 #include "recording/csv.h"
-#include "recording/recording_reader.h"
-#include "recording/sensor_streams.h"
 #include "recording/text.h"
 #include "report/pages.h"
 
@@ -26,7 +25,8 @@ namespace flextip {
 namespace {
 
 struct EstimateOptions {
-  std::filesystem::path recording, tracked, model, out;
+  RecordingInput input;
+  std::filesystem::path model;
   double port_prior_m = 0.0003;
   bool without_positions = false, force = false;
 };
@@ -127,7 +127,7 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
       {"samples", estimates.size()}, {"statuses", statuses}, {"sensors", sensors}};
   if (!options.model.empty()) summary["model"] = options.model.filename().string();
   if (measurements > 0) summary["chi2_per_measurement"] = chi2 / measurements;
-  const auto score = ScoreAgainstTruth(options.recording, estimates);
+  const auto score = ScoreAgainstTruth(options.input.recording, estimates);
   if (score && score->frames > 0) {
     summary["scored_samples"] = score->frames;
     summary["tip_rms_error_m"] = score->rms_error_m;
@@ -137,27 +137,22 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
 }
 
 void RunEstimate(const EstimateOptions& options, bool quiet) {
-  ReadResult read = ReadRecording(options.recording, {.check_frames = false});
-  Recording& recording = read.recording;
-  if (!options.tracked.empty()) {
-    ReadLog log;
-    recording.vision0 = ReadVision(options.tracked / "vision0", log);
-    read.warnings.insert(read.warnings.end(), log.warnings.begin(), log.warnings.end());
-  }
+  const ReadResult read = ReadInput(options.input);
+  const Recording& recording = read.recording;
   if (!recording.wrist0) {
-    throw InputError(options.recording.string() +
+    throw InputError(options.input.recording.string() +
                      ": no wrist0, without which nothing can be estimated");
   }
-  std::vector<std::filesystem::path> inputs = {options.recording};
+  std::vector<std::filesystem::path> inputs = {options.input.recording};
   if (!options.model.empty()) inputs.push_back(options.model);
-  OutputFolder output(options.out, "estimate", {.force = options.force, .inputs = inputs});
+  OutputFolder output(options.input.out, "estimate", {.force = options.force, .inputs = inputs});
   output.Warn(read.warnings);
   if (recording.cam0 && !recording.vision0) {
     output.Warn("cam0 has not been tracked: run flextip track and pass its folder with --tracked");
   }
   const Estimates estimates = EstimateAll(recording, options, quiet);
   if (estimates.empty())
-    throw WorkError(options.recording.string() + ": no sample could be estimated");
+    throw WorkError(options.input.recording.string() + ": no sample could be estimated");
   CsvWriter csv(kColumns);
   for (const auto& e : estimates) AddRow(csv, e.t_ns, e.value);
   WriteTextFile(output.folder() / "state0" / "data.csv", csv.text());
@@ -166,7 +161,7 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   output.Commit();
   if (!quiet) {
     fmt::print("{} samples in {}\n", estimates.size(),
-               (options.out / "state0" / "data.csv").string());
+               (options.input.out / "state0" / "data.csv").string());
   }
 }
 
@@ -176,14 +171,7 @@ void AddEstimate(CLI::App& app, AppContext& context) {
   auto* command = app.add_subcommand(
       "estimate", "Load, port and shape of the instrument at every sample of a recording");
   auto options = std::make_shared<EstimateOptions>();
-  command->add_option("recording", options->recording, "Folder of the recording")
-      ->required()
-      ->type_name("RECORDING");
-  command->add_option("-o,--output", options->out, "Folder for the results")
-      ->required()
-      ->type_name("OUT");
-  command->add_option("--tracked", options->tracked,
-                      "Take the tip from this result of flextip track instead of vision0");
+  AddRecordingInput(*command, options->input);
   command
       ->add_option("--model", options->model,
                    "Know of the effects in this model.yaml (from flextip diagnose)")

@@ -2,7 +2,6 @@
 // to a folder without its label, read again, diagnosed, and compared. Resumes where it stopped.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <fstream>
 #include <mutex>
@@ -12,6 +11,7 @@
 #include "bench/matrix_picture.h"
 #include "bench/matrix_run.h"
 #include "bench/matrix_summary.h"
+#include "bench/tool.h"
 #include "core/error.h"
 #include "recording/text.h"
 
@@ -142,7 +142,7 @@ void Summarize(const std::filesystem::path& out) {
   fmt::print("{}", FigureTable(figures));
 }
 
-void Run(const Arguments& arguments) {
+void Run(Arguments& arguments) {
   if (!arguments.summarize) {
     std::filesystem::create_directories(arguments.out);
     CaseFile file(arguments.out / "cases.jsonl");
@@ -155,23 +155,6 @@ void Run(const Arguments& arguments) {
 }  // namespace flextip
 
 int main(int argc, char** argv) {
-  flextip::Arguments arguments;
-  CLI::App app("How often the diagnosis finds what is hidden");
-  flextip::AddOptions(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
-  }
-  try {
-    flextip::Run(arguments);
-  } catch (const flextip::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-  return 0;
+  return flextip::RunTool(argc, argv, "How often the diagnosis finds what is hidden",
+                          flextip::AddOptions, flextip::Run);
 }

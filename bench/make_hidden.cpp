@@ -2,10 +2,10 @@
 // without a word of what is in them, and the labels in one file elsewhere.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "bench/tool.h"
 #include "core/error.h"
 #include "recording/text.h"
 #include "simulation/hidden_recording.h"
@@ -146,23 +146,6 @@ void Run(Arguments& arguments) {
 }  // namespace flextip
 
 int main(int argc, char** argv) {
-  flextip::Arguments arguments;
-  CLI::App app("Recordings whose effect is hidden");
-  flextip::AddOptions(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
-  }
-  try {
-    flextip::Run(arguments);
-  } catch (const flextip::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-  return 0;
+  return flextip::RunTool(argc, argv, "Recordings whose effect is hidden", flextip::AddOptions,
+                          flextip::Run);
 }

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "bench/matrix_separable.h"
+#include "bench/matrix_truth.h"
 #include "core/error.h"
 #include "diagnosis/diagnose.h"
 #include "recording/recording_reader.h"
@@ -57,21 +59,18 @@ void SetLabel(const HiddenRecording& hidden, MatrixRecord& record) {
 }
 
 bool IsFinite(const MatrixRecord& r) {
-  double sum = r.p_verdict + r.p_truth + r.heldout_error_ratio + r.tip_error_ratio +
+  double sum = r.separation + r.p_verdict + r.p_truth + r.heldout_error_ratio + r.tip_error_ratio +
                r.extended_weighted_rms + r.base_chi2_per_dof + r.extended_chi2_per_dof;
   for (const auto& [names, probability] : r.probabilities) sum += probability;
   for (const JudgedParameter& p : r.parameters) sum += p.truth + p.value + p.sd;
   return std::isfinite(sum);
 }
 
-/// The label's numbers in the terms the diagnosis reports in.
-EffectParameters TruthOf(const HiddenRecording& hidden, const std::string& effect,
-                         const EffectFit& fit) {
-  EffectParameters truth = hidden.label.parameters.at(effect);
-  if (effect == "self_weight") {  // drawn beyond the nominal one
-    truth["mass_per_length_kg_m"][0] += hidden.recording.instrument.mass_per_length_kg_m;
-  }
-  if (effect == "port_motion") {  // -a with phase + pi is the same motion
+/// As near to what was found as the same motion can be said.
+EffectParameters TruthNear(const HiddenRecording& hidden, const EffectFit& fit) {
+  EffectParameters truth = TruthOf(hidden, fit.effect);
+  truth.erase("turn");                // the label has none: not judged
+  if (fit.effect == "port_motion") {  // -a with phase + pi is the same motion
     const auto& value = fit.parameters.at(0).value;
     auto& amplitude = truth["amplitude_m"];
     double product = 0.0;
@@ -89,7 +88,7 @@ void JudgeParameters(const HiddenRecording& hidden, const DiagnosisResult& resul
   for (const EffectFit& fit : result.parameters) {
     const auto& present = hidden.label.present;
     if (std::find(present.begin(), present.end(), fit.effect) == present.end()) continue;
-    EffectParameters truth = TruthOf(hidden, fit.effect, fit);
+    EffectParameters truth = TruthNear(hidden, fit);
     for (const ReportedParameter& parameter : fit.parameters) {
       if (!truth.contains(parameter.name)) continue;
       const std::vector<double>& values = truth.at(parameter.name);
@@ -134,6 +133,13 @@ void SetResult(const DiagnosisResult& result, MatrixRecord& record) {
   record.warnings = result.warnings;
 }
 
+void SetSeparation(const Recording& recording, const HiddenRecording& hidden,
+                   MatrixRecord& record) {
+  const Separation separation = MeasureSeparation(recording, hidden);
+  record.separation = separation.value;
+  record.rival = separation.rival;
+}
+
 MatrixRecord Judge(const Recording& recording, const HiddenRecording& hidden, MatrixRecord record) {
   const std::string name = "recording";
   DiagnoseOptions options;
@@ -167,6 +173,7 @@ MatrixRecord RunMatrixCase(const MatrixCase& one) {
     const TemporaryFolder folder;
     WriteHidden(folder.Path(), hidden);
     const Recording recording = ReadRecording(folder.Path()).recording;
+    if (one.part == "singles") SetSeparation(recording, hidden, record);
     record = Judge(recording, hidden, record);
   } catch (const InputError& error) {
     record.error = error.what();

@@ -35,7 +35,7 @@ int Found(const MatrixRecord& r) {
 }
 
 /// A single answer that nothing else was declared indistinguishable from.
-bool IsSeparable(const MatrixRecord& r) {
+bool StandsAlone(const MatrixRecord& r) {
   return std::all_of(r.indistinguishable.begin(), r.indistinguishable.end(),
                      [](const EffectNames& group) { return group.size() < 2; });
 }
@@ -126,18 +126,25 @@ class FigureMaker {
              (load.empty() || r.made.load == (load == " load known"));
     });
     const std::string name = "singles " + size + load;
-    Add("right cause first", name, Share(group, &MatrixRecord::IsRight), group, ">= 0.95");
+    Group separable = group;
+    std::erase_if(separable, [](const MatrixRecord* r) { return !r->IsSeparable(); });
+    Add("right cause first", name, Share(group, &MatrixRecord::IsRight), group);
+    Add("right cause first, separable only", name, Share(separable, &MatrixRecord::IsRight),
+        separable, ">= 0.95");
     Add("right or declared indistinguishable", name, Share(group, &MatrixRecord::IsRightOrDeclared),
         group);
     if (!load.empty()) return;
-    Group separable = group;
-    std::erase_if(separable, [](const MatrixRecord* r) { return !IsSeparable(*r); });
-    Add("right cause first, none declared", name, Share(separable, &MatrixRecord::IsRight),
-        separable, ">= 0.95");
-    Add("mean probability of the truth", name, Mean(Each(group, [](auto& r) { return r.p_truth; })),
-        group, ">= 0.90");
-    Add("truth in the 90 % set", name,
-        Share(group, [](auto& r) { return r.truth_in_credible_set; }), group, ">= 0.90");
+    Group alone = group;
+    std::erase_if(alone, [](const MatrixRecord* r) { return !StandsAlone(*r); });
+    Add("right cause first, none declared", name, Share(alone, &MatrixRecord::IsRight), alone);
+    const auto p_truth = [](auto& r) { return r.p_truth; };
+    Add("mean probability of the truth", name, Mean(Each(group, p_truth)), group);
+    Add("mean probability, separable only", name, Mean(Each(separable, p_truth)), separable,
+        ">= 0.90");
+    const auto in_set = [](auto& r) { return r.truth_in_credible_set; };
+    Add("truth in the 90 % set", name, Share(group, in_set), group, ">= 0.90");
+    Add("truth in the 90 % set, separable only", name, Share(separable, in_set), separable,
+        ">= 0.90");
     Add("median size of the 90 % set", name,
         Quantile(Each(group, [](auto& r) { return double(r.credible_set_size); }), 0.5), group);
   }
@@ -242,6 +249,19 @@ nlohmann::json ConfusionJson(const Confusion& confusion) {
   return {{"title", confusion.title}, {"answers", rows}};
 }
 
+/// Single effects that no diagnosis could have told from a rival, right or not.
+std::string NotSeparable(const std::vector<MatrixRecord>& records) {
+  std::string text;
+  for (const MatrixRecord& r : records) {
+    if (r.rival.empty() || r.IsSeparable()) continue;
+    text += fmt::format("{}\n  {:.1f} apart from {}, answered {}\n", r.key, r.separation, r.rival,
+                        r.error.empty() ? JoinedNames(r.verdict) : "nothing");
+  }
+  if (text.empty()) return text;
+  return fmt::format("\nnot separable (twice the log likelihood ratio is below {}):\n\n{}",
+                     kSeparable, text);
+}
+
 }  // namespace
 
 std::vector<MatrixFigure> Figures(const std::vector<MatrixRecord>& records) {
@@ -295,7 +315,7 @@ std::string Misses(const std::vector<MatrixRecord>& records) {
     text += fmt::format("; truth {:.4f}{}\n\n", r.p_truth,
                         r.truth_in_credible_set ? " (in the 90 % set)" : "");
   }
-  return text.empty() ? "no misses\n" : text;
+  return (text.empty() ? "no misses\n" : text) + NotSeparable(records);
 }
 
 }  // namespace flextip

@@ -24,6 +24,11 @@ std::vector<ReportedParameter> ParametersOf(const Effect& effect) {
   return parameters;
 }
 
+bool MayBeMissing(const std::string& effect, const std::string& parameter) {
+  return (effect == "focal_length" && parameter == "turn") ||
+         (effect == "port_motion" && parameter.starts_with("overtone_"));
+}
+
 std::string WhatIsWrong(const Effect& effect, const std::vector<std::vector<double>>& values) {
   const Eigen::VectorXd theta = effect.FromReported(values);
   const std::vector<FitParameter> fitted = effect.Parameters(SampleSet{});

@@ -16,6 +16,9 @@ std::unique_ptr<Effect> MakeEffectOfModel(const std::string& name);
 /// The names and sizes of its parameters, with values of no effect and without deviations.
 std::vector<ReportedParameter> ParametersOf(const Effect& effect);
 
+/// Whether a file may lack it, written before it was reported: it is then of no effect.
+bool MayBeMissing(const std::string& effect, const std::string& parameter);
+
 /// Why `values` mean nothing; empty where they do.
 std::string WhatIsWrong(const Effect& effect, const std::vector<std::vector<double>>& values);
 

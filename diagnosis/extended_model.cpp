@@ -69,7 +69,9 @@ EffectFit ReadEffect(const YamlMap& section, const std::string& name) {
   EffectFit fit{name, ParametersOf(*effect)};
   std::vector<std::vector<double>> values;
   for (ReportedParameter& parameter : fit.parameters) {
-    parameter.value = ReadValues(map, parameter.name, parameter.value.size());
+    if (map.Has(parameter.name) || !MayBeMissing(name, parameter.name)) {
+      parameter.value = ReadValues(map, parameter.name, parameter.value.size());
+    }
     values.push_back(parameter.value);
   }
   RejectUnknownKeys(map);
@@ -90,6 +92,10 @@ void ReadDeviations(const YamlMap& section, std::vector<EffectFit>& effects) {
     if (!section.Has(fit.effect)) continue;
     const YamlMap map = section.Map(fit.effect);
     for (ReportedParameter& parameter : fit.parameters) {
+      if (!map.Has(parameter.name) && MayBeMissing(fit.effect, parameter.name)) {
+        parameter.sd.assign(parameter.value.size(), 0.0);
+        continue;
+      }
       parameter.sd = ReadValues(map, parameter.name, parameter.value.size());
       for (const double sd : parameter.sd) {
         if (sd < 0) throw map.Error(parameter.name, fmt::format("found {}, expected >= 0", sd));
@@ -100,14 +106,29 @@ void ReadDeviations(const YamlMap& section, std::vector<EffectFit>& effects) {
   RejectUnknownKeys(section);
 }
 
-/// In the order of `effects`, whatever the file's.
+/// Whether the covariance of `effects` may have rows of these names: all, or all but those of
+/// parameters that may be missing.
+bool AreRows(const std::vector<std::string>& found, const std::vector<EffectFit>& effects) {
+  std::vector<EffectFit> least = effects;
+  for (EffectFit& fit : least) {
+    std::erase_if(fit.parameters, [&](const ReportedParameter& parameter) {
+      return MayBeMissing(fit.effect, parameter.name);
+    });
+  }
+  const auto same = [&](const std::vector<std::string>& names) {
+    return std::is_permutation(names.begin(), names.end(), found.begin(), found.end());
+  };
+  return same(NumberNames(effects)) || same(NumberNames(least));
+}
+
+/// In the order of `effects`, whatever the file's; rows that are missing are zero.
 Eigen::MatrixXd ReadCovariance(const YamlMap& map, const std::vector<EffectFit>& effects) {
   const auto names = NumberNames(effects), found = map.Texts("parameters");
-  if (!std::is_permutation(names.begin(), names.end(), found.begin(), found.end())) {
+  if (!AreRows(found, effects)) {
     throw map.Error("parameters", fmt::format("found [{}], expected [{}]", fmt::join(found, ", "),
                                               fmt::join(names, ", ")));
   }
-  const std::size_t n = names.size();
+  const std::size_t n = found.size();
   const std::vector<double> data = map.Numbers("data");
   RejectUnknownKeys(map);
   if (data.empty()) return {};
@@ -118,7 +139,8 @@ Eigen::MatrixXd ReadCovariance(const YamlMap& map, const std::vector<EffectFit>&
   const auto place = [&](std::size_t i) {
     return std::find(names.begin(), names.end(), found[i]) - names.begin();
   };
-  Eigen::MatrixXd covariance(n, n);
+  const auto size = static_cast<Eigen::Index>(names.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) covariance(place(i), place(j)) = data[n * i + j];
   return covariance;

@@ -85,6 +85,7 @@ std::string DiagnosisJson(const DiagnosisResult& result) {
   json["credible_set_90"] = result.credible_set;
   json["indistinguishable"] = result.indistinguishable;
   json["separating_motion"] = result.separating_motion;
+  json["separating_motion_score"] = result.separating_motion_score;
   json["parameters"] = known ? Fits(result.parameters) : Json::object();
   json["within_tolerance"] = Fits(result.within_tolerance);
   json["base"] = Score(result.base);

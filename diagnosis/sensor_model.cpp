@@ -1,5 +1,7 @@
 #include "diagnosis/sensor_model.h"
 
+#include <cmath>
+
 #include "core/rotation.h"
 
 namespace flextip {
@@ -7,6 +9,16 @@ namespace {
 
 using namespace model_input;
 using Three = Eigen::Matrix<double, 3, model_input::kCount>;
+
+/// J with Exp(w + dw) = Exp(J dw) Exp(w) to first order.
+Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
+  const double angle = w.norm();
+  const Eigen::Matrix3d W = Skew(w);
+  if (angle < 1e-4) return Eigen::Matrix3d::Identity() + 0.5 * W + W * W / 6.0;
+  const double square = angle * angle;
+  return Eigen::Matrix3d::Identity() + (1.0 - std::cos(angle)) / square * W +
+         (angle - std::sin(angle)) / (square * angle) * W * W;
+}
 
 /// A predicted vector and its derivatives.
 struct Predicted {
@@ -22,10 +34,11 @@ struct Predicted {
   }
   /// Turned by Exp(`sign` w) about the origin, w standing in inputs from `input` on.
   void Turn(const ModelInputs& u, int input, double sign) {
-    const Eigen::Matrix3d R = ExpRotation(sign * u.segment<3>(input));
+    const Eigen::Vector3d w = sign * u.segment<3>(input);
+    const Eigen::Matrix3d R = ExpRotation(w);
     v = R * v;
     d = R * d;
-    d.middleCols<3>(input) -= sign * Skew(v);
+    d.middleCols<3>(input) -= sign * Skew(v) * LeftJacobian(w);
   }
   void Shift(const ModelInputs& u, int input, double sign) {
     v += sign * u.segment<3>(input);
@@ -63,19 +76,26 @@ Predicted EmPosition(const SampleSet& samples, const ModelInputs& u, const Timed
   return p;
 }
 
+Predicted SeenByCamera(const TimedGeometry& sensed, const GeometryByInputs& by_inputs, int at) {
+  Predicted seen(sensed, by_inputs, at);
+  seen.Delay(sensed, at, kCameraDelay);
+  return seen;
+}
+
 /// E as it truly is: yielding under its force, with the tags off their place.
 Predicted TrueTip(const ModelInputs& u, const Eigen::Vector3d& f_tip_N, const TimedGeometry& sensed,
                   const GeometryByInputs& by_inputs) {
-  Predicted p(sensed, by_inputs, place::kTip);
-  p.Delay(sensed, place::kTip, kCameraDelay);
+  Predicted p = SeenByCamera(sensed, by_inputs, place::kTip);
   p.v += u[kTipCompliance] * f_tip_N;
   p.d.col(kTipCompliance) += f_tip_N;
   p.d.middleCols<3>(kForce) += u[kTipCompliance] * Eigen::Matrix3d::Identity();
+  const Predicted x = SeenByCamera(sensed, by_inputs, place::kTipTangent),
+                  y = SeenByCamera(sensed, by_inputs, place::kTipY);
   Eigen::Matrix3d R_RE;
-  R_RE.col(0) = sensed.at.segment<3>(place::kTipTangent);
-  R_RE.col(1) = sensed.at.segment<3>(place::kTipY);
-  R_RE.col(2) = R_RE.col(0).cross(R_RE.col(1));
-  p.v += R_RE * u.segment<3>(kTagOffset);
+  R_RE << x.v, y.v, x.v.cross(y.v);
+  const Eigen::Vector3d offset = u.segment<3>(kTagOffset);
+  p.v += R_RE * offset;
+  p.d += offset.x() * x.d + offset.y() * y.d + offset.z() * (Skew(x.v) * y.d - Skew(y.v) * x.d);
   p.d.middleCols<3>(kTagOffset) += R_RE;
   return p;
 }
@@ -103,14 +123,18 @@ Predicted SeenTip(const SampleSet& samples, const ModelInputs& u, Predicted p) {
 
 /// A pose from tags keeps its attitude to the line of sight, which a changed focal length moves
 /// away from the axis (to first order).
-void TurnByFocal(const SampleSet& samples, const ModelInputs& u, const Eigen::Vector3d& p_RE,
+void TurnByFocal(const SampleSet& samples, const ModelInputs& u, const Predicted& p_RE,
                  Predicted& d) {
-  const Eigen::Vector3d p_C = samples.T_RC.R.transpose() * (p_RE - samples.T_RC.p);
-  const Eigen::Vector3d axis =
-      samples.T_RC.R * Eigen::Vector3d(-p_C.y() / p_C.z(), p_C.x() / p_C.z(), 0.0);
-  d.v += u[kFocalTurn] * axis.cross(d.v);
-  d.d += (u[kFocalTurn] * Skew(axis) * d.d).eval();
-  d.d.col(kFocalTurn) += axis.cross(d.v);
+  const Eigen::Matrix3d& R_RC = samples.T_RC.R;
+  const Eigen::Vector3d p_C = R_RC.transpose() * (p_RE.v - samples.T_RC.p);
+  const double x = p_C.x() / p_C.z(), y = p_C.y() / p_C.z();
+  const Eigen::Vector3d axis = R_RC * Eigen::Vector3d(-y, x, 0.0), turned = axis.cross(d.v);
+  Eigen::Matrix3d by_p_C;
+  by_p_C << 0, -1, y, 1, 0, -x, 0, 0, 0;
+  const Three d_axis = R_RC * (by_p_C / p_C.z()) * R_RC.transpose() * p_RE.d;
+  d.d += (u[kFocalTurn] * (Skew(axis) * d.d - Skew(d.v) * d_axis)).eval();
+  d.d.col(kFocalTurn) += turned;
+  d.v += u[kFocalTurn] * turned;
 }
 
 }  // namespace
@@ -146,10 +170,10 @@ SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const
     AddVector(z.p_RE, SeenTip(samples, u, TrueTip(u, f_tip_N, geometry, by_inputs)),
               row::kTipPosition, out);
   if (z.Has(row::kTipDirection)) {
-    Predicted d(geometry, by_inputs, place::kTipTangent);
-    d.Delay(geometry, place::kTipTangent, kCameraDelay);
+    Predicted d = SeenByCamera(geometry, by_inputs, place::kTipTangent);
     d.Turn(u, kCameraTurn, -1.0);
-    if (samples.has_camera) TurnByFocal(samples, u, geometry.at.segment<3>(place::kTip), d);
+    if (samples.has_camera)
+      TurnByFocal(samples, u, SeenByCamera(geometry, by_inputs, place::kTip), d);
     d.Turn(u, kVisionTurn, 1.0);
     AddDirection(z.d_tip, d, row::kTipDirection, out);
   }

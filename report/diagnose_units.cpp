@@ -8,29 +8,25 @@
 #include <utility>
 
 #include "report/diagnose_words.h"
+#include "report/unit_suffix.h"
 
 namespace flextip {
 namespace {
 
-struct Suffix {
-  std::string_view ending, unit;
-  double per_si;
-};
-/// Longer endings before those they end with.
-constexpr std::array<Suffix, 14> kSuffixes{{{"_kg_m", "g/m", 1e3},
-                                            {"_N_m", "N/m", 1.0},
-                                            {"_1_m", "1/m", 1.0},
-                                            {"_Nm_rad", "N m/rad", 1.0},
-                                            {"_Nm_s", "mN m/s", 1e3},
-                                            {"_m_N", "mm/N", 1e3},
-                                            {"_m_s", "mm/s", 1e3},
-                                            {"_Nm", "mN m", 1e3},
-                                            {"_rad", "mrad", 1e3},
-                                            {"_hz", "Hz", 1.0},
-                                            {"_px", "px", 1.0},
-                                            {"_m", "mm", 1e3},
-                                            {"_N", "N", 1.0},
-                                            {"_s", "ms", 1e3}}};
+constexpr std::array<UnitSuffix, 14> kSuffixes{{{"_kg_m", "g/m", 1e3},
+                                                {"_N_m", "N/m", 1.0},
+                                                {"_1_m", "1/m", 1.0},
+                                                {"_Nm_rad", "N m/rad", 1.0},
+                                                {"_Nm_s", "mN m/s", 1e3},
+                                                {"_m_N", "mm/N", 1e3},
+                                                {"_m_s", "mm/s", 1e3},
+                                                {"_Nm", "mN m", 1e3},
+                                                {"_rad", "mrad", 1e3},
+                                                {"_hz", "Hz", 1.0},
+                                                {"_px", "px", 1.0},
+                                                {"_m", "mm", 1e3},
+                                                {"_N", "N", 1.0},
+                                                {"_s", "ms", 1e3}}};
 
 std::string Spaced(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -71,12 +67,11 @@ std::string SpokenChannel(const std::string& channel) {
 }
 
 ShownUnit ShownUnitOf(const std::string& parameter) {
-  const auto* it = std::find_if(kSuffixes.begin(), kSuffixes.end(),
-                                [&](const Suffix& s) { return parameter.ends_with(s.ending); });
-  if (it == kSuffixes.end()) return {.name = Spaced(parameter)};
-  return {.name = Spaced(parameter.substr(0, parameter.size() - it->ending.size())),
-          .unit = std::string(it->unit),
-          .per_si = it->per_si};
+  const UnitSuffix* suffix = SuffixOf(parameter, kSuffixes);
+  if (suffix == nullptr) return {.name = Spaced(parameter)};
+  return {.name = Spaced(parameter.substr(0, parameter.size() - suffix->ending.size())),
+          .unit = std::string(suffix->shown),
+          .per_si = suffix->factor};
 }
 
 std::string Brief(double value) {

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "report/unit_suffix.h"
 
 namespace flextip {
 namespace {
@@ -52,29 +53,18 @@ bool IsPicture(const std::filesystem::path& path) {
   return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
 }
 
-/// A suffix of a key, the unit people read, and the factor to it.
-struct Unit {
-  std::string_view suffix, shown;
-  double factor;
-};
-constexpr std::array<Unit, 12> kUnits{{{"_Nm2", "N m²", 1},
-                                       {"_N_m", "N/m", 1},
-                                       {"_Nm", "N m", 1},
-                                       {"_mm", "mm", 1},
-                                       {"_ms", "ms", 1},
-                                       {"_us", "µs", 1},
-                                       {"_px", "px", 1},
-                                       {"_rad", "mrad", 1000},
-                                       {"_deg", "°", 1},
-                                       {"_hz", "Hz", 1},
-                                       {"_m", "mm", 1000},
-                                       {"_N", "N", 1}}};
-
-const Unit* UnitOf(const std::string& key) {
-  const auto* it = std::find_if(kUnits.begin(), kUnits.end(),
-                                [&](const Unit& u) { return key.ends_with(u.suffix); });
-  return it == kUnits.end() ? nullptr : it;
-}
+constexpr std::array<UnitSuffix, 12> kUnits{{{"_Nm2", "N m²", 1},
+                                             {"_N_m", "N/m", 1},
+                                             {"_Nm", "N m", 1},
+                                             {"_mm", "mm", 1},
+                                             {"_ms", "ms", 1},
+                                             {"_us", "µs", 1},
+                                             {"_px", "px", 1},
+                                             {"_rad", "mrad", 1000},
+                                             {"_deg", "°", 1},
+                                             {"_hz", "Hz", 1},
+                                             {"_m", "mm", 1000},
+                                             {"_N", "N", 1}}};
 
 }  // namespace
 
@@ -148,14 +138,16 @@ std::vector<std::filesystem::path> FoldersWith(const std::filesystem::path& fold
 
 std::string SpokenName(const std::string& key) {
   std::string name = key;
-  if (const Unit* unit = UnitOf(key)) name.resize(name.size() - unit->suffix.size());
+  if (const UnitSuffix* unit = SuffixOf(key, kUnits)) {
+    name.resize(name.size() - unit->ending.size());
+  }
   std::replace(name.begin(), name.end(), '_', ' ');
   return name == "seconds" ? "time taken" : name;
 }
 
 std::string SpokenValue(const std::string& key, double value) {
   if (key == "seconds") return fmt::format("{:.3g} s", value);
-  const Unit* unit = UnitOf(key);
+  const UnitSuffix* unit = SuffixOf(key, kUnits);
   if (unit == nullptr) {
     const bool whole = value == std::floor(value) && std::abs(value) < 1e9;
     return whole ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);

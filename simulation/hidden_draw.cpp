@@ -15,6 +15,8 @@ namespace {
 
 using Rng = std::mt19937_64;
 
+constexpr double kWithinTolerance = 2.0;  // tolerances; what is further off is not healthy
+
 /// How a present effect's parameter is drawn around its neutral value.
 enum class Form {
   kSigned,    ///< one number, either sign
@@ -83,10 +85,19 @@ Eigen::VectorXd Direction(int count, Rng& rng) {
   return direction.normalized();
 }
 
+/// Normal with a standard deviation of one, drawn again where it is beyond kWithinTolerance.
+double CutNormal(Rng& rng) {
+  double x = 0.0;
+  do {
+    x = Normal(rng);
+  } while (std::abs(x) > kWithinTolerance);
+  return x;
+}
+
 Eigen::VectorXd AbsentDeviation(const Row& row, Rng& rng, bool unsigned_value) {
   Eigen::VectorXd deviation(row.count);
   for (double& x : deviation) {
-    x = row.tolerance * Normal(rng);
+    x = row.tolerance * CutNormal(rng);
     if (unsigned_value) x = std::abs(x);
   }
   return deviation;
@@ -185,7 +196,7 @@ HiddenLabel DrawEffects(const EffectDraw& draw, Rng& rng) {
   HiddenLabel label;
   label.present = draw.present;
   for (const Row& row : kRows) {
-    // A seed of its own: the others do not change with what is present.
+    // A seed of its own: the others do not change with what is present, nor with draws thrown away.
     Rng own(rng());
     const bool present = Has(draw.present, row.effect);
     Eigen::VectorXd deviation = Eigen::VectorXd::Zero(row.count);

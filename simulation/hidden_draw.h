@@ -40,10 +40,10 @@ struct EffectDraw {
   Eigen::Vector3d mean_axis = Eigen::Vector3d::UnitX();  ///< of the shaft, in R, unit
 };
 
-/// Absent effects: each parameter normal with its tolerance as standard deviation, its magnitude
-/// where it has no sign. Present ones: of the size's magnitude (a vector's norm; each entry's RMS
-/// of the EM gradient), any direction, port and shaft effects at least half across the shaft. Of
-/// the gages one to four are off.
+/// Absent effects: each number normal with its tolerance as standard deviation, cut off at two
+/// tolerances (drawn again), its magnitude where it has no sign. Present ones: of the size's
+/// magnitude (a vector's norm; each entry's RMS of the EM gradient), any direction, port and shaft
+/// effects at least half across the shaft. Of the gages one to four are off.
 HiddenLabel DrawEffects(const EffectDraw& draw, std::mt19937_64& rng);
 
 /// What the plant and the sensors make of it; forms outside the catalogue are left neutral.

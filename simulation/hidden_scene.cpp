@@ -88,6 +88,7 @@ Eigen::Vector3d Mean(const std::vector<Eigen::Vector3d>& points) {
 double Quantile(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal,
                 double part) {
   std::vector<double> heights;
+  heights.reserve(points.size());
   for (const Eigen::Vector3d& p : points) heights.push_back(normal.dot(p));
   std::sort(heights.begin(), heights.end());
   return heights[static_cast<std::size_t>(part * static_cast<double>(heights.size() - 1))];
@@ -127,7 +128,7 @@ LoadCourse DrawLoad(const SceneDraw& draw, const HiddenScene& scene, Rng& rng) {
   if (load.kind == LoadKind::kVarying) {
     load.mean_N = 0.4 * force_N * Direction(rng);
     for (int i = 0; i < 4; ++i) {  // with the mean they may add up to the force
-      load.amplitudes_N.push_back(0.15 * force_N * Direction(rng));
+      load.amplitudes_N.emplace_back(0.15 * force_N * Direction(rng));
       load.frequencies_hz.push_back(0.03 + 0.06 * i + Uniform(rng, 0.0, 0.05));
       load.phases_rad.push_back(Uniform(rng, 0.0, kTurn));
     }

@@ -227,7 +227,7 @@ void Plant::FillFrames(const Call& call, const ChainRest& rest, PlantShape& shap
       shape.frames_.push_back(R);
       continue;
     }
-    shape.frames_.push_back(R * ExpRotation(twist * Eigen::Vector3d::UnitX()));
+    shape.frames_.emplace_back(R * ExpRotation(twist * Eigen::Vector3d::UnitX()));
     const bool last = j + 1 == links.size();
     const int joint = static_cast<int>(j);
     const double rate_behind = last ? 0.0 : rest.twist[j] / geometry.JointLength(joint);

@@ -25,10 +25,11 @@ class FocalLength : public Effect {
   std::vector<ReportedParameter> Report(const Eigen::VectorXd& theta,
                                         const Eigen::MatrixXd& covariance) const override {
     const double scale = std::exp(theta[0]);
-    return {{"scale", {scale}, {scale * std::sqrt(covariance(0, 0))}}};
+    return {{"scale", {scale}, {scale * std::sqrt(covariance(0, 0))}},
+            {"turn", {theta[1]}, {std::sqrt(covariance(1, 1))}}};
   }
   Eigen::VectorXd FromReported(const std::vector<std::vector<double>>& values) const override {
-    return Eigen::VectorXd::Constant(2, std::log(values.at(0).at(0)));
+    return Eigen::Vector2d(std::log(values.at(0).at(0)), values.at(1).at(0));
   }
 };
 

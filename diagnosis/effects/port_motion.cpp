@@ -1,5 +1,6 @@
 #include "diagnosis/effects/port_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -29,6 +30,17 @@ Eigen::VectorXd Reported(const Eigen::VectorXd& theta, double frequency_hz) {
   Eigen::VectorXd reported(5);
   reported << amplitude, frequency_hz + theta[kFrequency], phase;
   return reported;
+}
+
+/// Three parameters from `first` on, reported as they are.
+ReportedParameter AsFitted(const char* name, int first, const Eigen::VectorXd& theta,
+                           const Eigen::MatrixXd& covariance) {
+  ReportedParameter parameter{name, {}, {}};
+  for (int j = first; j < first + 3; ++j) {
+    parameter.value.push_back(theta[j]);
+    parameter.sd.push_back(std::sqrt(std::max(0.0, covariance(j, j))));
+  }
+  return parameter;
 }
 
 }  // namespace
@@ -80,7 +92,9 @@ std::vector<ReportedParameter> PortMotion::Report(const Eigen::VectorXd& theta,
   const Eigen::VectorXd sd = (J * covariance * J.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
   return {{"amplitude_m", {at[0], at[1], at[2]}, {sd[0], sd[1], sd[2]}},
           {"frequency_hz", {at[3]}, {sd[3]}},
-          {"phase_rad", {at[4]}, {sd[4]}}};
+          {"phase_rad", {at[4]}, {sd[4]}},
+          AsFitted("overtone_sine_m", kOvertoneSine, theta, covariance),
+          AsFitted("overtone_cosine_m", kOvertoneCosine, theta, covariance)};
 }
 
 Eigen::VectorXd PortMotion::FromReported(const std::vector<std::vector<double>>& values) const {
@@ -88,6 +102,8 @@ Eigen::VectorXd PortMotion::FromReported(const std::vector<std::vector<double>>&
   for (int i = 0; i < 3; ++i) {
     theta[kSine + i] = values.at(0).at(i) * std::cos(values.at(2).at(0));
     theta[kCosine + i] = values.at(0).at(i) * std::sin(values.at(2).at(0));
+    theta[kOvertoneSine + i] = values.at(3).at(i);
+    theta[kOvertoneCosine + i] = values.at(4).at(i);
   }
   theta[kFrequency] = values.at(1).at(0) - frequency_hz_;
   return theta;

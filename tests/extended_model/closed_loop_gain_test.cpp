@@ -86,6 +86,24 @@ TEST(ClosedLoopGain, SaysNothingOfAnInstrumentThatCannotRun) {
   EXPECT_TRUE(MeasureClosedLoopGain(hidden.recording, model).controllers.empty());
 }
 
+/// Left out of plant and controller, so the figures are those of the model without it.
+TEST(ClosedLoopGain, LeavesOutWhatTheSimulationDoesNotKnow) {
+  const HiddenRecording hidden = Hidden("length");
+  const ClosedLoopGain without = MeasureClosedLoopGain(hidden.recording, ModelOfLabel(hidden));
+  EXPECT_EQ(without.warning, "");
+  ExtendedModel model = ModelOfLabel(hidden);
+  model.effects.push_back({"rust", {{"depth_m", {0.1}, {}}}});
+  model.within_tolerance.push_back({"moss", {{"depth_m", {0.1}, {}}}});
+  const ClosedLoopGain with = MeasureClosedLoopGain(hidden.recording, model);
+  EXPECT_NE(with.warning.find("rust, moss"), std::string::npos) << with.warning;
+  ASSERT_EQ(with.controllers.size(), 2u);
+  for (std::size_t c = 0; c < 2; ++c) {
+    EXPECT_TRUE(with.controllers[c].ran);
+    EXPECT_EQ(with.controllers[c].base.rms_m, without.controllers[c].base.rms_m);
+    EXPECT_EQ(with.controllers[c].extended.rms_m, without.controllers[c].extended.rms_m);
+  }
+}
+
 TEST(ClosedLoopGain, IsQuickAndTheSameAgain) {
   const HiddenRecording hidden = Hidden("port_friction");
   const auto start = std::chrono::steady_clock::now();

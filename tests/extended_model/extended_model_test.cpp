@@ -105,6 +105,43 @@ TEST_F(ModelFile, CovarianceKeepsItsRowsInAnyOrder) {
   EXPECT_EQ(read.covariance(1, 1), 1.0);
 }
 
+/// Parameters reported since: of no effect.
+TEST_F(ModelFile, OlderFilesLackSomeParameters) {
+  const ExtendedModel read =
+      Read(kHead +
+           "effects:\n  focal_length: {scale: 1.1}\nwithin_tolerance:\n"
+           "  port_motion: {amplitude_m: [1, 2, 3], frequency_hz: 0.3, phase_rad: 1}\n"
+           "sd:\n  focal_length: {scale: 0.1}\n"
+           "covariance: {parameters: [\"focal_length.scale[0]\"], data: [0.01]}\n");
+  const auto& focal = read.effects[0].parameters;
+  ASSERT_EQ(focal.size(), 2u);
+  EXPECT_EQ(focal[1].value, std::vector<double>{0.0});
+  EXPECT_EQ(focal[1].sd, std::vector<double>{0.0});
+  EXPECT_EQ(read.covariance, Eigen::Matrix2d(Eigen::Vector2d(0.01, 0.0).asDiagonal()));
+  const auto& breath = read.within_tolerance[0].parameters;
+  ASSERT_EQ(breath.size(), 5u);
+  for (const std::size_t overtone : {3u, 4u})
+    EXPECT_EQ(breath[overtone].value, (std::vector<double>{0.0, 0.0, 0.0}));
+}
+
+/// What is fitted comes back from what is reported, all of it.
+TEST(ExtendedEffect, ReportedParametersHoldTheFittedOnes) {
+  double x = 0.01;
+  for (const std::string& name : CatalogueEffects()) {
+    const auto effect = MakeEffect(name);
+    Eigen::VectorXd theta(effect->Parameters(SampleSet{}).size());
+    for (double& value : theta) value = (x += 0.003);
+    if (name == "port_motion") theta.segment<3>(3) = 0.7 * theta.head<3>();  // one phase for all
+    const Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(theta.size(), theta.size());
+    std::vector<std::vector<double>> values;
+    for (const auto& parameter : effect->Report(theta, covariance)) {
+      values.push_back(parameter.value);
+      EXPECT_EQ(parameter.sd.size(), parameter.value.size()) << name << '.' << parameter.name;
+    }
+    EXPECT_LT((effect->FromReported(values) - theta).norm(), 1e-12) << name;
+  }
+}
+
 TEST_F(ModelFile, NothingFoundIsAModelToo) {
   const ExtendedModel read = Read(ModelYaml(ExtendedModel{}));
   EXPECT_TRUE(read.effects.empty() && read.within_tolerance.empty());

@@ -1,5 +1,7 @@
 #include "tests/extended_model/model_of_label.h"
 
+#include <cmath>
+
 #include "diagnosis/catalogue.h"
 #include "diagnosis/extended_effect.h"
 #include "simulation/sensors.h"
@@ -21,7 +23,9 @@ ExtendedModel ModelOfLabel(const HiddenRecording& hidden) {
     EffectFit fit{name, ParametersOf(*MakeEffect(name))};
     const EffectParameters& label = hidden.label.parameters.at(name);
     for (ReportedParameter& parameter : fit.parameters) {
-      if (parameter.name == "offset_at_centre_m") continue;  // none in the simulation
+      // A pose found from tags keeps its attitude to the line of sight, which the scale moves.
+      if (parameter.name == "turn") parameter.value[0] = std::log(label.at("scale").at(0));
+      if (!label.contains(parameter.name)) continue;  // none in the simulation
       parameter.value = label.at(parameter.name);
       // The label's mass is beyond the nominal one.
       if (name == "self_weight") parameter.value[0] += hidden.scene.instrument.mass_per_length_kg_m;

@@ -117,6 +117,13 @@ std::vector<Vector2d> ProjectSegment(const CameraCalibration& camera, const Vect
   return Project(camera, points);
 }
 
+// One of the sides of a square of half side `h` about a tag's middle.
+std::vector<Vector2d> SideOfSquare(const CameraCalibration& camera, const Pose& T_CG, double h,
+                                   int side) {
+  const Vector3d corners[4] = {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}};
+  return ProjectSegment(camera, T_CG * corners[side], T_CG * corners[(side + 1) % 4]);
+}
+
 // A tag of 32 mm that faces the camera, turned and moved by the test's number.
 struct TagScene {
   TagCollar collar;
@@ -149,10 +156,8 @@ TEST_P(EdgesUnderEachLens, BorderOfATag) {
     Field field{image.width_px, image.height_px, {}};
     for (std::size_t i = 0; i < image.data.size(); i += 3) field.value.push_back(image.data[i]);
     const double h = 0.016;
-    const Vector3d corners[4] = {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}};
     for (int side = 0; side < 4; ++side) {
-      const EdgeErrors e = CompareEdge(field, ProjectSegment(camera_, scene.T_CG * corners[side],
-                                                             scene.T_CG * corners[(side + 1) % 4]));
+      const EdgeErrors e = CompareEdge(field, SideOfSquare(camera_, scene.T_CG, h, side));
       ASSERT_GT(e.count, 50);
       EXPECT_LT(std::abs(e.Mean()), 0.003) << "tag " << number << " side " << side;
       EXPECT_LT(e.worst, 0.003) << "tag " << number << " side " << side;
@@ -165,10 +170,8 @@ TEST_P(EdgesUnderEachLens, RimOfAPlate) {
     const TagScene scene = MakeTagScene(number);
     const Field field = Uncovered(camera_, scene.collar, PlainOptions(), scene.curve);
     const double h = 0.020;  // the border's half side and a cell of margin
-    const Vector3d corners[4] = {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}};
     for (int side = 0; side < 4; ++side) {
-      const EdgeErrors e = CompareEdge(field, ProjectSegment(camera_, scene.T_CG * corners[side],
-                                                             scene.T_CG * corners[(side + 1) % 4]));
+      const EdgeErrors e = CompareEdge(field, SideOfSquare(camera_, scene.T_CG, h, side));
       ASSERT_GT(e.count, 50);
       EXPECT_LT(std::abs(e.Mean()), 0.003) << "tag " << number << " side " << side;
       EXPECT_LT(e.Rms(), 0.01) << "tag " << number << " side " << side;

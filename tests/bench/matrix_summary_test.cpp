@@ -1,0 +1,81 @@
+// Cases in a file and back, and their figures.
+#include "bench/matrix_summary.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/error.h"
+
+namespace flextip {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+MatrixRecord Single(const std::string& effect, const std::string& answer, double separation) {
+  MatrixRecord record;
+  record.made.part = "singles";
+  record.made.size = "plain";
+  record.made.effects = {effect};
+  record.key = record.made.Key();
+  record.label = {effect};
+  record.verdict = {answer};
+  record.separation = separation;
+  record.rival = "hand_eye";
+  record.p_truth = effect == answer ? 0.9 : 0.1;
+  return record;
+}
+
+double ValueOf(const std::vector<MatrixFigure>& figures, const std::string& figure,
+               const std::string& group, int of) {
+  for (const MatrixFigure& f : figures) {
+    if (f.figure != figure || f.group != group) continue;
+    EXPECT_EQ(f.of, of) << figure;
+    return f.value;
+  }
+  ADD_FAILURE() << figure << " of " << group << " is missing";
+  return -1.0;
+}
+
+TEST(MatrixSummary, SinglesCountTwiceAllAndSeparable) {
+  const std::vector<MatrixRecord> records = {Single("stiffness", "stiffness", kSeparable),
+                                             Single("tag_offset", "hand_eye", kSeparable - 0.1)};
+  const auto figures = Figures(records);
+  EXPECT_EQ(ValueOf(figures, "right cause first", "singles plain", 2), 0.5);
+  EXPECT_EQ(ValueOf(figures, "right cause first, separable only", "singles plain", 1), 1.0);
+  EXPECT_EQ(ValueOf(figures, "mean probability of the truth", "singles plain", 2), 0.5);
+  EXPECT_EQ(ValueOf(figures, "mean probability, separable only", "singles plain", 1), 0.9);
+}
+
+TEST(MatrixSummary, MissesNameTheRivalsOfWhatIsNotSeparable) {
+  EXPECT_THAT(Misses({Single("stiffness", "stiffness", 100.0)}), Not(HasSubstr("separable")));
+  const std::string misses = Misses({Single("tag_offset", "tag_offset", 3.0)});
+  EXPECT_THAT(misses, HasSubstr("no misses"));
+  EXPECT_THAT(misses, HasSubstr("3.0 apart from hand_eye, answered tag_offset"));
+}
+
+TEST(MatrixRecordFile, RoundTripIsExact) {
+  const auto file = std::filesystem::temp_directory_path() / "flextip_matrix_record_test.jsonl";
+  MatrixRecord record = Single("stiffness", "length", 1.0 / 3.0);
+  record.probabilities = {{{"length"}, 2.0 / 3.0}, {{"length", "stiffness"}, 0.1}};
+  record.indistinguishable = {{"length", "port_offset"}};
+  record.parameters = {{"length", "delta_m", 0, 0.1, 1.0 / 7.0, 0.01}};
+  record.made.seed = 1'234'567'890'123ULL;
+  std::ofstream(file) << JsonLine(record) << "\n{\"cut o";
+  const auto read = ReadRecords(file);
+  ASSERT_EQ(read.size(), 1u);
+  EXPECT_EQ(JsonLine(read[0]), JsonLine(record));
+  EXPECT_EQ(read[0].made.seed, record.made.seed);
+  EXPECT_EQ(read[0].separation, record.separation);
+  EXPECT_EQ(read[0].probabilities, record.probabilities);
+  EXPECT_EQ(read[0].parameters[0].value, record.parameters[0].value);
+  std::ofstream(file) << JsonLine(record) << "\n{}\n";
+  EXPECT_THROW(ReadRecords(file), InputError);
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace flextip
