@@ -7,16 +7,13 @@
 #include "bench/matrix_truth.h"
 #include "diagnosis/effects/port_motion.h"
 #include "diagnosis/generic_basis.h"
-#include "diagnosis/linear_problem.h"
+#include "diagnosis/hypothesis_fit.h"
 #include "diagnosis/noise_level.h"
 
 namespace flextip {
 namespace {
 
-// As the diagnosis takes them: the widest prior of a present effect in its typical sizes, and what
-// the right form of an effect may miss, of its signal and at least of the noise.
-constexpr double kWidth = 3.0;
-constexpr double kDiscrepancy = 0.04, kLeastDiscrepancy = 0.1;
+constexpr double kWidth = 3.0;  // of a present effect's prior, in typical sizes: the widest there is
 
 /// The label's parameters of all effects; what it does not name is zero.
 Eigen::VectorXd TrueTheta(const HiddenRecording& hidden, ParameterLayout& layout) {
@@ -42,25 +39,12 @@ Eigen::VectorXd TrueTheta(const HiddenRecording& hidden, ParameterLayout& layout
   return theta;
 }
 
-/// Prior standard deviations of the generic terms, which share what their row may miss.
-Eigen::VectorXd GenericSd(const LinearProblem& problem) {
-  Rows terms = Rows::Zero();
-  for (const int r : problem.generic_row) terms[r] += 1.0;
-  Eigen::VectorXd sd(Eigen::Index(problem.generic_row.size()));
-  for (Eigen::Index j = 0; j < sd.size(); ++j) {
-    const int r = problem.generic_row[j];
-    sd[j] =
-        std::max(kLeastDiscrepancy, kDiscrepancy * problem.signal_size[r]) / std::sqrt(terms[r]);
-  }
-  return sd;
-}
-
 /// Explanations of the data that one effect makes without noise.
 class Explanations {
  public:
   Explanations(const LinearProblem& problem, const ParameterLayout& layout,
-               const Eigen::VectorXd& theta, int effect)
-      : H_(problem.total.H), layout_(layout), generic_sd_(GenericSd(problem)) {
+               const Eigen::VectorXd& theta, const Rows& may_miss, int effect)
+      : H_(problem.total.H), layout_(layout), generic_sd_(GenericSd(problem, may_miss)) {
     const auto& block = layout.Blocks()[effect];
     Eigen::VectorXd truth = Eigen::VectorXd::Zero(problem.Size());
     truth.segment(block.first, block.size) = theta.segment(block.first, block.size);
@@ -107,12 +91,15 @@ Separation MeasureSeparation(const Recording& recording, const HiddenRecording& 
   if (effect < 0) return {};  // no sensor or motion that could show it
   const Eigen::VectorXd theta = TrueTheta(hidden, layout);
   Replay replay(samples, layout);
-  replay.Settle(theta);  // samples without equilibrium are left out
+  replay.Settle(Eigen::VectorXd::Zero(layout.Size()));  // samples without equilibrium are left out
+  const SelectionOptions options;
+  const Rows may_miss = MayMiss(ProblemHere(replay, options), options.discrepancy, options);
+  replay.Settle(theta);
   replay.AdaptForcePrior();
   replay.SetNoiseScale(NoiseScale(replay));
   replay.Settle(theta);
   const LinearProblem problem = MakeLinearProblem(replay, GenericBasis(replay), 1);
-  const Explanations explanations(problem, layout, theta, effect);
+  const Explanations explanations(problem, layout, theta, may_miss, effect);
   const double of_truth = explanations.CostOf(effect);
   Separation nearest{explanations.CostOfNone() - of_truth, "none"};
   if (nearest.value < kSeparable) return nearest;

@@ -36,11 +36,12 @@ class Thinned {
     replay_.SetForces(forces_N);
   }
 
-  /// The whole recording's log determinant with parameters `theta`; empty: no equilibrium.
+  /// Rows of the whole recording that forces take up with parameters `theta`; empty: no
+  /// equilibrium.
   std::optional<double> At(const Eigen::VectorXd& theta) {
     if (!replay_.EvaluateWithForces(theta)) return {};
-    const std::vector<double> logs = replay_.Whiten().log_determinant;
-    return double(stride_) * std::accumulate(logs.begin(), logs.end(), 0.0);
+    const std::vector<double> shares = replay_.Whiten().force_share;
+    return double(stride_) * std::accumulate(shares.begin(), shares.end(), 0.0);
   }
 
  private:

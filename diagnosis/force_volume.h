@@ -1,5 +1,6 @@
-// How much of the data unknown tip forces take up. The more a sensor feels a force, the more the
-// force can explain, and evidence falls with the log determinant of each sample's covariance.
+// How much noise unknown tip forces take up. The more a sensor feels a force, the more of its noise
+// the force explains, and the squared residual falls without anything being explained: by as much
+// as rows are taken up (the trace that Mallows's C_p is made of), which is put back on it here.
 // Without it a yielding tip would look likely only because the least known force, that along the
 // shaft, could then explain the tip's noise. It is taken for the compliances, which scale what a
 // force does, against the same model without them. Known loads take up nothing.
@@ -9,7 +10,7 @@
 
 namespace flextip {
 
-/// Sum over the samples (every so many of them) of the log determinant.
+/// Rows taken up in all samples (from every so many of them).
 double ForceVolume(const Replay& replay);
 
 /// Sets the problem's volume: value and slope.

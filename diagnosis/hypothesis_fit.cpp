@@ -16,18 +16,6 @@ constexpr double kHopeless = 40.0;      // in log odds, after two rounds
 constexpr double kFarthest = 6.0;       // typical sizes
 constexpr double kSameFrequency = 0.6;  // of what the recording resolves
 
-/// Of each generic coefficient; those of a row share what the row may miss.
-Eigen::VectorXd GenericSd(const LinearProblem& problem, const Rows& may_miss) {
-  Rows terms = Rows::Zero();
-  for (const int r : problem.generic_row) terms[r] += 1.0;
-  Eigen::VectorXd sd(Eigen::Index(problem.generic_row.size()));
-  for (Eigen::Index j = 0; j < sd.size(); ++j) {
-    const int r = problem.generic_row[j];
-    sd[j] = may_miss[r] / std::sqrt(terms[r]);
-  }
-  return sd;
-}
-
 /// Minus twice the log of how likely parameters `theta` are, the generic terms at their best.
 double Merit(const LinearProblem& problem, const Eigen::VectorXd& theta,
              const Eigen::VectorXd& prior_sd, const Eigen::VectorXd& generic_sd) {
@@ -78,6 +66,17 @@ void FindFrequency(Replay& replay, ParameterLayout& layout) {
 
 Rows MayMiss(const LinearProblem& problem, double part, const SelectionOptions& options) {
   return (part * problem.residual_size).cwiseMax(options.least_discrepancy);
+}
+
+Eigen::VectorXd GenericSd(const LinearProblem& problem, const Rows& may_miss) {
+  Rows terms = Rows::Zero();
+  for (const int r : problem.generic_row) terms[r] += 1.0;
+  Eigen::VectorXd sd(Eigen::Index(problem.generic_row.size()));
+  for (Eigen::Index j = 0; j < sd.size(); ++j) {
+    const int r = problem.generic_row[j];
+    sd[j] = may_miss[r] / std::sqrt(terms[r]);
+  }
+  return sd;
 }
 
 LinearProblem ProblemHere(const Replay& replay, const SelectionOptions& options) {

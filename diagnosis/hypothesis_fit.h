@@ -33,6 +33,9 @@ LinearProblem ProblemHere(const Replay& replay, const SelectionOptions& options)
 /// there is to explain.
 Rows MayMiss(const LinearProblem& problem, double part, const SelectionOptions& options);
 
+/// Standard deviations of the generic coefficients; those of a row share what the row may miss.
+Eigen::VectorXd GenericSd(const LinearProblem& problem, const Rows& may_miss);
+
 Weighing Weigh(const Replay& replay, LinearProblem here, const std::vector<Hypothesis>& hypotheses,
                const SelectionOptions& options, const Rows& may_miss);
 

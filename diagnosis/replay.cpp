@@ -366,7 +366,7 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
   }
   all.e.resize(all.first_row.back());
   all.units.resize(replayed_.size());
-  all.log_determinant.assign(replayed_.size(), 0.0);
+  all.force_share.assign(replayed_.size(), 0.0);
   all.rows.resize(replayed_.size());
   all.X.resize(all.first_row.back(), layout_.Size());
   ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
@@ -374,8 +374,8 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
       if (all.Rows(k) == 0) continue;
       const Statistics s = StatisticsOf(k, rows_used);
       const auto L = s.covariance.matrixL();
-      const auto diagonal = s.covariance.matrixLLT().diagonal();
-      all.log_determinant[k] = 2.0 * diagonal.array().log().sum();
+      const Eigen::MatrixXd by_force = L.solve(s.by_force);
+      all.force_share[k] = (by_force.transpose() * by_force * s.force_prior).trace();
       all.e.segment(all.first_row[k], all.Rows(k)) = L.solve(s.e);
       all.X.middleRows(all.first_row[k], all.Rows(k)) = L.solve(Derivatives(k, s.rows));
       const Rows sd = RowNoise(k);

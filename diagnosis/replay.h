@@ -35,7 +35,8 @@ struct WhitenedRows {
   std::vector<std::vector<int>> rows;  ///< of each sample: which measured rows these are
   /// Of each sample: what an error of one standard deviation in each measured row becomes.
   std::vector<Eigen::MatrixXd> units;
-  std::vector<double> log_determinant;  ///< of each sample's covariance
+  /// Of each sample: how many of its rows' noise the force takes up (0 to 3).
+  std::vector<double> force_share;
 
   int Rows(std::size_t k) const { return first_row[k + 1] - first_row[k]; }
 };
