@@ -48,6 +48,8 @@ class InputChange {
     Derivative(j, input, factor);
   }
   void Add(int input, double value) { inputs_[input] += value; }
+  /// As the effects before this one left it.
+  double Input(int input) const { return inputs_[input]; }
   void Derivative(int j, int input, double value) {
     if (value != 0.0) columns_.push_back({first_ + j, input, value});
   }

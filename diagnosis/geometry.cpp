@@ -17,7 +17,7 @@ EffectRodProblem MakeProblem(const SampleSet& samples, std::size_t k, const Mode
   rod.bending_stiffness_Nm2 = samples.instrument.bending_stiffness_Nm2 * std::exp(u[kStiffness]);
   rod.p_wrist = sample.p_RW + u.segment<3>(kWrist);
   rod.p_port = samples.p_RP + u.segment<3>(kPort);
-  rod.f_tip = f_tip_N + u.segment<3>(kForce);
+  rod.f_tip = f_tip_N;
   rod.q_weight =
       samples.instrument.mass_per_length_kg_m * samples.gravity_m_s2 + u.segment<3>(kWeight);
   RodEffects& effects = problem.effects;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnosis/effects/mean_load.h"
 #include "diagnosis/effects/registration.h"
 
 namespace flextip {
@@ -10,6 +11,8 @@ ParameterLayout::ParameterLayout(const SampleSet& samples, Catalogue catalogue)
     : catalogue_(std::move(catalogue)), effect_count_(int(catalogue_.size())) {
   auto registration = std::make_unique<Registration>();
   if (registration->Applies(samples)) catalogue_.push_back(std::move(registration));
+  auto load = std::make_unique<MeanLoad>();
+  if (load->Applies(samples)) catalogue_.push_back(std::move(load));
   for (int b = 0; b < int(catalogue_.size()); ++b) {
     const auto own = catalogue_[b]->Parameters(samples);
     blocks_.push_back({catalogue_[b].get(), Size(), int(own.size()), b >= effect_count_});

@@ -163,16 +163,18 @@ void Replay::FitForce(std::size_t k, EffectRodSolver& solver) {
   const Eigen::Matrix3d precision = ForcePrior(k).inverse();
   const double unit_N = ForceUnit(k);
   const auto residual = [&] { return Eigen::VectorXd(sample.compared.residual(rows)); };
+  const Eigen::Vector3d mean_N = MeanForce(k);
   const auto merit = [&] {
-    return noise.matrixL().solve(residual()).squaredNorm() +
-           sample.f_tip_N.dot(precision * sample.f_tip_N);
+    const Eigen::Vector3d off = sample.f_tip_N - mean_N;
+    return noise.matrixL().solve(residual()).squaredNorm() + off.dot(precision * off);
   };
   double damping = 0.0;
   sample.force_merit = merit();
   for (int i = 0; i < kForceSteps; ++i) {
     const Eigen::MatrixXd B = sample.compared.by_inputs(rows, Eigen::seqN(model_input::kForce, 3));
     const Eigen::Matrix3d H = B.transpose() * noise.solve(B) + precision;
-    const Eigen::Vector3d g = B.transpose() * noise.solve(residual()) - precision * sample.f_tip_N;
+    const Eigen::Vector3d g =
+        B.transpose() * noise.solve(residual()) - precision * (sample.f_tip_N - mean_N);
     const Eigen::Matrix3d damped = H + damping * (H.trace() / 3.0) * Eigen::Matrix3d::Identity();
     Eigen::Vector3d step = damped.llt().solve(g);
     if (step.norm() > kMaxForceStep * unit_N) step *= kMaxForceStep * unit_N / step.norm();
@@ -298,6 +300,12 @@ void Replay::AdaptForcePrior() {
   along_prior_ = std::max(kLeastAlong, kAlongOverAcross * std::sqrt(squares));
 }
 
+/// Mean of the tip's force before the sensors say anything of it.
+Eigen::Vector3d Replay::MeanForce(std::size_t k) const {
+  if (samples_.has_load) return samples_.samples[k].f_tip_N;
+  return replayed_[k].inputs.segment<3>(model_input::kForce);
+}
+
 /// Covariance of the tip's force.
 Eigen::Matrix3d Replay::ForcePrior(std::size_t k) const {
   if (samples_.has_load)
@@ -328,9 +336,7 @@ Replay::Statistics Replay::StatisticsOf(std::size_t k,
     by_wrist.row(i) = sample.compared.by_inputs.block<1, 3>(s.rows[i], model_input::kWrist);
   }
   s.force_prior = ForcePrior(k);
-  const Eigen::Vector3d prior =
-      samples_.has_load ? samples_.samples[k].f_tip_N : Eigen::Vector3d::Zero();
-  s.e += s.by_force * (sample.f_tip_N - prior);
+  s.e += s.by_force * (sample.f_tip_N - MeanForce(k));
   const double wrist_m = samples_.samples[k].p_RW_noise_m;
   Eigen::MatrixXd C = OwnCovariance(k, s.rows);
   C += wrist_m * wrist_m * by_wrist * by_wrist.transpose();
@@ -398,7 +404,11 @@ void Replay::PredictForces(const Eigen::VectorXd& dtheta) {
       if (!sample.ok) continue;
       const Statistics s = StatisticsOf(k, AllRows());
       if (s.rows.empty()) continue;
-      Eigen::Vector3d step = s.Force(s.e - Derivatives(k, s.rows) * dtheta) - sample.f_tip_N;
+      Eigen::Vector3d step =
+          MeanForce(k) + s.Force(s.e - Derivatives(k, s.rows) * dtheta) - sample.f_tip_N;
+      for (const auto& column : sample.columns)
+        if (column.input >= model_input::kForce && column.input < model_input::kForce + 3)
+          step[column.input - model_input::kForce] += column.value * dtheta[column.parameter];
       const double limit = kMaxForceStep * ForceUnit(k);
       if (step.norm() > limit) step *= limit / step.norm();
       sample.f_tip_N = (sample.f_tip_N + step) * stiffer;

@@ -107,6 +107,7 @@ class Replay {
   void CompareSamples();
   TimedGeometry WithRate(std::size_t k) const;
   double ForceUnit(std::size_t k) const;
+  Eigen::Vector3d MeanForce(std::size_t k) const;
   Eigen::Matrix3d ForcePrior(std::size_t k) const;
   double ByInput(std::size_t k, int r, int input) const;
   Eigen::MatrixXd OwnCovariance(std::size_t k, const std::vector<int>& rows) const;

@@ -1,0 +1,27 @@
+// The slow part of an unknown tip force: no effect that is ever the answer. Each sample's force is
+// free, but along the shaft, where it hardly shows, its prior draws it towards its mean; were that
+// zero, a thousand small pulls would add up to a bias of whatever stiffens or bends the shaft.
+#pragma once
+
+#include "diagnosis/effect.h"
+
+namespace flextip {
+
+/// In units of the shaft's EI / L^2: a constant in R, and slow waves along the mean shaft.
+class MeanLoad : public Effect {
+ public:
+  std::string Name() const override { return "mean_load"; }
+  std::string Summary() const override { return "the slow part of the unknown tip force"; }
+  bool Applies(const SampleSet& samples) const override { return !samples.has_load; }
+  std::vector<FitParameter> Parameters(const SampleSet& samples) const override;
+  void Apply(const double* theta, const Moment& now, EffectMemory& memory,
+             InputChange& change) const override;
+  std::vector<ReportedParameter> Report(const Eigen::VectorXd& theta,
+                                        const Eigen::MatrixXd& covariance) const override;
+  Eigen::VectorXd FromReported(const std::vector<std::vector<double>>& values) const override;
+
+ private:
+  mutable Eigen::Vector3d along_ = Eigen::Vector3d::UnitX();
+};
+
+}  // namespace flextip
