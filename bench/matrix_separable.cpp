@@ -93,7 +93,8 @@ Separation MeasureSeparation(const Recording& recording, const HiddenRecording& 
   Replay replay(samples, layout);
   replay.Settle(Eigen::VectorXd::Zero(layout.Size()));  // samples without equilibrium are left out
   const SelectionOptions options;
-  const Rows may_miss = MayMiss(ProblemHere(replay, options), options.discrepancy, options);
+  const Rows may_miss =
+      MayMiss(ProblemHere(replay, GenericBasis(replay), options), options.discrepancy, options);
   replay.Settle(theta);
   replay.AdaptForcePrior();
   replay.SetNoiseScale(NoiseScale(replay));

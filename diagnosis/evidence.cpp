@@ -33,7 +33,7 @@ Evidence::Evidence(const NormalSums& sums, const ParameterLayout& layout,
   contexts_.resize(widths.size());
   tbb::parallel_for(std::size_t{0}, widths.size(),
                     [&](std::size_t i) { contexts_[i] = MakeContext(widths[i]); });
-  none_ = contexts_[0].log_evidence - 0.5 * (sums.c + sums.log_volume);
+  none_ = contexts_[0].log_evidence - 0.5 * (sums.c + sums.volume);
   for (std::size_t i = contexts_.size(); i-- > 0;)
     contexts_[i].log_evidence -= contexts_[0].log_evidence;
 }
@@ -45,11 +45,10 @@ Evidence::Context Evidence::MakeContext(double unknown_sd) const {
   Eigen::MatrixXd M = context.sd.asDiagonal() * sums_.H * context.sd.asDiagonal();
   M.diagonal().array() += 1.0;
   const Eigen::LLT<Eigen::MatrixXd> llt(M);
-  const Eigen::VectorXd g = context.sd.asDiagonal() * Information(unknown_sd > 0.0);
+  const Eigen::VectorXd g = context.sd.asDiagonal() * sums_.g;
   context.covariance = llt.solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
   context.mean = context.covariance * g;
   context.log_evidence = 0.5 * (g.dot(context.mean) - LogDeterminant(llt));
-  if (unknown_sd > 0.0) context.log_evidence -= 0.5 * (sums_.log_volume_here - sums_.log_volume);
   return context;
 }
 
@@ -151,13 +150,8 @@ Eigen::MatrixXd Evidence::Covariance(const WeighedHypothesis& weighed) const {
   return sd.asDiagonal() * C * sd.asDiagonal();
 }
 
-/// What is not known may take the force's place: its volume then says nothing.
-Eigen::VectorXd Evidence::Information(bool unknown) const {
-  return unknown ? sums_.g : Eigen::VectorXd(sums_.g - 0.5 * sums_.volume);
-}
-
 double Evidence::Merit(const WeighedHypothesis& weighed, const Eigen::VectorXd& x) const {
-  return sums_.c + sums_.log_volume - 2.0 * Information(weighed.hypothesis.unknown).dot(x) +
+  return sums_.c + sums_.volume - 2.0 * sums_.g.dot(x) +
          x.dot(sums_.H * x) + x.cwiseQuotient(PriorSd(weighed)).squaredNorm();
 }
 
@@ -166,7 +160,7 @@ Eigen::VectorXd Evidence::Mode(const WeighedHypothesis& weighed) const {
   std::vector<int> positive;
   for (const int j : Subset(weighed.hypothesis))
     if (layout_.Parameter(j).positive) positive.push_back(j);
-  return PositiveMode(C * Information(weighed.hypothesis.unknown), C, positive);
+  return PositiveMode(C * sums_.g, C, positive);
 }
 
 }  // namespace flextip

@@ -60,7 +60,6 @@ class Evidence {
     double log_evidence = 0.0;   ///< against the first context
   };
   Context MakeContext(double unknown_sd) const;
-  Eigen::VectorXd Information(bool unknown) const;
   struct Marginal {
     Eigen::MatrixXd A;    ///< posterior precision of the subset
     Eigen::VectorXd eta;  ///< information vector

@@ -9,7 +9,6 @@ namespace flextip {
 namespace {
 
 constexpr std::size_t kSamples = 100;
-constexpr double kStep = 0.3;  // of a tolerance
 
 /// The parameters that scale what the force does.
 std::vector<int> Compliances(const Replay& replay) {
@@ -59,48 +58,15 @@ class Thinned {
   Replay replay_;
 };
 
-double VolumeAgainstRigid(const Replay& replay, Thinned& thin) {
-  Eigen::VectorXd rigid = replay.Theta();
-  for (const int j : Compliances(replay)) rigid[j] = 0.0;
-  const auto here = thin.At(replay.Theta()), reference = thin.At(rigid);
-  return here && reference ? *here - *reference : 0.0;
-}
-
 }  // namespace
 
 double ForceVolume(const Replay& replay) {
   if (replay.Set().has_load) return 0.0;
   Thinned thin(replay);
-  return VolumeAgainstRigid(replay, thin);
-}
-
-void AddForceVolume(const Replay& replay, LinearProblem& problem) {
-  if (replay.Set().has_load) return;
-  Thinned thin(replay);
-  const double value = VolumeAgainstRigid(replay, thin);
-  Eigen::VectorXd slope = Eigen::VectorXd::Zero(problem.Size());
-  const int found = replay.Layout().Find("stiffness");
-  const int stiffness = found < 0 ? -1 : replay.Layout().Blocks()[found].first;
-  for (const int j : Compliances(replay)) {
-    const double step = kStep * replay.Layout().Tolerances()[j];
-    Eigen::VectorXd less = replay.Theta(), more = replay.Theta();
-    less[j] -= step;
-    more[j] += step;
-    const auto below = thin.At(less), above = thin.At(more);
-    if (!below || !above) continue;
-    slope[j] = (*above - *below) / (2.0 * step);
-    // Forces come in units of EI, so that what they do hangs on compliance times EI alone.
-    if (stiffness >= 0) slope[stiffness] += slope[j] * replay.Theta()[j];
-  }
-  const auto set = [&](NormalSums& sums) {
-    const double part = double(sums.rows) / double(problem.total.rows);
-    sums.volume = part * slope;
-    sums.log_volume_here = part * value;
-    sums.log_volume =
-        sums.log_volume_here - sums.volume.head(problem.parameters).dot(replay.Theta());
-  };
-  for (NormalSums& block : problem.blocks) set(block);
-  set(problem.total);
+  Eigen::VectorXd rigid = replay.Theta();
+  for (const int j : Compliances(replay)) rigid[j] = 0.0;
+  const auto here = thin.At(replay.Theta()), reference = thin.At(rigid);
+  return here && reference ? *here - *reference : 0.0;
 }
 
 }  // namespace flextip

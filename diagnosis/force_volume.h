@@ -6,14 +6,11 @@
 // force does, against the same model without them. Known loads take up nothing.
 #pragma once
 
-#include "diagnosis/linear_problem.h"
+#include "diagnosis/replay.h"
 
 namespace flextip {
 
 /// Rows taken up in all samples (from every so many of them).
 double ForceVolume(const Replay& replay);
-
-/// Sets the problem's volume: value and slope.
-void AddForceVolume(const Replay& replay, LinearProblem& problem);
 
 }  // namespace flextip

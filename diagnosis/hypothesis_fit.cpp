@@ -6,7 +6,6 @@
 #include "diagnosis/effects/port_motion.h"
 #include "diagnosis/force_volume.h"
 #include "diagnosis/frequency_scan.h"
-#include "diagnosis/generic_basis.h"
 
 namespace flextip {
 namespace {
@@ -22,9 +21,8 @@ double Merit(const LinearProblem& problem, const Eigen::VectorXd& theta,
   const NormalSums& sums = problem.total;
   const auto P = theta.size(), G = sums.g.size() - P;
   const double merit = sums.c - 2.0 * sums.g.head(P).dot(theta) +
-                       theta.dot(sums.H.topLeftCorner(P, P) * theta) + sums.log_volume +
-                       sums.volume.head(P).dot(theta) + theta.cwiseQuotient(prior_sd).squaredNorm();
-  if (G != generic_sd.size()) return merit;  // other terms than before: none
+                       theta.dot(sums.H.topLeftCorner(P, P) * theta) + sums.volume +
+                       theta.cwiseQuotient(prior_sd).squaredNorm();
   const Eigen::VectorXd left =
       generic_sd.asDiagonal() * (sums.g.tail(G) - sums.H.bottomLeftCorner(G, P) * theta);
   Eigen::MatrixXd M =
@@ -79,9 +77,12 @@ Eigen::VectorXd GenericSd(const LinearProblem& problem, const Rows& may_miss) {
   return sd;
 }
 
-LinearProblem ProblemHere(const Replay& replay, const SelectionOptions& options) {
-  LinearProblem problem = MakeLinearProblem(replay, GenericBasis(replay), options.blocks);
-  AddForceVolume(replay, problem);
+LinearProblem ProblemHere(const Replay& replay, const Eigen::MatrixXd& basis,
+                          const SelectionOptions& options) {
+  LinearProblem problem = MakeLinearProblem(replay, basis, options.blocks);
+  problem.total.volume = ForceVolume(replay);
+  for (NormalSums& block : problem.blocks)
+    block.volume = problem.total.volume * double(block.rows) / double(problem.total.rows);
   return problem;
 }
 
@@ -108,6 +109,7 @@ Weighing Weigh(const Replay& replay, LinearProblem here, const std::vector<Hypot
 }
 
 std::optional<LinearProblem> MoveToTarget(Replay& replay, const Weighing& weighing,
+                                          const Eigen::MatrixXd& basis,
                                           const SelectionOptions& options) {
   const Eigen::VectorXd from = replay.Theta();
   const auto forces_N = replay.Forces();
@@ -116,7 +118,7 @@ std::optional<LinearProblem> MoveToTarget(Replay& replay, const Weighing& weighi
     const Eigen::VectorXd theta = from + part * (weighing.target - from);
     replay.PredictForces(theta - from);
     if (replay.Evaluate(theta)) {
-      LinearProblem there = ProblemHere(replay, options);
+      LinearProblem there = ProblemHere(replay, basis, options);
       if (Merit(there, theta, weighing.prior_sd, weighing.generic_sd) < before) return there;
     }
     replay.SetForces(forces_N);
@@ -150,7 +152,7 @@ HypothesisFit FitHypothesis(Replay& replay, ParameterLayout& layout, const Hypot
   for (int round = 0; round < fit_options.rounds; ++round) {
     const bool scan = round < fit_options.scans && (round == 0 || !breathes);
     if (scan) FindFrequency(replay, layout);
-    if (scan || !here) here = ProblemHere(replay, options);
+    if (scan || !here) here = ProblemHere(replay, fit_options.basis, options);
     const bool far = fit_options.scans > 0 && round == 0;
     const Rows may_miss =
         far ? MayMiss(*here, options.first_discrepancy, options) : fit_options.may_miss;
@@ -161,7 +163,7 @@ HypothesisFit FitHypothesis(Replay& replay, ParameterLayout& layout, const Hypot
     if (round > 0 && round >= fit_options.scans && weighing.distance < kAtRest) break;
     if (round > 1 && weighing.LogPosterior() < fit_options.worth - kHopeless) break;
     if (round + 1 == fit_options.rounds) break;
-    here = MoveToTarget(replay, weighing, options);
+    here = MoveToTarget(replay, weighing, fit_options.basis, options);
     if (!here) break;
   }
   return fit;

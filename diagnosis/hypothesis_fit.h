@@ -27,7 +27,9 @@ struct Weighing {
 };
 
 /// The linear problem about the point where `replay` stands, unknown forces' volume included.
-LinearProblem ProblemHere(const Replay& replay, const SelectionOptions& options);
+/// Problems are comparable where their generic basis is the same.
+LinearProblem ProblemHere(const Replay& replay, const Eigen::MatrixXd& basis,
+                          const SelectionOptions& options);
 
 /// What the right form of an effect may miss of each row, in standard deviations: `part` of what
 /// there is to explain.
@@ -42,6 +44,7 @@ Weighing Weigh(const Replay& replay, LinearProblem here, const std::vector<Hypot
 /// Towards the weighing's target as far as that explains more than standing still: the problem
 /// there. Empty: nowhere, and the replay is where it was.
 std::optional<LinearProblem> MoveToTarget(Replay& replay, const Weighing& weighing,
+                                          const Eigen::MatrixXd& basis,
                                           const SelectionOptions& options);
 
 /// Where a replay stands, to come back to.
@@ -62,6 +65,7 @@ struct HypothesisFit {
 };
 
 struct FitOptions {
+  const Eigen::MatrixXd& basis;  ///< of the generic terms
   Rows may_miss = Rows::Zero();
   int rounds = 4;
   int scans = 0;          ///< first rounds that look for a breathing frequency

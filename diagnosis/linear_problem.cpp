@@ -85,8 +85,6 @@ void NormalSums::Add(const NormalSums& other, double weight) {
   H += weight * other.H;
   g += weight * other.g;
   volume += weight * other.volume;
-  log_volume += weight * other.log_volume;
-  log_volume_here += weight * other.log_volume_here;
   c += weight * other.c;
   rows += std::lround(weight * double(other.rows));
 }

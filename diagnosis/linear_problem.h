@@ -15,16 +15,12 @@ struct NormalSums {
   Eigen::MatrixXd H;  ///< X^T X
   Eigen::VectorXd g;  ///< X^T z
   double c = 0.0;     ///< z^T z
-  /// What unknown forces take up, to first order in the parameters (force_volume.h): slope, value
-  /// at the base simulation and at the point the problem is about.
-  Eigen::VectorXd volume;
-  double log_volume = 0.0, log_volume_here = 0.0;
+  double volume = 0.0;  ///< noise that unknown forces take up, to be put back on c (force_volume.h)
   long rows = 0;
 
   explicit NormalSums(Eigen::Index size = 0)
       : H(Eigen::MatrixXd::Zero(size, size)),
-        g(Eigen::VectorXd::Zero(size)),
-        volume(Eigen::VectorXd::Zero(size)) {}
+        g(Eigen::VectorXd::Zero(size)) {}
   void Add(const NormalSums& other, double weight = 1.0);
 };
 

@@ -17,6 +17,7 @@ constexpr double kAlongOverAcross = 1.5, kLeastAlong = 0.05;
 constexpr double kMaxForceStep = 0.5;  // in the same units
 constexpr int kForceSteps = 15;
 constexpr double kForceRest = 1e-3;  // fall of the squared residual that is worth a step
+constexpr std::size_t kForceNeighbours = 4;  // on either side, that say what a force should be
 constexpr double kBadFit = 3.0;      // against the neighbour's, that looks like a wrong minimum
 constexpr std::size_t kChunk = 64;   // samples solved one after the other, each from the last
 
@@ -218,17 +219,6 @@ void Replay::FitForces() {
   });
 }
 
-void Replay::CompareSamples() {
-  ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      ReplayedSample& sample = replayed_[k];
-      if (!sample.ok) continue;
-      sample.compared = Compare(samples_, sample.measured, sample.inputs, sample.f_tip_N,
-                                WithRate(k), sample.solved.by_inputs);
-    }
-  });
-}
-
 /// The rate by the parabola through two samples on either side (least squares: less noise than two
 /// differences).
 TimedGeometry Replay::WithRate(std::size_t k) const {
@@ -298,6 +288,52 @@ void Replay::AdaptForcePrior() {
   double squares = 0.0;
   for (const double f : across) squares += f * f / double(across.size());
   along_prior_ = std::max(kLeastAlong, kAlongOverAcross * std::sqrt(squares));
+}
+
+/// What samples around `k` say, on the mean: with as many before as after it, without itself. Itself
+/// where there are none.
+template <class Get>
+auto Replay::Around(std::size_t k, Get get) const {
+  using Value = std::decay_t<decltype(get(k))>;
+  const std::size_t reach = std::min({k, replayed_.size() - 1 - k, kForceNeighbours});
+  const Value own = get(k);
+  if (samples_.has_load || !samples_.resolved_in_time) return own;
+  Value sum = Value::Zero();
+  int count = 0;
+  for (std::size_t by = 1; by <= reach; ++by) {
+    if (!replayed_[k - by].ok || !replayed_[k + by].ok) continue;
+    sum += get(k - by) + get(k + by);
+    count += 2;
+  }
+  return count == 0 ? own : Value(sum / count);
+}
+
+/// The geometry's derivatives, those by compliances as the samples around have them: they grow with
+/// the force, and the noise of a force found from this very sample must not look like something
+/// explained.
+GeometryByInputs Replay::ExpectedDerivatives(std::size_t k) const {
+  GeometryByInputs by = replayed_[k].solved.by_inputs;
+  for (const int input : {rod_input::kPortCompliance, rod_input::kWristCompliance})
+    by.col(input) = Around(k, [&](std::size_t j) -> Geometry {
+      return replayed_[j].solved.by_inputs.col(input);
+    });
+  return by;
+}
+
+void Replay::CompareSamples() {
+  ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      ReplayedSample& sample = replayed_[k];
+      if (!sample.ok) continue;
+      const Eigen::Vector3d expected_N =
+          MeanForce(k) + Around(k, [&](std::size_t j) -> Eigen::Vector3d {
+            return replayed_[j].f_tip_N - MeanForce(j);
+          });
+      sample.compared = Compare(samples_, sample.measured, sample.inputs,
+                                ForceOnTip(sample.f_tip_N, expected_N), WithRate(k),
+                                ExpectedDerivatives(k));
+    }
+  });
 }
 
 /// Mean of the tip's force before the sensors say anything of it.

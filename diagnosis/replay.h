@@ -108,6 +108,9 @@ class Replay {
   TimedGeometry WithRate(std::size_t k) const;
   double ForceUnit(std::size_t k) const;
   Eigen::Vector3d MeanForce(std::size_t k) const;
+  template <class Get>
+  auto Around(std::size_t k, Get get) const;
+  GeometryByInputs ExpectedDerivatives(std::size_t k) const;
   Eigen::Matrix3d ForcePrior(std::size_t k) const;
   double ByInput(std::size_t k, int r, int input) const;
   Eigen::MatrixXd OwnCovariance(std::size_t k, const std::vector<int>& rows) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/generic_basis.h"
 #include "diagnosis/hypothesis_fit.h"
 #include "diagnosis/noise_level.h"
 
@@ -27,18 +28,21 @@ class Search {
     replay_.Settle(Eigen::VectorXd::Zero(layout_.Size()));
     replay_.AdaptForcePrior();
     base_ = PlaceOf(replay_);
-    LinearProblem base = ProblemHere(replay_, options_);
+    basis_ = GenericBasis(replay_);
+    LinearProblem base = ProblemHere(replay_, basis_, options_);
     // The same for all hypotheses: what is large in the base's residual may be missed by more.
     may_miss_ = MayMiss(base, options_.discrepancy, options_);
     const Rows at_first = MayMiss(base, options_.first_discrepancy, options_);
     const Weighing first = Weigh(replay_, std::move(base),
                                  KnownHypotheses(layout_.EffectCount(), false), options_, at_first);
     FitFromBase(first.Best());
-    // From here on noise and forces are known better, and stay as they are.
+    // From here on noise and forces are known better, and stay as they are: what is fitted from now
+    // on is comparable.
     replay_.SetNoiseScale(NoiseScale(replay_));
     replay_.AdaptForcePrior();
+    basis_ = GenericBasis(replay_);
     Keep(FitHypothesis(replay_, layout_, best_.hypothesis, options_,
-                       {.may_miss = may_miss_, .rounds = kFitRounds}));
+                       {.basis = basis_, .may_miss = may_miss_, .rounds = kFitRounds}));
     FitRivals();
     if (Unexplained()) {
       int fresh = 0;
@@ -55,7 +59,7 @@ class Search {
   void FitFromBase(const Hypothesis& hypothesis) {
     GoTo(replay_, layout_, base_);
     Keep(FitHypothesis(replay_, layout_, hypothesis, options_,
-                       {.may_miss = may_miss_,
+                       {.basis = basis_, .may_miss = may_miss_,
                         .rounds = kFirstRounds,
                         .scans = kScans,
                         .worth = best_.log_posterior}));
@@ -87,7 +91,7 @@ class Search {
     for (rivals_left_ = true; selection_.fits < kMostFits;) {
       GoTo(replay_, layout_, best_.place);
       const Weighing weighing =
-          Weigh(replay_, ProblemHere(replay_, options_), known, options_, may_miss_);
+          Weigh(replay_, ProblemHere(replay_, basis_, options_), known, options_, may_miss_);
       const auto rival =
           std::find_if(weighing.scored.begin(), weighing.scored.end(),
                        [&](const auto& s) { return Tried(s.weighed.hypothesis) == nullptr; });
@@ -96,7 +100,7 @@ class Search {
       if (!rivals_left_) return;
       Keep(FitHypothesis(
           replay_, layout_, rival->weighed.hypothesis, options_,
-          {.may_miss = may_miss_, .rounds = kFitRounds, .worth = best_.log_posterior}));
+          {.basis = basis_, .may_miss = may_miss_, .rounds = kFitRounds, .worth = best_.log_posterior}));
     }
   }
 
@@ -116,7 +120,7 @@ class Search {
     GoTo(replay_, layout_, best_.place);
     const auto all = AllHypotheses(layout_.EffectCount());
     Weighing weighing =
-        Weigh(replay_, ProblemHere(replay_, options_), {best_.hypothesis}, options_, may_miss_);
+        Weigh(replay_, ProblemHere(replay_, basis_, options_), {best_.hypothesis}, options_, may_miss_);
     const auto scored = Score(weighing.problem.total, layout_, weighing.generic_sd, all, options_);
     selection_.corrections.clear();
     double common = 0.0;  // what the linear problem promises to all
@@ -138,6 +142,7 @@ class Search {
   ParameterLayout& layout_;
   const SelectionOptions& options_;
   Place base_;
+  Eigen::MatrixXd basis_;
   Rows may_miss_ = Rows::Zero();
   std::vector<HypothesisFit> tried_;
   HypothesisFit best_;

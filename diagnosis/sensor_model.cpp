@@ -83,11 +83,11 @@ Predicted SeenByCamera(const TimedGeometry& sensed, const GeometryByInputs& by_i
 }
 
 /// E as it truly is: yielding under its force, with the tags off their place.
-Predicted TrueTip(const ModelInputs& u, const Eigen::Vector3d& f_tip_N, const TimedGeometry& sensed,
+Predicted TrueTip(const ModelInputs& u, const ForceOnTip& f_tip, const TimedGeometry& sensed,
                   const GeometryByInputs& by_inputs) {
   Predicted p = SeenByCamera(sensed, by_inputs, place::kTip);
-  p.v += u[kTipCompliance] * f_tip_N;
-  p.d.col(kTipCompliance) += f_tip_N;
+  p.v += u[kTipCompliance] * f_tip.at_N;
+  p.d.col(kTipCompliance) += f_tip.expected_N;
   p.d.middleCols<3>(kForce) += u[kTipCompliance] * Eigen::Matrix3d::Identity();
   const Predicted x = SeenByCamera(sensed, by_inputs, place::kTipTangent),
                   y = SeenByCamera(sensed, by_inputs, place::kTipY);
@@ -140,7 +140,7 @@ void TurnByFocal(const SampleSet& samples, const ModelInputs& u, const Predicted
 }  // namespace
 
 SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const ModelInputs& u,
-                       const Eigen::Vector3d& f_tip_N, const TimedGeometry& geometry,
+                       const ForceOnTip& f_tip, const TimedGeometry& geometry,
                        const GeometryByInputs& by_inputs) {
   SampleResidual out;
   if (z.Has(row::kWristDirection))
@@ -167,7 +167,7 @@ SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const
     out.by_inputs(r, kStrainOffset + i) = 1.0;
   }
   if (z.Has(row::kTipPosition))
-    AddVector(z.p_RE, SeenTip(samples, u, TrueTip(u, f_tip_N, geometry, by_inputs)),
+    AddVector(z.p_RE, SeenTip(samples, u, TrueTip(u, f_tip, geometry, by_inputs)),
               row::kTipPosition, out);
   if (z.Has(row::kTipDirection)) {
     Predicted d = SeenByCamera(geometry, by_inputs, place::kTipTangent);
