@@ -3,14 +3,18 @@
 // as rows are taken up (the trace that Mallows's C_p is made of), which is put back on it here.
 // Without it a yielding tip would look likely only because the least known force, that along the
 // shaft, could then explain the tip's noise. It is taken for the compliances, which scale what a
-// force does, against the same model without them. Known loads take up nothing.
+// force does, against the same model without them.
+//
+// A known load has noise of a known size, and the likelihood itself says what it costs to explain
+// more by it: the log determinant of each sample's covariance.
 #pragma once
 
 #include "diagnosis/replay.h"
 
 namespace flextip {
 
-/// Rows taken up in all samples (from every so many of them).
+/// To be put back on the squared residual: rows taken up in all samples (from every so many of
+/// them), or log determinants.
 double ForceVolume(const Replay& replay);
 
 }  // namespace flextip

@@ -18,6 +18,8 @@ constexpr double kMaxForceStep = 0.5;  // in the same units
 constexpr int kForceSteps = 15;
 constexpr double kForceRest = 1e-3;  // fall of the squared residual that is worth a step
 constexpr std::size_t kForceNeighbours = 4;  // on either side, that say what a force should be
+constexpr std::size_t kSharedNoise = 8;      // samples over which smoothed loads share their noise
+constexpr int kAlikeReach = 4;
 constexpr double kBadFit = 3.0;      // against the neighbour's, that looks like a wrong minimum
 constexpr std::size_t kChunk = 64;   // samples solved one after the other, each from the last
 
@@ -193,30 +195,44 @@ void Replay::FitForce(std::size_t k, EffectRodSolver& solver) {
   }
 }
 
-/// The last sample before `k` with the same sensors, from `begin` on; `k` where there is none.
-std::size_t Replay::LastAlike(std::size_t begin, std::size_t k) const {
-  for (std::size_t j = k; j-- > begin;)
-    if (replayed_[j].ok && samples_.samples[j].present == samples_.samples[k].present) return j;
+/// The sample next to `k` with the same sensors, `step` of -1 or 1 at a time; `k` where there is none
+/// near.
+std::size_t Replay::NextAlike(std::size_t k, int step) const {
+  for (int i = 1; i <= kAlikeReach; ++i) {
+    const auto j = std::ptrdiff_t(k) + step * i;
+    if (j < 0 || j >= std::ptrdiff_t(replayed_.size())) break;
+    if (replayed_[j].ok && samples_.samples[j].present == samples_.samples[k].present)
+      return std::size_t(j);
+  }
   return k;
 }
 
-/// Each sample from where it was; where that ends badly, from its neighbour's force.
+/// Refits sample `k` from the force and the shape of one next to it where its own fit looks like a
+/// wrong minimum.
+void Replay::MendForce(std::size_t k) {
+  for (const int step : {-1, 1}) {
+    const std::size_t next = NextAlike(k, step);
+    const double rows = double(samples_.samples[k].present.count());
+    if (next == k || (replayed_[k].ok && replayed_[k].force_merit <
+                                             kBadFit * (replayed_[next].force_merit + rows)))
+      continue;
+    const ReplayedSample own = replayed_[k];
+    EffectRodSolver solver;
+    SolveSample(samples_, next, replayed_[next].inputs, replayed_[next].f_tip_N, solver);
+    replayed_[k].f_tip_N = replayed_[next].f_tip_N;
+    FitForce(k, solver);
+    if (own.ok && (!replayed_[k].ok || own.force_merit < replayed_[k].force_merit))
+      replayed_[k] = own;
+  }
+}
+
+/// Each sample from where it was; where that ends badly, from its neighbours' force.
 void Replay::FitForces() {
   ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
     EffectRodSolver solver;
-    for (std::size_t k = begin; k < end; ++k) {
-      FitForce(k, solver);
-      const std::size_t alike = LastAlike(begin, k);
-      if (alike == k) continue;
-      const ReplayedSample own = replayed_[k];
-      const double rows = double(samples_.samples[k].present.count());
-      if (own.ok && own.force_merit < kBadFit * (replayed_[alike].force_merit + rows)) continue;
-      replayed_[k].f_tip_N = replayed_[alike].f_tip_N;
-      FitForce(k, solver);
-      if (own.ok && (!replayed_[k].ok || own.force_merit < replayed_[k].force_merit))
-        replayed_[k] = own;
-    }
+    for (std::size_t k = begin; k < end; ++k) FitForce(k, solver);
   });
+  for (std::size_t k = 0; k < replayed_.size(); ++k) MendForce(k);
 }
 
 /// The rate by the parabola through two samples on either side (least squares: less noise than two
@@ -290,17 +306,18 @@ void Replay::AdaptForcePrior() {
   along_prior_ = std::max(kLeastAlong, kAlongOverAcross * std::sqrt(squares));
 }
 
-/// What samples around `k` say, on the mean: with as many before as after it, without itself. Itself
-/// where there are none.
+/// What samples around `k` say, on the mean: with as many before as after it, without itself and
+/// those that share its noise. Itself where there are none.
 template <class Get>
 auto Replay::Around(std::size_t k, Get get) const {
   using Value = std::decay_t<decltype(get(k))>;
-  const std::size_t reach = std::min({k, replayed_.size() - 1 - k, kForceNeighbours});
+  const std::size_t skip = samples_.has_load ? kSharedNoise : 0;
+  const std::size_t reach = std::min({k, replayed_.size() - 1 - k, skip + kForceNeighbours});
   const Value own = get(k);
-  if (samples_.has_load || !samples_.resolved_in_time) return own;
+  if (!samples_.resolved_in_time) return own;
   Value sum = Value::Zero();
   int count = 0;
-  for (std::size_t by = 1; by <= reach; ++by) {
+  for (std::size_t by = skip + 1; by <= reach; ++by) {
     if (!replayed_[k - by].ok || !replayed_[k + by].ok) continue;
     sum += get(k - by) + get(k + by);
     count += 2;
@@ -308,15 +325,22 @@ auto Replay::Around(std::size_t k, Get get) const {
   return count == 0 ? own : Value(sum / count);
 }
 
-/// The geometry's derivatives, those by compliances as the samples around have them: they grow with
-/// the force, and the noise of a force found from this very sample must not look like something
-/// explained.
+/// The geometry's derivatives, those by compliances and by stiffness (with the force in its units)
+/// as the samples around have them: they grow with the force, and the noise of a force found from
+/// this very sample must not look like something explained.
 GeometryByInputs Replay::ExpectedDerivatives(std::size_t k) const {
   GeometryByInputs by = replayed_[k].solved.by_inputs;
   for (const int input : {rod_input::kPortCompliance, rod_input::kWristCompliance})
     by.col(input) = Around(k, [&](std::size_t j) -> Geometry {
       return replayed_[j].solved.by_inputs.col(input);
     });
+  const auto with_force = [&](std::size_t j) -> Geometry {
+    const GeometryByInputs& own = replayed_[j].solved.by_inputs;
+    if (samples_.has_load) return own.col(rod_input::kStiffness);
+    return own.col(rod_input::kStiffness) +
+           own.middleCols<3>(rod_input::kForce) * replayed_[j].f_tip_N;
+  };
+  by.col(rod_input::kStiffness) += Around(k, with_force) - with_force(k);
   return by;
 }
 
@@ -326,9 +350,7 @@ void Replay::CompareSamples() {
       ReplayedSample& sample = replayed_[k];
       if (!sample.ok) continue;
       const Eigen::Vector3d expected_N =
-          MeanForce(k) + Around(k, [&](std::size_t j) -> Eigen::Vector3d {
-            return replayed_[j].f_tip_N - MeanForce(j);
-          });
+          Around(k, [&](std::size_t j) -> Eigen::Vector3d { return replayed_[j].f_tip_N; });
       sample.compared = Compare(samples_, sample.measured, sample.inputs,
                                 ForceOnTip(sample.f_tip_N, expected_N), WithRate(k),
                                 ExpectedDerivatives(k));
@@ -409,6 +431,7 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
   all.e.resize(all.first_row.back());
   all.units.resize(replayed_.size());
   all.force_share.assign(replayed_.size(), 0.0);
+  all.log_determinant.assign(replayed_.size(), 0.0);
   all.rows.resize(replayed_.size());
   all.X.resize(all.first_row.back(), layout_.Size());
   ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
@@ -416,6 +439,8 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
       if (all.Rows(k) == 0) continue;
       const Statistics s = StatisticsOf(k, rows_used);
       const auto L = s.covariance.matrixL();
+      const auto diagonal = s.covariance.matrixLLT().diagonal();
+      all.log_determinant[k] = 2.0 * diagonal.array().log().sum();
       const Eigen::MatrixXd by_force = L.solve(s.by_force);
       all.force_share[k] = (by_force.transpose() * by_force * s.force_prior).trace();
       all.e.segment(all.first_row[k], all.Rows(k)) = L.solve(s.e);

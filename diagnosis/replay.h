@@ -37,6 +37,7 @@ struct WhitenedRows {
   std::vector<Eigen::MatrixXd> units;
   /// Of each sample: how many of its rows' noise the force takes up (0 to 3).
   std::vector<double> force_share;
+  std::vector<double> log_determinant;  ///< of each sample's covariance
 
   int Rows(std::size_t k) const { return first_row[k + 1] - first_row[k]; }
 };
@@ -102,7 +103,8 @@ class Replay {
   void Retime();
   void FitForces();
   void FitForce(std::size_t k, EffectRodSolver& solver);
-  std::size_t LastAlike(std::size_t begin, std::size_t k) const;
+  std::size_t NextAlike(std::size_t k, int step) const;
+  void MendForce(std::size_t k);
   bool TryForce(std::size_t k, const Eigen::Vector3d& f_N, EffectRodSolver& solver);
   void CompareSamples();
   TimedGeometry WithRate(std::size_t k) const;
