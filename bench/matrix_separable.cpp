@@ -13,7 +13,8 @@
 namespace flextip {
 namespace {
 
-constexpr double kWidth = 3.0;  // of a present effect's prior, in typical sizes: the widest there is
+constexpr double kWidth =
+    3.0;  // of a present effect's prior, in typical sizes: the widest there is
 
 /// The label's parameters of all effects; what it does not name is zero.
 Eigen::VectorXd TrueTheta(const HiddenRecording& hidden, ParameterLayout& layout) {

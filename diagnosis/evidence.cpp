@@ -151,8 +151,8 @@ Eigen::MatrixXd Evidence::Covariance(const WeighedHypothesis& weighed) const {
 }
 
 double Evidence::Merit(const WeighedHypothesis& weighed, const Eigen::VectorXd& x) const {
-  return sums_.c + sums_.volume - 2.0 * sums_.g.dot(x) +
-         x.dot(sums_.H * x) + x.cwiseQuotient(PriorSd(weighed)).squaredNorm();
+  return sums_.c + sums_.volume - 2.0 * sums_.g.dot(x) + x.dot(sums_.H * x) +
+         x.cwiseQuotient(PriorSd(weighed)).squaredNorm();
 }
 
 Eigen::VectorXd Evidence::Mode(const WeighedHypothesis& weighed) const {

@@ -16,12 +16,12 @@ constexpr double kAcrossPrior = 20.0, kAlongPrior = 1.0;
 constexpr double kAlongOverAcross = 1.5, kLeastAlong = 0.05;
 constexpr double kMaxForceStep = 0.5;  // in the same units
 constexpr int kForceSteps = 15;
-constexpr double kForceRest = 1e-3;  // fall of the squared residual that is worth a step
+constexpr double kForceRest = 1e-3;          // fall of the squared residual that is worth a step
 constexpr std::size_t kForceNeighbours = 4;  // on either side, that say what a force should be
 constexpr std::size_t kSharedNoise = 8;      // samples over which smoothed loads share their noise
 constexpr int kAlikeReach = 4;
-constexpr double kBadFit = 3.0;      // against the neighbour's, that looks like a wrong minimum
-constexpr std::size_t kChunk = 64;   // samples solved one after the other, each from the last
+constexpr double kBadFit = 3.0;     // against the neighbour's, that looks like a wrong minimum
+constexpr std::size_t kChunk = 64;  // samples solved one after the other, each from the last
 
 /// Calls `work(k)` for every sample, chunk by chunk in parallel; `make` makes a chunk's context.
 template <class Work>
@@ -195,8 +195,8 @@ void Replay::FitForce(std::size_t k, EffectRodSolver& solver) {
   }
 }
 
-/// The sample next to `k` with the same sensors, `step` of -1 or 1 at a time; `k` where there is none
-/// near.
+/// The sample next to `k` with the same sensors, `step` of -1 or 1 at a time; `k` where there is
+/// none near.
 std::size_t Replay::NextAlike(std::size_t k, int step) const {
   for (int i = 1; i <= kAlikeReach; ++i) {
     const auto j = std::ptrdiff_t(k) + step * i;
@@ -213,8 +213,8 @@ void Replay::MendForce(std::size_t k) {
   for (const int step : {-1, 1}) {
     const std::size_t next = NextAlike(k, step);
     const double rows = double(samples_.samples[k].present.count());
-    if (next == k || (replayed_[k].ok && replayed_[k].force_merit <
-                                             kBadFit * (replayed_[next].force_merit + rows)))
+    if (next == k || (replayed_[k].ok &&
+                      replayed_[k].force_merit < kBadFit * (replayed_[next].force_merit + rows)))
       continue;
     const ReplayedSample own = replayed_[k];
     EffectRodSolver solver;
@@ -331,9 +331,8 @@ auto Replay::Around(std::size_t k, Get get) const {
 GeometryByInputs Replay::ExpectedDerivatives(std::size_t k) const {
   GeometryByInputs by = replayed_[k].solved.by_inputs;
   for (const int input : {rod_input::kPortCompliance, rod_input::kWristCompliance})
-    by.col(input) = Around(k, [&](std::size_t j) -> Geometry {
-      return replayed_[j].solved.by_inputs.col(input);
-    });
+    by.col(input) = Around(
+        k, [&](std::size_t j) -> Geometry { return replayed_[j].solved.by_inputs.col(input); });
   const auto with_force = [&](std::size_t j) -> Geometry {
     const GeometryByInputs& own = replayed_[j].solved.by_inputs;
     if (samples_.has_load) return own.col(rod_input::kStiffness);
@@ -351,9 +350,16 @@ void Replay::CompareSamples() {
       if (!sample.ok) continue;
       const Eigen::Vector3d expected_N =
           Around(k, [&](std::size_t j) -> Eigen::Vector3d { return replayed_[j].f_tip_N; });
-      sample.compared = Compare(samples_, sample.measured, sample.inputs,
-                                ForceOnTip(sample.f_tip_N, expected_N), WithRate(k),
-                                ExpectedDerivatives(k));
+      sample.compared =
+          Compare(samples_, sample.measured, sample.inputs, ForceOnTip(sample.f_tip_N, expected_N),
+                  WithRate(k), ExpectedDerivatives(k));
+      for (int i = 0; i < 4; ++i) {  // a gain acts on the moment, which comes of the force too
+        if (!sample.measured.Has(row::kStrain + i)) continue;
+        const auto moment = Around(k, [&](std::size_t j) -> Eigen::Matrix<double, 1, 1> {
+          return replayed_[j].solved.at.segment<1>(place::kMoments + i);
+        });
+        sample.compared.by_inputs(row::kStrain + i, model_input::kStrainGain + i) = moment[0];
+      }
     }
   });
 }

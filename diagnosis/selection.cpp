@@ -10,10 +10,12 @@
 namespace flextip {
 namespace {
 
-constexpr int kFirstRounds = 6;  // of the fit from the base simulation
-constexpr int kScans = 3;        // of them, with a look for a breathing frequency
-constexpr int kFitRounds = 4;    // of a fit from where another hypothesis fits
-constexpr int kMostFits = 10;
+constexpr std::size_t kLeaders = 3;  // fitted from the base simulation
+constexpr double kClearly = 30.0;    // log odds, seen from there, that a leader is ahead by
+constexpr int kFirstRounds = 6;      // of the fit from the base simulation
+constexpr int kScans = 3;            // of them, with a look for a breathing frequency
+constexpr int kFitRounds = 4;        // of a fit from where another hypothesis fits
+constexpr int kMostFits = 12;
 constexpr int kFreshFits = 3;          // from the base, where nothing explains the recording
 constexpr double kRival = 2.0;         // log odds below the best that are worth a fit
 constexpr double kNearRest = 3.0;      // distance, in standard deviations
@@ -35,19 +37,20 @@ class Search {
     const Rows at_first = MayMiss(base, options_.first_discrepancy, options_);
     const Weighing first = Weigh(replay_, std::move(base),
                                  KnownHypotheses(layout_.EffectCount(), false), options_, at_first);
-    FitFromBase(first.Best());
+    FitLeadersFromBase(first);
     // From here on noise and forces are known better, and stay as they are: what is fitted from now
     // on is comparable.
     replay_.SetNoiseScale(NoiseScale(replay_));
     replay_.AdaptForcePrior();
     basis_ = GenericBasis(replay_);
+    tried_.clear();
     Keep(FitHypothesis(replay_, layout_, best_.hypothesis, options_,
                        {.basis = basis_, .may_miss = may_miss_, .rounds = kFitRounds}));
     FitRivals();
     if (Unexplained()) {
       int fresh = 0;
       for (const auto& s : first.scored)
-        if (s.weighed.hypothesis != first.Best() && fresh++ < kFreshFits)
+        if (Tried(s.weighed.hypothesis) == nullptr && fresh++ < kFreshFits)
           FitFromBase(s.weighed.hypothesis);
       FitRivals();
     }
@@ -56,10 +59,19 @@ class Search {
   }
 
  private:
+  /// The base is far from any answer: a few that look best from there are followed.
+  void FitLeadersFromBase(const Weighing& first) {
+    for (std::size_t i = 0; i < kLeaders && i < first.scored.size(); ++i)
+      if (first.scored[i].log_posterior > first.scored[0].log_posterior - kClearly)
+        FitFromBase(first.scored[i].weighed.hypothesis);
+    if (Tried({}) == nullptr) FitFromBase({});
+  }
+
   void FitFromBase(const Hypothesis& hypothesis) {
     GoTo(replay_, layout_, base_);
     Keep(FitHypothesis(replay_, layout_, hypothesis, options_,
-                       {.basis = basis_, .may_miss = may_miss_,
+                       {.basis = basis_,
+                        .may_miss = may_miss_,
                         .rounds = kFirstRounds,
                         .scans = kScans,
                         .worth = best_.log_posterior}));
@@ -92,16 +104,38 @@ class Search {
       GoTo(replay_, layout_, best_.place);
       const Weighing weighing =
           Weigh(replay_, ProblemHere(replay_, basis_, options_), known, options_, may_miss_);
-      const auto rival =
-          std::find_if(weighing.scored.begin(), weighing.scored.end(),
-                       [&](const auto& s) { return Tried(s.weighed.hypothesis) == nullptr; });
-      rivals_left_ = rival != weighing.scored.end() &&
-                     rival->log_posterior + weighing.log_none > best_.log_posterior - kRival;
+      const ScoredHypothesis* rival = nullptr;
+      double log_rival = best_.log_posterior - kRival;
+      for (const auto& s : weighing.scored) {
+        const double log = s.log_posterior + weighing.log_none + Shortfall(s, weighing);
+        if (Tried(s.weighed.hypothesis) != nullptr || log < log_rival) continue;
+        rival = &s;
+        log_rival = log;
+      }
+      rivals_left_ = rival != nullptr;
       if (!rivals_left_) return;
-      Keep(FitHypothesis(
-          replay_, layout_, rival->weighed.hypothesis, options_,
-          {.basis = basis_, .may_miss = may_miss_, .rounds = kFitRounds, .worth = best_.log_posterior}));
+      Keep(FitHypothesis(replay_, layout_, rival->weighed.hypothesis, options_,
+                         {.basis = basis_,
+                          .may_miss = may_miss_,
+                          .rounds = kFitRounds,
+                          .worth = best_.log_posterior}));
     }
+  }
+
+  /// What the fits say of a hypothesis beyond the linear problem about the best place: its own fit,
+  /// or the worst of those of its parts, whose broken promise is its promise too.
+  double Shortfall(const ScoredHypothesis& s, const Weighing& weighing) const {
+    if (const HypothesisFit* own = Tried(s.weighed.hypothesis))
+      return own->log_posterior - s.log_posterior - weighing.log_none;
+    double worst = 0.0;
+    for (const int effect : s.weighed.hypothesis.effects) {
+      const HypothesisFit* part = Tried({{effect}, false});
+      if (part == nullptr || part->hypothesis == best_.hypothesis) continue;
+      for (const auto& single : weighing.scored)
+        if (single.weighed.hypothesis == part->hypothesis)
+          worst = std::min(worst, part->log_posterior - single.log_posterior - weighing.log_none);
+    }
+    return worst;
   }
 
   /// Where something unknown would explain much more, the best may be a wrong turn.
@@ -119,18 +153,17 @@ class Search {
   void WeighAtBest() {
     GoTo(replay_, layout_, best_.place);
     const auto all = AllHypotheses(layout_.EffectCount());
-    Weighing weighing =
-        Weigh(replay_, ProblemHere(replay_, basis_, options_), {best_.hypothesis}, options_, may_miss_);
-    const auto scored = Score(weighing.problem.total, layout_, weighing.generic_sd, all, options_);
-    selection_.corrections.clear();
+    Weighing weighing = Weigh(replay_, ProblemHere(replay_, basis_, options_),
+                              KnownHypotheses(layout_.EffectCount(), true), options_, may_miss_);
     double common = 0.0;  // what the linear problem promises to all
-    for (const auto& s : scored)
-      if (s.weighed.hypothesis == best_.hypothesis)
-        common = best_.log_posterior - s.log_posterior - weighing.log_none;
-    for (const auto& s : scored)
-      if (const HypothesisFit* fit = Tried(s.weighed.hypothesis))
-        selection_.corrections.push_back(
-            {fit->hypothesis, fit->log_posterior - s.log_posterior - weighing.log_none - common});
+    for (const auto& s : weighing.scored)
+      if (s.weighed.hypothesis == best_.hypothesis) common = Shortfall(s, weighing);
+    selection_.corrections.clear();
+    for (const auto& s : weighing.scored) {
+      const bool tried = Tried(s.weighed.hypothesis) != nullptr;
+      const double log = Shortfall(s, weighing) - (tried ? common : 0.0);
+      if (log != 0.0) selection_.corrections.push_back({s.weighed.hypothesis, log});
+    }
     selection_.scored = Score(weighing.problem.total, layout_, weighing.generic_sd, all, options_,
                               {}, selection_.corrections);
     selection_.converged = best_.distance < kNearRest && !rivals_left_;

@@ -45,8 +45,7 @@ std::vector<ReportedParameter> MeanLoad::Report(const Eigen::VectorXd& theta,
 }
 
 Eigen::VectorXd MeanLoad::FromReported(const std::vector<std::vector<double>>& values) const {
-  return Eigen::Map<const Eigen::VectorXd>(values.at(0).data(),
-                                           Eigen::Index(values.at(0).size()));
+  return Eigen::Map<const Eigen::VectorXd>(values.at(0).data(), Eigen::Index(values.at(0).size()));
 }
 
 }  // namespace flextip
