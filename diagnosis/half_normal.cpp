@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace flextip {
@@ -53,20 +54,25 @@ double LogPositive(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covarianc
 
 Eigen::VectorXd PositiveMode(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
                              const std::vector<int>& positive) {
-  Eigen::VectorXd mode = mean;
-  std::vector<int> at_zero;
-  for (std::size_t pass = 0; pass <= positive.size(); ++pass) {
-    const auto before = at_zero.size();
-    for (const int i : positive)
-      if (mode[i] < 0.0 && std::find(at_zero.begin(), at_zero.end(), i) == at_zero.end())
-        at_zero.push_back(i);
-    if (at_zero.size() == before) break;
-    const Eigen::MatrixXd C = covariance(at_zero, at_zero);
-    const Eigen::VectorXd pull = C.llt().solve(Eigen::VectorXd(mean(at_zero)));
-    mode = mean - covariance(Eigen::all, at_zero) * pull;
+  Eigen::VectorXd best = mean;
+  double least = std::numeric_limits<double>::infinity();
+  // Each may be at zero or free: few enough to try them all.
+  for (unsigned set = 0; set < 1U << positive.size(); ++set) {
+    std::vector<int> at_zero;
+    for (std::size_t i = 0; i < positive.size(); ++i)
+      if ((set >> i & 1U) != 0) at_zero.push_back(positive[i]);
+    const Eigen::VectorXd off = mean(at_zero);
+    const Eigen::VectorXd pull =
+        Eigen::MatrixXd(covariance(at_zero, at_zero)).llt().solve(off);
+    Eigen::VectorXd mode = mean - covariance(Eigen::all, at_zero) * pull;
     for (const int i : at_zero) mode[i] = 0.0;
+    const bool allowed =
+        std::all_of(positive.begin(), positive.end(), [&](int i) { return mode[i] >= 0.0; });
+    if (!allowed || off.dot(pull) >= least) continue;
+    least = off.dot(pull);
+    best = mode;
   }
-  return mode;
+  return best;
 }
 
 }  // namespace flextip

@@ -314,7 +314,7 @@ auto Replay::Around(std::size_t k, Get get) const {
   const std::size_t skip = samples_.has_load ? kSharedNoise : 0;
   const std::size_t reach = std::min({k, replayed_.size() - 1 - k, skip + kForceNeighbours});
   const Value own = get(k);
-  if (!samples_.resolved_in_time) return own;
+  if (!samples_.resolved_in_time || own_derivatives_) return own;
   Value sum = Value::Zero();
   int count = 0;
   for (std::size_t by = skip + 1; by <= reach; ++by) {

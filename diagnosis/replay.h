@@ -85,6 +85,9 @@ class Replay {
   /// Factors on the data sheets' noise, by channel; at least one.
   void SetNoiseScale(const std::array<double, kChannelCount>& scale) { noise_scale_ = scale; }
   const std::array<double, kChannelCount>& NoiseScales() const { return noise_scale_; }
+  /// Derivatives by what scales the force (compliances, stiffness, gains) are those of the samples
+  /// around, without the noise of a sample's own force; or the sample's own, as differences have them.
+  void TakeOwnDerivatives(bool own) { own_derivatives_ = own; }
   /// Noise factors and the width of the force's prior, as another replay of the same recording has
   /// them.
   void TakeSettings(const Replay& other);
@@ -128,6 +131,7 @@ class Replay {
   std::array<double, kChannelCount> noise_scale_;
   double along_prior_;  // of an unknown force along the shaft, in units of EI / L^2
   int failed_ = 0;
+  bool own_derivatives_ = false;
 };
 
 }  // namespace flextip

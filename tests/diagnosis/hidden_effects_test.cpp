@@ -107,9 +107,6 @@ void ExpectParameters(const HiddenLabel& label, const DiagnosisResult& result) {
 }
 
 TEST_P(HiddenEffects, AreNamedMeasuredAndWorthKnowing) {
-  const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  if (name.ends_with("/backlash") || name.ends_with("/tip_compliance_unloaded"))
-    GTEST_SKIP() << "a known miss (docs/diagnosis.md): named with another effect beside it";
   const HiddenLabel label = Hide();
   ExpectNoLabelInFolder();
   const DiagnosisResult result = Diagnose(ReadRecording(folder_).recording, "recording");
