@@ -149,7 +149,7 @@ bool Replay::TryForce(std::size_t k, const Eigen::Vector3d& f_N, EffectRodSolver
   sample.ok = true;
   sample.f_tip_N = f_N;
   sample.compared = Compare(samples_, sample.measured, sample.inputs, f_N,
-                            {solved.at, Geometry::Zero()}, solved.by_inputs);
+                            {solved.at, Geometry::Zero(), Geometry::Zero()}, solved.by_inputs);
   return true;
 }
 
@@ -235,21 +235,25 @@ void Replay::FitForces() {
   for (std::size_t k = 0; k < replayed_.size(); ++k) MendForce(k);
 }
 
-/// The rate by the parabola through two samples on either side (least squares: less noise than two
-/// differences).
+/// Rate and bend by the least-squares parabola through two samples on either side.
 TimedGeometry Replay::WithRate(std::size_t k) const {
-  TimedGeometry timed{replayed_[k].solved.at, Geometry::Zero()};
+  TimedGeometry timed{replayed_[k].solved.at, Geometry::Zero(), Geometry::Zero()};
   const std::size_t n = replayed_.size();
   if (!samples_.resolved_in_time || n < 5) return timed;
   const std::size_t first = std::clamp<std::size_t>(k, 2, n - 3) - 2;
-  double weight = 0.0;
+  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 3, place::kCount> rhs;
+  rhs.setZero();
   for (std::size_t a = first; a < first + 5; ++a) {
     if (!replayed_[a].ok) return timed;
-    const double dt = samples_.samples[a].t_s - samples_.samples[first + 2].t_s;
-    timed.rate += dt * replayed_[a].solved.at;
-    weight += dt * dt;
+    const double u = (samples_.samples[a].t_s - samples_.samples[k].t_s) / samples_.period_s;
+    const Eigen::Vector3d basis(1.0, u, 0.5 * u * u);
+    N += basis * basis.transpose();
+    rhs += basis * replayed_[a].solved.at.transpose();
   }
-  timed.rate /= weight;
+  const Eigen::Matrix<double, 3, place::kCount> fit = N.inverse() * rhs;
+  timed.rate = fit.row(1).transpose() / samples_.period_s;
+  timed.bend = fit.row(2).transpose() / (samples_.period_s * samples_.period_s);
   return timed;
 }
 

@@ -86,7 +86,8 @@ class Replay {
   void SetNoiseScale(const std::array<double, kChannelCount>& scale) { noise_scale_ = scale; }
   const std::array<double, kChannelCount>& NoiseScales() const { return noise_scale_; }
   /// Derivatives by what scales the force (compliances, stiffness, gains) are those of the samples
-  /// around, without the noise of a sample's own force; or the sample's own, as differences have them.
+  /// around, without the noise of a sample's own force; or the sample's own, as differences have
+  /// them.
   void TakeOwnDerivatives(bool own) { own_derivatives_ = own; }
   /// Noise factors and the width of the force's prior, as another replay of the same recording has
   /// them.

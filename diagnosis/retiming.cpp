@@ -6,9 +6,7 @@
 namespace flextip {
 namespace {
 
-constexpr double kSameTime_s = 1e-6;
-constexpr std::ptrdiff_t kNeighbours = 7;
-constexpr double kLongestSpan = 16.0;  // of the neighbours, in periods of the samples
+constexpr double kLongestStep_s = 0.06;  // that the model's rates are trusted for
 
 }  // namespace
 
@@ -16,7 +14,7 @@ template <class Get>
 Retiming::Stream Retiming::MakeStream(int first_row, Get dt_s) const {
   Stream stream;
   for (std::size_t k = 0; k < samples_.samples.size(); ++k) {
-    if (!samples_.samples[k].Has(first_row)) continue;
+    if (!samples_.samples[k].spoken[first_row]) continue;
     stream.k.push_back(k);
     stream.t_s.push_back(samples_.samples[k].t_s + dt_s(samples_.samples[k]));
   }
@@ -34,56 +32,39 @@ Retiming::Retiming(const SampleSet& samples)
       port_(MakeStream(row::kPortDirection, [](const DiagnosisSample& s) { return s.dt_port_s; })) {
 }
 
-/// The nearest value, moved by the slope and bend of a parabola through its neighbours: each
-/// measured value is used as it is, once, so its noise stays what it was and its own.
+/// The value measured nearest to `delay_s` after the sample, as it was measured, and how long after
+/// the sample that was.
 template <class Value>
-void Retiming::Read(const Stream& stream, double dt_s, double delay_s,
-                    Value DiagnosisSample::*value, DiagnosisSample& at) const {
-  if (std::abs(dt_s - delay_s) < kSameTime_s) return;  // its own value is of that very time
-  const auto n = std::ptrdiff_t(stream.t_s.size());
+void Retiming::Read(const Stream& stream, double delay_s, Value DiagnosisSample::*value,
+                    double DiagnosisSample::*dt_s, DiagnosisSample& at) const {
+  if (stream.t_s.empty() || !samples_.resolved_in_time) return;
   const double wanted_s = at.t_s + delay_s;
-  if (n < kNeighbours || !samples_.resolved_in_time) return;
+  const auto n = std::ptrdiff_t(stream.t_s.size());
   const auto after = std::lower_bound(stream.t_s.begin(), stream.t_s.end(), wanted_s);
   auto nearest = std::min<std::ptrdiff_t>(after - stream.t_s.begin(), n - 1);
   if (nearest > 0 && wanted_s - stream.t_s[nearest - 1] < stream.t_s[nearest] - wanted_s) --nearest;
-  const auto first = std::clamp<std::ptrdiff_t>(nearest - kNeighbours / 2, 0, n - kNeighbours);
-  const double span_s = stream.t_s[first + kNeighbours - 1] - stream.t_s[first];
-  const double by_s = wanted_s - stream.t_s[nearest];
-  if (span_s > kLongestSpan * samples_.period_s || std::abs(by_s) > span_s / (kNeighbours - 1))
+  if (std::abs(stream.t_s[nearest] - wanted_s) > kLongestStep_s) {
+    at.*dt_s = delay_s;  // beside a gap: its own value, as it stands
     return;
-  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, Value::RowsAtCompileTime> rhs;
-  rhs.setZero();
-  for (std::ptrdiff_t a = first; a < first + kNeighbours; ++a) {
-    const double u = (stream.t_s[a] - stream.t_s[nearest]) / span_s;
-    const Eigen::Vector3d basis(1.0, u, u * u);
-    N += basis * basis.transpose();
-    rhs += basis * (samples_.samples[stream.k[a]].*value).transpose();
   }
-  const Eigen::Matrix<double, 3, Value::RowsAtCompileTime> fit = N.inverse() * rhs;
-  const double u = by_s / span_s;
-  at.*value = samples_.samples[stream.k[nearest]].*value +
-              (u * fit.row(1) + u * u * fit.row(2)).transpose();
+  at.*value = samples_.samples[stream.k[nearest]].*value;
+  at.*dt_s = stream.t_s[nearest] - at.t_s;
 }
 
 DiagnosisSample Retiming::At(std::size_t k, double em_delay_s, double camera_delay_s) const {
   DiagnosisSample at = samples_.samples[k];
   if (at.Has(row::kEmPosition) || at.Has(row::kEmDirection)) {
-    Read(em_, at.dt_em_s, em_delay_s, &DiagnosisSample::p_RS, at);
-    Read(em_, at.dt_em_s, em_delay_s, &DiagnosisSample::d_em, at);
-    at.d_em.normalize();
+    Read(em_, em_delay_s, &DiagnosisSample::p_RS, &DiagnosisSample::dt_em_s, at);
+    Read(em_, em_delay_s, &DiagnosisSample::d_em, &DiagnosisSample::dt_em_s, at);
   }
   if (at.Has(row::kTipPosition))
-    Read(tip_, at.dt_tip_s, camera_delay_s, &DiagnosisSample::p_RE, at);
-  if (at.Has(row::kTipDirection)) {
-    Read(tip_direction_, at.dt_tip_s, camera_delay_s, &DiagnosisSample::d_tip, at);
-    at.d_tip.normalize();
-  }
-  if (at.Has(row::kPortDirection)) {
-    Read(port_, at.dt_port_s, 0.0, &DiagnosisSample::d_port, at);
-    at.d_port.normalize();
-  }
-  if (strain_.k.size() > 0) Read(strain_, at.dt_strain_s, 0.0, &DiagnosisSample::moments_Nm, at);
+    Read(tip_, camera_delay_s, &DiagnosisSample::p_RE, &DiagnosisSample::dt_tip_s, at);
+  if (at.Has(row::kTipDirection))
+    Read(tip_direction_, camera_delay_s, &DiagnosisSample::d_tip, &DiagnosisSample::dt_tip_s, at);
+  if (at.Has(row::kPortDirection))
+    Read(port_, 0.0, &DiagnosisSample::d_port, &DiagnosisSample::dt_port_s, at);
+  if (!strain_.k.empty())
+    Read(strain_, 0.0, &DiagnosisSample::moments_Nm, &DiagnosisSample::dt_strain_s, at);
   return at;
 }
 

@@ -8,14 +8,14 @@
 
 namespace flextip {
 
-/// Reads the streams of a sample set at other times, by the cubic through four of a sensor's
-/// values.
+/// Finds what the sensors measured of a sample's time, if they speak late. A measured value stays
+/// as it is, with its own noise; the model is asked for the little time that it is off.
 class Retiming {
  public:
   explicit Retiming(const SampleSet& samples);
 
-  /// Sample `k` with the EM sensor's and the camera's values of `t_k + delay`, the gages' and the
-  /// port sensor's of `t_k`. Where a stream does not reach that far, its own nearest value.
+  /// Sample `k` with the EM sensor's and the camera's values nearest to `t_k + delay`, the gages'
+  /// and the port sensor's nearest to `t_k`, each with its time after the sample (dt_..._s).
   DiagnosisSample At(std::size_t k, double em_delay_s, double camera_delay_s) const;
 
  private:
@@ -26,8 +26,8 @@ class Retiming {
   template <class Get>
   Stream MakeStream(int first_row, Get dt_s) const;
   template <class Value>
-  void Read(const Stream& stream, double dt_s, double delay_s, Value DiagnosisSample::*value,
-            DiagnosisSample& at) const;
+  void Read(const Stream& stream, double delay_s, Value DiagnosisSample::*value,
+            double DiagnosisSample::*dt_s, DiagnosisSample& at) const;
 
   const SampleSet& samples_;
   Stream em_, strain_, tip_, tip_direction_, port_;

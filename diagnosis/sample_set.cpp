@@ -14,6 +14,7 @@ constexpr int kMinSamples = 40;
 constexpr double kMaxRate_hz = 60.0;
 constexpr double kMinResolvedRate_hz = 5.0;
 constexpr double kLongestDelay_s = 0.25;
+constexpr double kStart_s = 0.3;
 
 /// The wrist's samples, thinned where they come faster than the diagnosis needs.
 std::vector<Sample<WristSample>> WristSamples(const WristStream& stream) {
@@ -69,7 +70,7 @@ class Builder {
     AddStrain();
     AddVision();
     AddLoad();
-    DropEnd();
+    DropEnds();
     FindCentre();
     CheckRedundancy();
     return std::move(set_);
@@ -205,7 +206,8 @@ class Builder {
       DiagnosisSample& sample = set_.samples[k];
       sample.dt_strain_s = double(strain.moments_Nm[nearest[k]].t_ns - times_[k]) * 1e-9;
       sample.moments_Nm = strain.moments_Nm[nearest[k]].value;
-      for (int i = 0; i < 4; ++i) sample.present[row::kStrain + i] = !dead[i];
+      for (int i = 0; i < 4; ++i)
+        if (!dead[i]) SetPresent(sample, row::kStrain + i, 1);
     }
   }
 
@@ -277,11 +279,13 @@ class Builder {
     }
   }
 
-  /// What late sensors say of the end may have been stamped after the recording.
-  void DropEnd() {
+  /// Play and friction remember what came before the recording, and what late sensors say of its
+  /// end may have been stamped after it: neither is judged.
+  void DropEnds() {
     if (!set_.resolved_in_time) return;
     const double last_s = set_.samples.back().t_s;
     for (auto& sample : set_.samples) {
+      if (sample.t_s < kStart_s) sample.present.reset();
       if (sample.t_s < last_s - kLongestDelay_s) continue;
       for (int r = row::kEmPosition; r < row::kStrain; ++r) sample.present.reset(r);
       for (int r = row::kTipPosition; r < row::kPortDirection; ++r) sample.present.reset(r);
@@ -315,7 +319,10 @@ class Builder {
   }
 
   static void SetPresent(DiagnosisSample& sample, int first_row, int rows) {
-    for (int i = 0; i < rows; ++i) sample.present.set(first_row + i);
+    for (int i = 0; i < rows; ++i) {
+      sample.present.set(first_row + i);
+      sample.spoken.set(first_row + i);
+    }
   }
   TimeNs HalfPeriod() const { return TimeNs(0.51e9 * set_.period_s); }
 

@@ -23,6 +23,9 @@ struct DiagnosisSample {
   double p_RW_noise_m = 0.0;                           ///< what noise is left, per axis
   Eigen::Vector3d y_wrist = Eigen::Vector3d::UnitY();  ///< the instrument's y axis, in R
   std::bitset<row::kCount> present;
+  /// What a sensor said, whether it is judged (present) or not: late sensors speak of other
+  /// samples.
+  std::bitset<row::kCount> spoken;
   Eigen::Vector3d d_wrist = Eigen::Vector3d::UnitX();  ///< shaft's direction at the wrist
   Eigen::Vector3d p_RS = Eigen::Vector3d::Zero();      ///< EM sensor
   Eigen::Vector3d d_em = Eigen::Vector3d::UnitX();

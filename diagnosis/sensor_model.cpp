@@ -143,23 +143,26 @@ SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const
                        const ForceOnTip& f_tip, const TimedGeometry& geometry,
                        const GeometryByInputs& by_inputs) {
   SampleResidual out;
+  const TimedGeometry em = geometry.After(z.dt_em_s - u[kEmDelay]);
+  const TimedGeometry tip = geometry.After(z.dt_tip_s - u[kCameraDelay]);
+  const TimedGeometry gages = geometry.After(z.dt_strain_s), port = geometry.After(z.dt_port_s);
   if (z.Has(row::kWristDirection))
     AddDirection(z.d_wrist, Predicted(geometry, by_inputs, place::kWristTangent),
                  row::kWristDirection, out);
   if (z.Has(row::kPortDirection))
-    AddDirection(z.d_port, Predicted(geometry, by_inputs, place::kPortTangent), row::kPortDirection,
+    AddDirection(z.d_port, Predicted(port, by_inputs, place::kPortTangent), row::kPortDirection,
                  out);
   if (z.Has(row::kEmPosition))
-    AddVector(z.p_RS, EmPosition(samples, u, geometry, by_inputs), row::kEmPosition, out);
+    AddVector(z.p_RS, EmPosition(samples, u, em, by_inputs), row::kEmPosition, out);
   if (z.Has(row::kEmDirection)) {
-    Predicted d(geometry, by_inputs, place::kEmTangent);
-    d.Delay(geometry, place::kEmTangent, kEmDelay);
+    Predicted d(em, by_inputs, place::kEmTangent);
+    d.Delay(em, place::kEmTangent, kEmDelay);
     d.Turn(u, kEmTurn, 1.0);
     AddDirection(z.d_em, d, row::kEmDirection, out);
   }
   for (int i = 0; i < 4; ++i) {
     if (!z.Has(row::kStrain + i)) continue;
-    const double gain = 1.0 + u[kStrainGain + i], moment = geometry.at[place::kMoments + i];
+    const double gain = 1.0 + u[kStrainGain + i], moment = gages.at[place::kMoments + i];
     const int r = row::kStrain + i;
     out.residual[r] = z.moments_Nm[i] - gain * moment - u[kStrainOffset + i];
     out.by_inputs.row(r).head<rod_input::kCount>() = gain * by_inputs.row(place::kMoments + i);
@@ -167,13 +170,12 @@ SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const
     out.by_inputs(r, kStrainOffset + i) = 1.0;
   }
   if (z.Has(row::kTipPosition))
-    AddVector(z.p_RE, SeenTip(samples, u, TrueTip(u, f_tip, geometry, by_inputs)),
-              row::kTipPosition, out);
+    AddVector(z.p_RE, SeenTip(samples, u, TrueTip(u, f_tip, tip, by_inputs)), row::kTipPosition,
+              out);
   if (z.Has(row::kTipDirection)) {
-    Predicted d = SeenByCamera(geometry, by_inputs, place::kTipTangent);
+    Predicted d = SeenByCamera(tip, by_inputs, place::kTipTangent);
     d.Turn(u, kCameraTurn, -1.0);
-    if (samples.has_camera)
-      TurnByFocal(samples, u, SeenByCamera(geometry, by_inputs, place::kTip), d);
+    if (samples.has_camera) TurnByFocal(samples, u, SeenByCamera(tip, by_inputs, place::kTip), d);
     d.Turn(u, kVisionTurn, 1.0);
     AddDirection(z.d_tip, d, row::kTipDirection, out);
   }

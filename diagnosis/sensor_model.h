@@ -5,10 +5,16 @@
 
 namespace flextip {
 
-/// A sample's geometry and its rate of change, which latency shows.
+/// A sample's geometry, its rate of change and the rate's.
 struct TimedGeometry {
   Geometry at = Geometry::Zero();
   Geometry rate = Geometry::Zero();  ///< per second
+  Geometry bend = Geometry::Zero();  ///< per square second
+
+  /// `dt_s` later.
+  TimedGeometry After(double dt_s) const {
+    return {at + dt_s * rate + 0.5 * dt_s * dt_s * bend, rate + dt_s * bend, bend};
+  }
 };
 
 /// Measured less predicted for one sample, rows without a measurement zero, and the derivative of
@@ -29,7 +35,8 @@ struct ForceOnTip {
       : at_N(f_N), expected_N(expected) {}
 };
 
-/// `measured` is the sample with its sensors' values at the time they speak of (retiming.h).
+/// `measured` holds what the sensors say of about the sample's time (retiming.h): each value is
+/// compared with the geometry at the time that it speaks of, its stamp less its latency.
 SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& measured,
                        const ModelInputs& inputs, const ForceOnTip& f_tip,
                        const TimedGeometry& geometry, const GeometryByInputs& by_inputs);

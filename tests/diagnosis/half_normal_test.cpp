@@ -41,8 +41,7 @@ TEST(HalfNormal, ProbabilityOfAQuadrant) {
       const Eigen::Vector2d unit(normal(rng), normal(rng));
       inside += ((mean + L * unit).array() > 0.0).all() ? 1 : 0;
     }
-    EXPECT_NEAR(LogPositive(mean, Correlated(rho), {0, 1}),
-                std::log(double(inside) / kDraws), 0.1)
+    EXPECT_NEAR(LogPositive(mean, Correlated(rho), {0, 1}), std::log(double(inside) / kDraws), 0.1)
         << rho;
   }
 }
@@ -59,9 +58,8 @@ TEST(HalfNormal, FarOutNothingIsLeftToGain) {
 
 TEST(HalfNormal, ModeIsTheBestPointOfTheQuadrant) {
   const Eigen::Matrix2d C = Correlated(0.7), H = C.inverse();
-  for (const Eigen::Vector2d& mean :
-       {Eigen::Vector2d(1, 2), Eigen::Vector2d(-1, 2), Eigen::Vector2d(0.3, -3),
-        Eigen::Vector2d(-2, -2)}) {
+  for (const Eigen::Vector2d& mean : {Eigen::Vector2d(1, 2), Eigen::Vector2d(-1, 2),
+                                      Eigen::Vector2d(0.3, -3), Eigen::Vector2d(-2, -2)}) {
     const Eigen::VectorXd mode = PositiveMode(mean, C, {0, 1});
     const auto cost = [&](const Eigen::Vector2d& x) { return (x - mean).dot(H * (x - mean)); };
     double best = 1e300;

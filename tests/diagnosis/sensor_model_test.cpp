@@ -32,18 +32,13 @@ class SensorDerivatives : public testing::Test {
 
   double Draw() { return std::uniform_real_distribution<double>(-1.0, 1.0)(rng_); }
 
-  /// Residuals where input `j` is larger by `h`. A late sensor sees where the shaft was.
+  /// Residuals where input `j` is larger by `h`.
   Rows ResidualsAt(int j, double h) const {
     ModelInputs u = u_;
     u[j] += h;
     TimedGeometry geometry = geometry_;
     Eigen::Vector3d f_tip_N = f_tip_N_;
     if (j < rod_input::kCount) geometry.at += h * by_inputs_.col(j);
-    if (j == kEmDelay) geometry.at.head<place::kTip>() -= h * geometry.rate.head<place::kTip>();
-    if (j == kCameraDelay) {
-      constexpr int kCount = place::kWristTangent - place::kTip;
-      geometry.at.segment<kCount>(place::kTip) -= h * geometry.rate.segment<kCount>(place::kTip);
-    }
     if (j >= kForce && j < kForce + 3) f_tip_N[j - kForce] += h;
     return Compare(samples_, z_, u, f_tip_N, geometry, by_inputs_).residual;
   }
