@@ -120,7 +120,8 @@ TEST_F(SampleSetTest, LeavesDeadSensorsOutWithAWarning) {
   for (const DiagnosisSample& sample : set.samples) {
     EXPECT_FALSE(sample.Has(row::kEmPosition) || sample.Has(row::kTipPosition));
     EXPECT_FALSE(sample.Has(row::kStrain + 2));
-    EXPECT_TRUE(sample.Has(row::kStrain) && sample.Has(row::kStrain + 3));
+    EXPECT_TRUE(sample.spoken[row::kStrain] && sample.spoken[row::kStrain + 3]);
+    EXPECT_FALSE(sample.spoken[row::kStrain + 2]);
   }
 }
 
@@ -148,10 +149,15 @@ TEST_F(SampleSetTest, ThinsAFastWrist) {
   EXPECT_EQ(set.samples.size(), slow.size() - 1);
 }
 
-TEST_F(SampleSetTest, DropsWhatLateSensorsSayOfTheEnd) {
+TEST_F(SampleSetTest, DropsTheStartAndWhatLateSensorsSayOfTheEnd) {
   const SampleSet set = MakeSampleSet(recording_, "folder");
   const double last_s = set.samples.back().t_s;
   for (const DiagnosisSample& sample : set.samples) {
+    EXPECT_TRUE(sample.spoken[row::kWristDirection] && sample.spoken[row::kStrain]);
+    if (sample.t_s < 0.301) {
+      EXPECT_TRUE(sample.present.none() || sample.t_s > 0.299) << sample.t_s;
+      continue;
+    }
     EXPECT_TRUE(sample.Has(row::kWristDirection) && sample.Has(row::kStrain));
     const bool at_end = sample.t_s > last_s - 0.249;
     if (at_end) {
