@@ -77,7 +77,9 @@ void DescribeParameters(const Work& work, const Selection& selection,
   const Evidence evidence(selection.problem.total, work.layout, selection.generic_sd,
                           {.unknown_sd = {}});
   const Eigen::MatrixXd covariance = evidence.Covariance(weighed);
-  const auto& theta = work.extended.Theta();
+  Eigen::VectorXd theta = work.extended.Theta();
+  for (int j = 0; j < work.layout.Size(); ++j)  // within tolerance the fit does not mind the sign
+    if (work.layout.Parameter(j).positive) theta[j] = std::max(0.0, theta[j]);
   result.covariance =
       ReportedCovariance(work.layout, weighed.hypothesis.effects, theta, covariance);
   for (int b = 0; b < work.layout.EffectCount(); ++b) {

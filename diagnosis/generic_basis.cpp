@@ -108,7 +108,7 @@ Eigen::MatrixXd GenericBasis(const Replay& replay) {
     for (int twice = 0; twice < 2; ++twice)
       for (const auto& other : kept) column -= column.dot(other) / n * other;
     if (column.norm() > 0.05 * before && before > 0.0)
-      kept.push_back(column * std::sqrt(n) / column.norm());
+      kept.emplace_back(column * std::sqrt(n) / column.norm());
   }
   Eigen::MatrixXd basis(columns[0].size(), Eigen::Index(kept.size()));
   for (std::size_t j = 0; j < kept.size(); ++j) basis.col(Eigen::Index(j)) = kept[j];
