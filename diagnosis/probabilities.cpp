@@ -21,6 +21,7 @@ NormalSums DrawBag(const LinearProblem& problem, std::mt19937_64& rng) {
 
 std::vector<double> Softmax(const std::vector<ScoredHypothesis>& scored, double temperature) {
   std::vector<double> p;
+  p.reserve(scored.size());
   const double largest = scored.front().log_posterior;
   double sum = 0.0;
   for (const auto& s : scored) p.push_back(std::exp((s.log_posterior - largest) / temperature));

@@ -58,7 +58,8 @@ bool IsDead(const Series<T>& series, Get get) {
 
 class Builder {
  public:
-  Builder(const Recording& recording, std::string name) : recording_(recording), name_(name) {}
+  Builder(const Recording& recording, std::string name)
+      : recording_(recording), name_(std::move(name)) {}
 
   SampleSet Build() {
     if (!recording_.wrist0) {
@@ -106,8 +107,9 @@ class Builder {
     }
     std::vector<double> periods;
     for (std::size_t k = 1; k < t_s.size(); ++k) periods.push_back(t_s[k] - t_s[k - 1]);
-    std::nth_element(periods.begin(), periods.begin() + periods.size() / 2, periods.end());
-    set_.period_s = periods[periods.size() / 2];
+    const auto middle = periods.begin() + std::ptrdiff_t(periods.size() / 2);
+    std::nth_element(periods.begin(), middle, periods.end());
+    set_.period_s = *middle;
     set_.resolved_in_time = set_.period_s * kMinResolvedRate_hz < 1.0;
     set_.noise.wrist_position_m = stream.position_noise_m;
     set_.noise.wrist_direction_rad = stream.orientation_noise_rad;
