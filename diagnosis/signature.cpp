@@ -93,7 +93,7 @@ std::vector<Signature> FindSignatures(const Replay& base) {
 
 ResidualTable MakeResidualTable(const Replay& base, const Replay& extended) {
   ResidualTable table;
-  table.columns.push_back("t_s");
+  table.columns.emplace_back("t_s");
   const auto regressors = Regressors(base);
   for (const Regressor& r : regressors)
     if (r.name != "time") table.columns.push_back(r.name);
