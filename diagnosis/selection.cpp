@@ -38,14 +38,7 @@ class Search {
     const Weighing first = Weigh(replay_, std::move(base),
                                  KnownHypotheses(layout_.EffectCount(), false), options_, at_first);
     FitLeadersFromBase(first);
-    // From here on noise and forces are known better, and stay as they are: what is fitted from now
-    // on is comparable.
-    replay_.SetNoiseScale(NoiseScale(replay_));
-    replay_.AdaptForcePrior();
-    basis_ = GenericBasis(replay_);
-    tried_.clear();
-    Keep(FitHypothesis(replay_, layout_, best_.hypothesis, options_,
-                       {.basis = basis_, .may_miss = may_miss_, .rounds = kFitRounds}));
+    FixMeasure();
     FitRivals();
     if (Unexplained()) {
       int fresh = 0;
@@ -67,6 +60,20 @@ class Search {
     if (Tried({}) == nullptr) FitFromBase({});
   }
 
+  /// Where the best leader fits, noise and forces are known better; from here on they stay as they
+  /// are, and what is fitted is comparable. What was fitted before is not.
+  void FixMeasure() {
+    GoTo(replay_, layout_, best_.place);
+    replay_.SetNoiseScale(NoiseScale(replay_));
+    replay_.AdaptForcePrior();
+    basis_ = GenericBasis(replay_);
+    const Hypothesis leader = best_.hypothesis;
+    tried_.clear();
+    best_ = {};
+    Keep(FitHypothesis(replay_, layout_, leader, options_,
+                       {.basis = basis_, .may_miss = may_miss_, .rounds = kFitRounds}));
+  }
+
   void FitFromBase(const Hypothesis& hypothesis) {
     GoTo(replay_, layout_, base_);
     Keep(FitHypothesis(replay_, layout_, hypothesis, options_,
@@ -83,18 +90,10 @@ class Search {
     return nullptr;
   }
 
-  /// Keeps the better fit of each hypothesis.
   void Keep(const HypothesisFit& fit) {
     ++selection_.fits;
-    const auto same = std::find_if(tried_.begin(), tried_.end(), [&](const HypothesisFit& t) {
-      return t.hypothesis == fit.hypothesis;
-    });
-    if (same == tried_.end()) {
-      tried_.push_back(fit);
-    } else if (fit.log_posterior > same->log_posterior || fit.hypothesis == best_.hypothesis) {
-      *same = fit;
-    }
-    if (fit.log_posterior > best_.log_posterior || fit.hypothesis == best_.hypothesis) best_ = fit;
+    tried_.push_back(fit);
+    if (fit.log_posterior > best_.log_posterior) best_ = fit;
   }
 
   /// Whatever looks better from the best place than the best itself is fitted from there.
