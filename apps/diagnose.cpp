@@ -99,7 +99,7 @@ void Run(const Options& options, bool quiet) {
   WriteModel(output.folder() / "model.yaml", model);
   output.WriteSummary({{"verdicts", result.verdict},
                        {"samples", result.samples},
-                       {"rounds", result.rounds},
+                       {"fits", result.fits},
                        {"converged", result.converged}});
   WriteDiagnoseReport(output.folder());
   output.Commit();

@@ -21,7 +21,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MatrixRecord, made, key, motion, load, attemp
                                    indistinguishable, full_verdict, full_indistinguishable,
                                    parameters, gain_measured, heldout_error_ratio, tip_error_ratio,
                                    extended_weighted_rms, base_chi2_per_dof, extended_chi2_per_dof,
-                                   rounds, converged, seconds, warnings)
+                                   fits, converged, seconds, warnings)
 
 namespace {
 

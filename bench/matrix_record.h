@@ -46,7 +46,7 @@ struct MatrixRecord {
   double heldout_error_ratio = 1.0, tip_error_ratio = 1.0;  ///< extended over base
   double extended_weighted_rms = 0.0;                       ///< held out, in noise sd
   double base_chi2_per_dof = 0.0, extended_chi2_per_dof = 0.0;
-  int rounds = 0;
+  int fits = 0;
   bool converged = false;
   double seconds = 0.0;  ///< of Diagnose alone
   EffectNames warnings;

@@ -128,7 +128,7 @@ void SetResult(const DiagnosisResult& result, MatrixRecord& record) {
   record.extended_weighted_rms = result.extended.weighted_rms;
   record.base_chi2_per_dof = result.base.chi2_per_dof;
   record.extended_chi2_per_dof = result.extended.chi2_per_dof;
-  record.rounds = result.rounds;
+  record.fits = result.fits;
   record.converged = result.converged;
   record.warnings = result.warnings;
 }

@@ -304,11 +304,10 @@ std::string Misses(const std::vector<MatrixRecord>& records) {
       text += "  refused: " + r.error + "\n\n";
       continue;
     }
-    text += fmt::format("  hidden {}, answered {}{}; chi2/dof {:.3f} -> {:.3f}, {} rounds{}\n ",
-                        hidden, JoinedNames(r.verdict),
-                        r.IsRightOrDeclared() ? " (truth declared indistinguishable)" : "",
-                        r.base_chi2_per_dof, r.extended_chi2_per_dof, r.rounds,
-                        r.converged ? "" : ", not converged");
+    text += fmt::format(
+        "  hidden {}, answered {}{}; chi2/dof {:.3f} -> {:.3f}, {} fits{}\n ", hidden,
+        JoinedNames(r.verdict), r.IsRightOrDeclared() ? " (truth declared indistinguishable)" : "",
+        r.base_chi2_per_dof, r.extended_chi2_per_dof, r.fits, r.converged ? "" : ", not converged");
     for (const auto& [names, p] : r.probabilities) {
       text += fmt::format(" {} {:.4f}", JoinedNames(names), p);
     }

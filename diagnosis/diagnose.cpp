@@ -111,7 +111,7 @@ void DescribeRecording(const Work& work, const Selection& selection, const Recor
                        DiagnosisResult& result) {
   result.samples = int(work.samples.samples.size());
   result.failed_samples = work.extended.FailedSamples();
-  result.rounds = selection.fits;
+  result.fits = selection.fits;
   result.converged = selection.converged;
   result.has_load = work.samples.has_load;
   result.warnings = work.samples.warnings;

@@ -86,7 +86,7 @@ struct DiagnosisResult {
   std::array<double, 7> noise_scale{};  ///< measured noise over the data sheet's, by channel
   std::array<double, 7> noise_sd{};     ///< as taken, of one component, by channel
   std::vector<EffectFit> nominal;       ///< of every effect: the base's values, sd the tolerances
-  int samples = 0, failed_samples = 0, rounds = 0;
+  int samples = 0, failed_samples = 0, fits = 0;
   bool converged = false, has_load = false;
   std::vector<std::string> catalogue;  ///< effects that this recording could show
   std::vector<std::string> warnings;

@@ -20,14 +20,7 @@ EffectRodProblem MakeProblem(const SampleSet& samples, std::size_t k, const Mode
   rod.f_tip = f_tip_N;
   rod.q_weight =
       samples.instrument.mass_per_length_kg_m * samples.gravity_m_s2 + u.segment<3>(kWeight);
-  RodEffects& effects = problem.effects;
-  effects.y_wrist = sample.y_wrist;
-  effects.curvature_1_m = u.segment<2>(kCurvature);
-  effects.port_compliance_m_N = u[kPortCompliance];
-  effects.wrist_compliance_m_N = u[kWristCompliance];
-  effects.port_couple_Nm = u.segment<3>(kPortCouple);
-  effects.port_friction = u[kPortFriction];
-  effects.q_inside_N_m = u.segment<3>(kInside);
+  problem.effects = EffectsOf(u, sample.y_wrist);
   return problem;
 }
 
@@ -49,6 +42,19 @@ void Fill(const Eigen::Vector3d& value, const InputDerivative& derivative, int f
 }
 
 }  // namespace
+
+RodEffects EffectsOf(const ModelInputs& u, const Eigen::Vector3d& y_wrist) {
+  using namespace model_input;
+  RodEffects effects;
+  effects.y_wrist = y_wrist;
+  effects.curvature_1_m = u.segment<2>(kCurvature);
+  effects.port_compliance_m_N = u[kPortCompliance];
+  effects.wrist_compliance_m_N = u[kWristCompliance];
+  effects.port_couple_Nm = u.segment<3>(kPortCouple);
+  effects.port_friction = u[kPortFriction];
+  effects.q_inside_N_m = u.segment<3>(kInside);
+  return effects;
+}
 
 SolvedSample SolveSample(const SampleSet& samples, std::size_t k, const ModelInputs& inputs,
                          const Eigen::Vector3d& f_tip_N, EffectRodSolver& solver) {

@@ -25,6 +25,9 @@ struct SolvedSample {
   double lateral_force_N = 0.0;  ///< of the port
 };
 
+/// What `inputs` do to the rod; `y_wrist` in R.
+RodEffects EffectsOf(const ModelInputs& inputs, const Eigen::Vector3d& y_wrist);
+
 /// Solves one sample's rod: base, the rod's part of `inputs`, tip force.
 SolvedSample SolveSample(const SampleSet& samples, std::size_t k, const ModelInputs& inputs,
                          const Eigen::Vector3d& f_tip_N, EffectRodSolver& solver);

@@ -102,14 +102,7 @@ void ModelAt::FillShaft() {
   shaft_.wrist_shift_m = u.segment<3>(kWrist);
   shaft_.port_shift_m = u.segment<3>(kPort);
   shaft_.tip_compliance_m_N = u[kTipCompliance];
-  RodEffects& effects = shaft_.effects;
-  effects.y_wrist = set_.samples[0].y_wrist;
-  effects.curvature_1_m = u.segment<2>(kCurvature);
-  effects.port_compliance_m_N = u[kPortCompliance];
-  effects.wrist_compliance_m_N = u[kWristCompliance];
-  effects.port_couple_Nm = u.segment<3>(kPortCouple);
-  effects.port_friction = u[kPortFriction];
-  effects.q_inside_N_m = u.segment<3>(kInside);
+  shaft_.effects = EffectsOf(u, set_.samples[0].y_wrist);
 }
 
 void ModelAt::CorrectEm(EmMeasurement& em) const {

@@ -106,6 +106,7 @@ class Replay {
   void SolveRods();
   void Retime();
   void FitForces();
+  Eigen::Vector3d ShortStep(std::size_t k, const Eigen::Vector3d& step_N) const;
   void FitForce(std::size_t k, EffectRodSolver& solver);
   std::size_t NextAlike(std::size_t k, int step) const;
   void MendForce(std::size_t k);

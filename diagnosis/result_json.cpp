@@ -104,7 +104,7 @@ std::string DiagnosisJson(const DiagnosisResult& result) {
   json["summaries"] = Summaries(result);
   json["samples"] = result.samples;
   json["failed_samples"] = result.failed_samples;
-  json["rounds"] = result.rounds;
+  json["fits"] = result.fits;
   json["converged"] = result.converged;
   json["has_load"] = result.has_load;
   json["warnings"] = result.warnings;

@@ -4,6 +4,7 @@
 
 #include "core/rotation.h"
 #include "kinematics/effect_shot.h"
+#include "kinematics/load_steps.h"
 
 namespace flextip {
 namespace {
@@ -12,9 +13,7 @@ using namespace effect_flow;
 
 constexpr double kConverged = 1e-11;  // of the scaled conditions
 constexpr int kMaxNewton = 20;
-constexpr int kMaxLoadSteps = 60;
 constexpr double kMaxTurn = 0.4;      // of the wrist tangent in one Newton step (rad)
-constexpr double kLoadStep = 0.7;     // scaled load applied in one step of a cold start
 constexpr double kMinStretch = 1e-6;  // shortest stretch on either side of the port, of the length
 
 using UnknownsByInputs = Eigen::Matrix<double, kUnknowns, rod_input::kCount>;
@@ -71,29 +70,12 @@ int Newton(const ScaledProblem& problem, EffectRodUnknowns& x, EffectShot& shot)
   return 0;
 }
 
-/// Load and effects grow from nothing, so that the equilibrium is the one connected to the straight
-/// shaft.
 int SolveCold(const ScaledProblem& problem, EffectRodUnknowns& x, EffectShot& shot) {
   const double load = problem.f().norm() + problem.q().norm() + problem.q_inside().norm() +
                       problem.curvature().norm() + problem.couple().norm();
-  double done = 0.0, step = load > kLoadStep ? kLoadStep / load : 1.0;
-  int iterations = 0;
-  EffectRodUnknowns at_done;
-  for (int i = 0; i < kMaxLoadSteps && step > 1e-4; ++i) {
-    const double next = std::min(1.0, done + step);
-    const ScaledProblem part = problem.WithPart(next);
-    x = done == 0.0 ? StraightGuess(part) : at_done;
-    const int used = Newton(part, x, shot);
-    iterations += used > 0 ? used : kMaxNewton;
-    if (used == 0) {
-      step *= 0.5;
-      continue;
-    }
-    if (next == 1.0) return iterations;
-    at_done = x;
-    done = next;
-  }
-  return 0;
+  return InLoadSteps(
+      load, kMaxNewton, x, [&](double part) { return StraightGuess(problem.WithPart(part)); },
+      [&](double part, EffectRodUnknowns& at) { return Newton(problem.WithPart(part), at, shot); });
 }
 
 /// Turns the derivatives of a converged shot into those of the state, in SI.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/rotation.h"
+#include "kinematics/load_steps.h"
 #include "kinematics/rod_flow.h"
 
 namespace flextip {
@@ -13,9 +14,7 @@ constexpr double kConverged = 1e-12;   // of the scaled conditions
 constexpr double kNearlyThere = 1e-9;  // from here one linear correction reaches rounding error
 constexpr double kMaxLinear = 1e-6;    // largest change of the unknowns such a correction may make
 constexpr int kMaxNewton = 20;
-constexpr int kMaxLoadSteps = 60;
 constexpr double kMaxTurn = 0.4;      // of the tip tangent in one Newton step (rad)
-constexpr double kLoadStep = 0.7;     // scaled load applied in one step of a cold start
 constexpr double kMinStretch = 1e-6;  // shortest stretch on either side of the port, of the length
 
 // Columns of the derivatives: the unknowns (two turns of the tip tangent, the port's place, the
@@ -203,27 +202,10 @@ int RodSolver::Newton(const Scaled& scaled, Unknowns& x, Evaluation& e) {
 }
 
 int RodSolver::SolveCold(const Scaled& scaled, Unknowns& x, Evaluation& e) {
-  // The load grows from nothing, so that the equilibrium is the one connected to the straight
-  // shaft.
-  const double load = scaled.f.norm() + scaled.q.norm();
-  double done = 0.0, step = load > kLoadStep ? kLoadStep / load : 1.0;
-  int iterations = 0;
-  Unknowns at_done = StraightGuess(scaled.WithLoad(0.0));
-  for (int i = 0; i < kMaxLoadSteps && step > 1e-4; ++i) {
-    const double next = std::min(1.0, done + step);
-    x = at_done;
-    if (done == 0.0) x = StraightGuess(scaled.WithLoad(next));
-    const int used = Newton(scaled.WithLoad(next), x, e);
-    iterations += used > 0 ? used : kMaxNewton;
-    if (used == 0) {
-      step *= 0.5;
-      continue;
-    }
-    if (next == 1.0) return iterations;
-    at_done = x;
-    done = next;
-  }
-  return 0;
+  return InLoadSteps(
+      scaled.f.norm() + scaled.q.norm(), kMaxNewton, x,
+      [&](double part) { return StraightGuess(scaled.WithLoad(part)); },
+      [&](double part, Unknowns& at) { return Newton(scaled.WithLoad(part), at, e); });
 }
 
 RodState RodSolver::Solve(const RodProblem& problem) {

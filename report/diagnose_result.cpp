@@ -240,7 +240,7 @@ DiagnosedResult ReadDiagnosedResult(const std::filesystem::path& path) {
       if (!json.contains("catalogue")) result.catalogue.push_back(effect);
     }
     result.warnings = TextsIn(json, "warnings");
-    for (const char* key : {"samples", "failed_samples", "rounds"}) {
+    for (const char* key : {"samples", "failed_samples", "fits"}) {
       if (const auto count = NumberIn(json, key)) result.counts.emplace_back(key, *count);
     }
     return result;

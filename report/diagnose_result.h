@@ -58,7 +58,7 @@ struct DiagnosedResult {
   std::map<std::string, std::string> summaries;
   std::optional<ClosedLoopGain> closed_loop;
   std::vector<std::string> catalogue, warnings;
-  std::vector<std::pair<std::string, double>> counts;  ///< samples, failed_samples, rounds
+  std::vector<std::pair<std::string, double>> counts;  ///< samples, failed_samples, fits
 
   bool Is(const std::string& answer) const;  ///< the verdict is this alone
   /// Of the hypothesis of these effects together, in whatever order; zero where not listed.

@@ -11,13 +11,9 @@ constexpr int kWaves = 4;                       // half periods over the recordi
 
 }  // namespace
 
-std::vector<FitParameter> MeanLoad::Parameters(const SampleSet& samples) const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const DiagnosisSample& sample : samples.samples)
-    sum += (samples.p_RP - sample.p_RW).normalized();
-  along_ = sum.normalized();
+std::vector<FitParameter> MeanLoad::Parameters(const SampleSet&) const {
   std::vector<FitParameter> all(3, {kConstant, kConstant, false});
-  if (samples.resolved_in_time) all.resize(3 + kWaves, {kWave, kWave, false});
+  all.resize(3 + kWaves, {kWave, kWave, false});
   return all;
 }
 
@@ -27,25 +23,16 @@ void MeanLoad::Apply(const double*, const Moment& now, EffectMemory&, InputChang
                         std::exp(change.Input(model_input::kStiffness));
   for (int i = 0; i < 3; ++i) change.Linear(i, model_input::kForce + i, unit_N);
   if (!now.samples.resolved_in_time) return;
+  const Eigen::Vector3d along = (now.samples.p_RP - now.samples.samples[now.k].p_RW).normalized();
   for (int w = 0; w < kWaves; ++w) {
     const double wave = std::cos((w + 1) * std::numbers::pi * now.t_s / now.samples.Duration());
     for (int i = 0; i < 3; ++i)
-      change.Linear(3 + w, model_input::kForce + i, unit_N * wave * along_[i]);
+      change.Linear(3 + w, model_input::kForce + i, unit_N * wave * along[i]);
   }
 }
 
-std::vector<ReportedParameter> MeanLoad::Report(const Eigen::VectorXd& theta,
-                                                const Eigen::MatrixXd& covariance) const {
-  ReportedParameter slow{"slow_force", {}, {}};
-  for (int j = 0; j < theta.size(); ++j) {
-    slow.value.push_back(theta[j]);
-    slow.sd.push_back(std::sqrt(covariance(j, j)));
-  }
-  return {slow};
-}
-
-Eigen::VectorXd MeanLoad::FromReported(const std::vector<std::vector<double>>& values) const {
-  return Eigen::Map<const Eigen::VectorXd>(values.at(0).data(), Eigen::Index(values.at(0).size()));
+std::vector<DirectEffect::Named> MeanLoad::Names() const {
+  return {{"constant", 3}, {"along", kWaves}};
 }
 
 }  // namespace flextip

@@ -7,8 +7,8 @@
 
 namespace flextip {
 
-/// In units of the shaft's EI / L^2: a constant in R, and slow waves along the mean shaft.
-class MeanLoad : public Effect {
+/// In units of the shaft's EI / L^2: a constant in R, and slow waves along the shaft.
+class MeanLoad : public DirectEffect {
  public:
   std::string Name() const override { return "mean_load"; }
   std::string Summary() const override { return "the slow part of the unknown tip force"; }
@@ -16,12 +16,9 @@ class MeanLoad : public Effect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override;
   void Apply(const double* theta, const Moment& now, EffectMemory& memory,
              InputChange& change) const override;
-  std::vector<ReportedParameter> Report(const Eigen::VectorXd& theta,
-                                        const Eigen::MatrixXd& covariance) const override;
-  Eigen::VectorXd FromReported(const std::vector<std::vector<double>>& values) const override;
 
- private:
-  mutable Eigen::Vector3d along_ = Eigen::Vector3d::UnitX();
+ protected:
+  std::vector<Named> Names() const override;
 };
 
 }  // namespace flextip

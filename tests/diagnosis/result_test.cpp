@@ -132,10 +132,10 @@ TEST_F(ResultTest, TheRightModelLeavesNoiseOnly) {
   EXPECT_GT(result_->base.chi2_per_dof, 10.0);
   EXPECT_LT(result_->extended.chi2_per_dof, 1.1);
   // Measured noise is taken up to a fifth too large in so short a recording, never too small.
-  EXPECT_GT(result_->extended.chi2_per_dof, 1.0 / (1.35 * 1.35));
+  EXPECT_GT(result_->extended.chi2_per_dof, 1.0 / (1.25 * 1.25));
   for (const double scale : result_->noise_scale) {
     EXPECT_GE(scale, 1.0);
-    EXPECT_LT(scale, 1.35);
+    EXPECT_LT(scale, 1.25);
   }
 }
 
