@@ -34,7 +34,7 @@ EffectRodUnknowns StraightGuess(const ScaledProblem& problem) {
   const double d = problem.span().norm();
   const Eigen::Vector3d t = problem.span() / d;
   const Eigen::Vector3d lever =
-      problem.f() + 0.5 * problem.q() + 0.5 * (1.0 - d * d) * problem.q_inside();
+      problem.f() + 0.5 * problem.q() + 0.5 * (1.0 - d * d) * problem.inside();
   return {t, 0.0, d, -(lever - lever.dot(t) * t) / d};
 }
 
@@ -71,7 +71,7 @@ int Newton(const ScaledProblem& problem, EffectRodUnknowns& x, EffectShot& shot)
 }
 
 int SolveCold(const ScaledProblem& problem, EffectRodUnknowns& x, EffectShot& shot) {
-  const double load = problem.f().norm() + problem.q().norm() + problem.q_inside().norm() +
+  const double load = problem.f().norm() + problem.q().norm() + problem.inside().norm() +
                       problem.curvature().norm() + problem.couple().norm();
   return InLoadSteps(
       load, kMaxNewton, x, [&](double part) { return StraightGuess(problem.WithPart(part)); },
@@ -140,7 +140,7 @@ StateWriter::Total StateWriter::BeyondPort(const FlowColumns& columns) const {
 void StateWriter::WriteSection(const FlowState& at, const Total& total, double s_m,
                                EffectRodSection& section) const {
   const double L = scaling_.L, unit = scaling_.EI / L;
-  const Eigen::Vector3d P = scaling_.scaled.wrist_compliance() * shot_.n_wrist + at.P;
+  const Eigen::Vector3d P = scaling_.scaled.WristCompliance() * shot_.n_wrist + at.P;
   section.s_m = s_m;
   section.p = problem_.rod.p_wrist + L * P;
   section.t = at.t;

@@ -96,7 +96,7 @@ bool EffectShot::Shoot(const ScaledProblem& problem, const EffectRodUnknowns& x)
   if (!(wrist.y.norm() > 1e-9)) return false;
   wrist.MakeOrthonormal();
   wrist.m = x.torsion * wrist.t;
-  const Eigen::Vector3d q = problem.q(), q_beyond = q + problem.q_inside();
+  const Eigen::Vector3d q = problem.q(), q_beyond = q + problem.inside();
   const Eigen::Vector3d n_beyond = problem.f() + (1.0 - x.s_port) * q_beyond;
   n_wrist = n_beyond + x.r + x.s_port * q;
   if (!before.Walk(wrist, {n_wrist, q, problem.curvature()}, x.s_port)) return false;
@@ -137,7 +137,7 @@ void EffectShot::Differentiate(const ScaledProblem& problem, const EffectRodUnkn
   const Eigen::Matrix<double, 3, rod_input::kCount> dt = -Skew(port.t) * at_port.turn_g;
   const Eigen::Matrix<double, 3, rod_input::kCount> dlateral =
       -along * dt - port.t * (r.transpose() * dt);
-  B.topRows<3>() = at_port.P_g + problem.port_compliance() * dlateral;
+  B.topRows<3>() = at_port.P_g + problem.PortCompliance() * dlateral;
   B.block<3, 3>(0, rod_input::kPort) -= Eigen::Matrix3d::Identity();
   B.block<3, 1>(0, rod_input::kPortCompliance) += lateral;
   const auto tip = tip_columns.m.leftCols<6>();
@@ -157,15 +157,15 @@ PlaceDerivative EffectShot::Before(const ScaledProblem& problem, const EffectRod
   const auto by_unknowns = [&](const ColumnMatrix& c, ByUnknowns& out) {
     const auto force = c.middleCols<3>(kBeforeForce);
     out.leftCols<3>() = c.leftCols<3>();
-    out.col(kPlace) = -force * problem.q_inside();  // less of the shaft is beyond the port
+    out.col(kPlace) = -force * problem.inside();  // less of the shaft is beyond the port
     out.rightCols<3>() = force;
   };
   by_unknowns(columns.turn, d.turn_x);
   by_unknowns(columns.m, d.m_x);
   by_unknowns(columns.P, d.P_x);
   // The wrist yields by its compliance times the force on the arm.
-  const double yields = problem.wrist_compliance();
-  d.P_x.col(kPlace) -= yields * problem.q_inside();
+  const double yields = problem.WristCompliance();
+  d.P_x.col(kPlace) -= yields * problem.inside();
   d.P_x.rightCols<3>() += yields * Eigen::Matrix3d::Identity();
   if (!with_inputs) return d;
   const double beyond_length = 1.0 - x.s_port;
@@ -213,8 +213,8 @@ void EffectShot::PassPort(const ScaledProblem& problem, const EffectRodUnknowns&
 void EffectShot::Conditions(const ScaledProblem& problem, const EffectRodUnknowns& x) {
   const Eigen::Vector3d r = x.r, lateral = r - r.dot(port.t) * port.t;
   const double along = r.dot(port.t), size = std::hypot(lateral.norm(), kMinLateral);
-  residual.head<3>() = problem.wrist_compliance() * n_wrist + port.P - problem.span() +
-                       problem.port_compliance() * lateral;
+  residual.head<3>() = problem.WristCompliance() * n_wrist + port.P - problem.span() +
+                       problem.PortCompliance() * lateral;
   residual.segment<3>(3) = beyond.end.m;
   residual[6] = along - problem.friction() * size;
 
@@ -223,7 +223,7 @@ void EffectShot::Conditions(const ScaledProblem& problem, const EffectRodUnknown
   dalong.rightCols<3>() += port.t.transpose();
   ByUnknowns dlateral = -along * dt - port.t * dalong;
   dlateral.rightCols<3>() += Eigen::Matrix3d::Identity();
-  A.topRows<3>() = at_port.P_x + problem.port_compliance() * dlateral;
+  A.topRows<3>() = at_port.P_x + problem.PortCompliance() * dlateral;
   A.block<3, 1>(0, kPlace) += port.t;
   const auto tip = tip_columns.m.leftCols<6>();
   A.middleRows<3>(3) = tip.leftCols<3>() * at_beyond.turn_x + tip.rightCols<3>() * at_beyond.m_x;

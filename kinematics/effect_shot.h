@@ -23,11 +23,11 @@ struct ScaledProblem {
   Eigen::Vector3d span() const { return g.segment<3>(rod_input::kPort); }
   Eigen::Vector3d f() const { return g.segment<3>(rod_input::kForce); }
   Eigen::Vector3d q() const { return g.segment<3>(rod_input::kWeight); }
-  Eigen::Vector3d q_inside() const { return g.segment<3>(rod_input::kInside); }
+  Eigen::Vector3d inside() const { return g.segment<3>(rod_input::kInside); }
   Eigen::Vector3d couple() const { return g.segment<3>(rod_input::kPortCouple); }
   Eigen::Vector2d curvature() const { return g.segment<2>(rod_input::kCurvature); }
-  double port_compliance() const { return g[rod_input::kPortCompliance]; }
-  double wrist_compliance() const { return g[rod_input::kWristCompliance]; }
+  double PortCompliance() const { return g[rod_input::kPortCompliance]; }
+  double WristCompliance() const { return g[rod_input::kWristCompliance]; }
   double friction() const { return g[rod_input::kPortFriction]; }
   /// Load and effects by a part only; wrist and port stay.
   ScaledProblem WithPart(double part) const;
