@@ -157,7 +157,7 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
   DescribeParameters(work, selection, known, result);
   if (result.verdict != Verdict{"none"} && result.verdict != Verdict{"unknown"})
     DescribeAmbiguity(work, selection, known, result);
-  work.base.SetNoiseScale(work.extended.NoiseScales());
+  work.base.TakeSettings(work.extended);
   if (options.measure_gain) {
     const HeldOut heldout = MeasureHeldOut(work.base, work.extended, selection, known);
     result.base = heldout.base;

@@ -5,8 +5,7 @@
 // shaft, could then explain the tip's noise. It is taken for the compliances, which scale what a
 // force does, against the same model without them.
 //
-// A known load has noise of a known size, and the likelihood itself says what it costs to explain
-// more by it: the log determinant of each sample's covariance.
+// Nothing for a known load: its noise enters all hypotheses alike (Replay::AdaptForcePrior).
 #pragma once
 
 #include "diagnosis/replay.h"
@@ -14,7 +13,7 @@
 namespace flextip {
 
 /// To be put back on the squared residual: rows taken up in all samples (from every so many of
-/// them), or log determinants.
+/// them).
 double ForceVolume(const Replay& replay);
 
 }  // namespace flextip

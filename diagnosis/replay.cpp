@@ -120,6 +120,7 @@ TimedGeometry Replay::WithRate(std::size_t k) const {
 void Replay::TakeSettings(const Replay& other) {
   noise_scale_ = other.noise_scale_;
   along_prior_ = other.along_prior_;
+  input_noise_ = other.input_noise_;
 }
 
 /// What samples around `k` say, on the mean: with as many before as after it, without itself and

@@ -37,7 +37,6 @@ struct WhitenedRows {
   std::vector<Eigen::MatrixXd> units;
   /// Of each sample: how many of its rows' noise the force takes up (0 to 3).
   std::vector<double> force_share;
-  std::vector<double> log_determinant;  ///< of each sample's covariance
 
   int Rows(std::size_t k) const { return first_row[k + 1] - first_row[k]; }
 };
@@ -64,8 +63,9 @@ class Replay {
   std::vector<Eigen::Vector3d> Forces() const;
   void SetForces(const std::vector<Eigen::Vector3d>& forces_N);
 
-  /// Sets how wide the prior of an unknown force along the shaft is from how large the forces
-  /// across it are.
+  /// Sets from where the replay stands, until the next call, what must be the same for all that is
+  /// compared. Of an unknown force: how wide its prior along the shaft is, from how large the
+  /// forces across it are. With a known load: how the noise of load and wrist enters the rows.
   void AdaptForcePrior();
 
   /// `sensors_used`: rows of absent sensors are left out, besides the absent ones.
@@ -89,8 +89,7 @@ class Replay {
   /// around, without the noise of a sample's own force; or the sample's own, as differences have
   /// them.
   void TakeOwnDerivatives(bool own) { own_derivatives_ = own; }
-  /// Noise factors and the width of the force's prior, as another replay of the same recording has
-  /// them.
+  /// Noise factors and what AdaptForcePrior set, as another replay of the same samples has them.
   void TakeSettings(const Replay& other);
 
   /// Standard deviation of each row's own noise in sample `k` (the diagonal).
@@ -99,6 +98,8 @@ class Replay {
   static std::bitset<row::kCount> AllRows() { return std::bitset<row::kCount>().set(); }
 
  private:
+  /// What wrist and force do to the rows when each is off by one standard deviation.
+  using InputNoise = Eigen::Matrix<double, row::kCount, 6>;
   struct Statistics;  // covariance of a sample's rows and what the force has to do with them
 
   bool Finish();
@@ -123,6 +124,7 @@ class Replay {
   Eigen::MatrixXd OwnCovariance(std::size_t k, const std::vector<int>& rows) const;
   Statistics StatisticsOf(std::size_t k, const std::bitset<row::kCount>& rows_used) const;
   Eigen::MatrixXd Derivatives(std::size_t k, const std::vector<int>& rows) const;
+  InputNoise InputNoiseHere(std::size_t k) const;
 
   const SampleSet& samples_;
   const ParameterLayout& layout_;
@@ -131,6 +133,7 @@ class Replay {
   Eigen::VectorXd theta_;
   std::vector<ReplayedSample> replayed_;
   std::array<double, kChannelCount> noise_scale_;
+  std::vector<InputNoise> input_noise_;  // with a known load, as it was fixed; empty: not yet
   double along_prior_;  // of an unknown force along the shaft, in units of EI / L^2
   int failed_ = 0;
   bool own_derivatives_ = false;

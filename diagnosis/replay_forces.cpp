@@ -116,6 +116,11 @@ void Replay::FitForces() {
 }
 
 void Replay::AdaptForcePrior() {
+  if (samples_.has_load) {
+    input_noise_.clear();
+    for (std::size_t k = 0; k < replayed_.size(); ++k) input_noise_.push_back(InputNoiseHere(k));
+    return;
+  }
   std::vector<double> across;
   for (std::size_t k = 0; k < replayed_.size(); ++k) {
     if (!replayed_[k].ok) continue;
@@ -123,7 +128,7 @@ void Replay::AdaptForcePrior() {
     const Eigen::Vector3d f = replayed_[k].f_tip_N;
     across.push_back((f - f.dot(t) * t).norm() / ForceUnit(k) / std::sqrt(2.0));
   }
-  if (samples_.has_load || across.empty()) return;
+  if (across.empty()) return;
   double squares = 0.0;
   for (const double f : across) squares += f * f / double(across.size());
   along_prior_ = std::max(kLeastAlong, kAlongOverAcross * std::sqrt(squares));

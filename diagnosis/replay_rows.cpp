@@ -63,20 +63,26 @@ Replay::Statistics Replay::StatisticsOf(std::size_t k,
   const auto n = Eigen::Index(s.rows.size());
   s.e.resize(n);
   s.by_force.resize(n, 3);
-  Eigen::MatrixXd by_wrist(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {
     s.e[i] = sample.compared.residual[s.rows[i]];
     s.by_force.row(i) = sample.compared.by_inputs.block<1, 3>(s.rows[i], model_input::kForce);
-    by_wrist.row(i) = sample.compared.by_inputs.block<1, 3>(s.rows[i], model_input::kWrist);
   }
   s.force_prior = ForcePrior(k);
   s.e += s.by_force * (sample.f_tip_N - MeanForce(k));
-  const double wrist_m = samples_.samples[k].p_RW_noise_m;
-  Eigen::MatrixXd C = OwnCovariance(k, s.rows);
-  C += wrist_m * wrist_m * by_wrist * by_wrist.transpose();
-  C += s.by_force * s.force_prior * s.by_force.transpose();
-  s.covariance.compute(C);
+  const InputNoise all = input_noise_.empty() ? InputNoiseHere(k) : input_noise_[k];
+  const Eigen::MatrixXd by_noise = all(s.rows, Eigen::all);
+  s.covariance.compute(OwnCovariance(k, s.rows) + by_noise * by_noise.transpose());
   return s;
+}
+
+Replay::InputNoise Replay::InputNoiseHere(std::size_t k) const {
+  const auto& by_inputs = replayed_[k].compared.by_inputs;
+  InputNoise noise;
+  noise.leftCols<3>() =
+      samples_.samples[k].p_RW_noise_m * by_inputs.middleCols<3>(model_input::kWrist);
+  noise.rightCols<3>() =
+      by_inputs.middleCols<3>(model_input::kForce) * Eigen::Matrix3d(ForcePrior(k).llt().matrixL());
+  return noise;
 }
 
 /// An unknown force is one in units of EI / L^2: a stiffer shaft comes with a larger force, and
@@ -107,7 +113,6 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
   all.e.resize(all.first_row.back());
   all.units.resize(replayed_.size());
   all.force_share.assign(replayed_.size(), 0.0);
-  all.log_determinant.assign(replayed_.size(), 0.0);
   all.rows.resize(replayed_.size());
   all.X.resize(all.first_row.back(), layout_.Size());
   ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
@@ -115,8 +120,6 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
       if (all.Rows(k) == 0) continue;
       const Statistics s = StatisticsOf(k, rows_used);
       const auto L = s.covariance.matrixL();
-      const auto diagonal = s.covariance.matrixLLT().diagonal();
-      all.log_determinant[k] = 2.0 * diagonal.array().log().sum();
       const Eigen::MatrixXd by_force = L.solve(s.by_force);
       all.force_share[k] = (by_force.transpose() * by_force * s.force_prior).trace();
       all.e.segment(all.first_row[k], all.Rows(k)) = L.solve(s.e);
