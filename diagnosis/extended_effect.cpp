@@ -26,6 +26,7 @@ std::vector<ReportedParameter> ParametersOf(const Effect& effect) {
 
 bool MayBeMissing(const std::string& effect, const std::string& parameter) {
   return (effect == "focal_length" && parameter == "turn") ||
+         (effect == "backlash" && parameter == "start_m") ||
          (effect == "port_motion" && parameter.starts_with("overtone_"));
 }
 

@@ -60,23 +60,19 @@ class BlockBuilder {
   const std::vector<int>& row_place_;
 };
 
-void FillSizes(const Replay& replay, LinearProblem& problem) {
-  Rows residual = Rows::Zero(), count = Rows::Zero();
-  const auto free = replay.ForceFreeResiduals();
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    const ReplayedSample& sample = replay.Samples()[k];
-    if (!sample.ok) continue;
-    const Rows sd = replay.RowNoise(k);
-    for (int r = 0; r < row::kCount; ++r) {
-      if (!replay.Set().samples[k].present[r] || sd[r] <= 0.0) continue;
-      residual[r] += std::pow(free[k][r] / sd[r], 2);
-      count[r] += 1.0;
+/// What force and wrist leave of the residual, row by row, in its noise's standard deviations.
+Rows ResidualSize(const WhitenedRows& rows) {
+  Rows squares = Rows::Zero(), count = Rows::Zero();
+  for (std::size_t k = 0; k < rows.rows.size(); ++k) {
+    if (rows.Rows(k) == 0) continue;
+    const Eigen::VectorXd left =
+        rows.units[k].transpose() * rows.e.segment(rows.first_row[k], rows.Rows(k));
+    for (int i = 0; i < rows.Rows(k); ++i) {
+      squares[rows.rows[k][i]] += left[i] * left[i];
+      count[rows.rows[k][i]] += 1.0;
     }
   }
-  for (int r = 0; r < row::kCount; ++r) {
-    if (count[r] == 0.0) continue;
-    problem.residual_size[r] = std::sqrt(residual[r] / count[r]);
-  }
+  return (squares.array() / count.array().max(1.0)).sqrt();
 }
 
 }  // namespace
@@ -112,7 +108,7 @@ LinearProblem MakeLinearProblem(const Replay& replay, const Eigen::MatrixXd& bas
   });
   problem.total = NormalSums(problem.Size());
   for (const NormalSums& block : problem.blocks) problem.total.Add(block);
-  FillSizes(replay, problem);
+  problem.residual_size = ResidualSize(rows);
   // Only upper halves were summed.
   for (NormalSums* sums : {&problem.total}) {
     sums->H.triangularView<Eigen::StrictlyLower>() =

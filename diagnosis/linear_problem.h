@@ -30,8 +30,8 @@ struct LinearProblem {
   std::vector<int> generic_row;    ///< of each generic unknown: the measured row
   std::vector<NormalSums> blocks;  ///< consecutive stretches of time
   NormalSums total;
-  /// Root mean square over the samples of the residual as it stands, per measured row in its
-  /// standard deviations.
+  /// Root mean square over the samples of what force and wrist noise leave of the residual as it
+  /// stands, per measured row in its standard deviations.
   Rows residual_size = Rows::Zero();
 
   int Size() const { return parameters + int(generic_row.size()); }
