@@ -92,14 +92,15 @@ Separation MeasureSeparation(const Recording& recording, const HiddenRecording& 
   if (effect < 0) return {};  // no sensor or motion that could show it
   const Eigen::VectorXd theta = TrueTheta(hidden, layout);
   Replay replay(samples, layout);
-  replay.Settle(Eigen::VectorXd::Zero(layout.Size()));  // samples without equilibrium are left out
+  replay.Evaluate(
+      Eigen::VectorXd::Zero(layout.Size()));  // samples without equilibrium are left out
   const SelectionOptions options;
   const Rows may_miss =
       MayMiss(ProblemHere(replay, GenericBasis(replay), options), options.discrepancy, options);
-  replay.Settle(theta);
+  replay.Evaluate(theta);
   replay.AdaptForcePrior();
   replay.SetNoiseScale(NoiseScale(replay));
-  replay.Settle(theta);
+  replay.Evaluate(theta);
   const LinearProblem problem = MakeLinearProblem(replay, GenericBasis(replay), 1);
   const Explanations explanations(problem, layout, theta, may_miss, effect);
   const double of_truth = explanations.CostOf(effect);

@@ -65,7 +65,7 @@ void FindMotion(const Replay& replay, const ParameterLayout& layout,
   std::vector<double> worst(motions.size(), -1.0);
   for (std::size_t m = 0; m < motions.size(); ++m) {
     Replay imagined(motions[m].samples, layout);
-    if (!imagined.Evaluate(theta) || !imagined.Evaluate(theta)) continue;
+    if (!imagined.Evaluate(theta)) continue;
     const LinearProblem problem = MakeLinearProblem(imagined, {}, 1);
     double least = 1e300;
     for (const auto& group : ambiguity.groups)

@@ -28,7 +28,7 @@ struct Work {
 /// The base simulation, with the sensors' frames registered as well as the data allow.
 void ReplayBase(Work& work, const std::string& name) {
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(work.layout.Size());
-  if (!work.base.Settle(theta)) {
+  if (!work.base.Evaluate(theta)) {
     throw WorkError(fmt::format(
         "{}: the nominal instrument has no equilibrium in {} of {} samples: check length, port and "
         "load",
@@ -38,7 +38,7 @@ void ReplayBase(Work& work, const std::string& name) {
                                      [](const auto& block) { return block.nuisance; });
   for (int i = 0; uncertain && i < 3; ++i) {
     theta = BaseParameters(MakeLinearProblem(work.base, {}, 1).total, work.layout);
-    work.base.Settle(theta);
+    work.base.Evaluate(theta);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "diagnosis/sample_loops.h"
 
@@ -10,6 +11,9 @@ namespace {
 
 constexpr std::size_t kForceNeighbours = 4;  // on either side, that say what a force should be
 constexpr std::size_t kSharedNoise = 8;      // samples over which smoothed loads share their noise
+constexpr int kMostPasses = 5;
+constexpr double kSameFriction = 0.01;  // axial over lateral force
+constexpr std::size_t kSlideReach = 8;  // samples on either side that say how the shaft slides
 
 }  // namespace
 
@@ -29,19 +33,22 @@ Replay::Replay(const SampleSet& samples, const ParameterLayout& layout)
 }
 
 bool Replay::Evaluate(const Eigen::VectorXd& theta) {
-  if (samples_.has_load) return EvaluateWithForces(theta);
-  theta_ = theta;
-  ApplyEffects(theta);
-  Retime();
-  FitForces();
-  return Finish();
+  return EvaluateBy(theta, [this] { samples_.has_load ? SolveRods() : FitForces(); });
 }
 
 bool Replay::EvaluateWithForces(const Eigen::VectorXd& theta) {
+  return EvaluateBy(theta, [this] { SolveRods(); });
+}
+
+/// Friction follows from how the shaft slides, and that from the shapes: again until it stays.
+bool Replay::EvaluateBy(const Eigen::VectorXd& theta, const std::function<void()>& solve) {
   theta_ = theta;
-  ApplyEffects(theta);
-  Retime();
-  SolveRods();
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const double change = ApplyEffects(theta);
+    if (pass > 0 && change < kSameFriction) break;
+    Retime();
+    solve();
+  }
   return Finish();
 }
 
@@ -53,27 +60,55 @@ bool Replay::Finish() {
   return true;
 }
 
-bool Replay::Settle(const Eigen::VectorXd& theta) { return Evaluate(theta) && Evaluate(theta); }
+/// Where on the shaft the port would be without friction, as the last replay has it.
+double Replay::FreePortPlace(std::size_t k) const {
+  const ReplayedSample& sample = replayed_[k];
+  return sample.solved.s_port_m -
+         sample.solved.ds_port_dfriction_m * sample.inputs[model_input::kPortFriction];
+}
 
-void Replay::ApplyEffects(const Eigen::VectorXd& theta) {
+/// The same by the least-squares parabola through the samples around: what makes the shaft stick or
+/// slip must not be the noise of a force found from one sample.
+double Replay::SmoothPortPlace(std::size_t k) const {
+  const double own_m = FreePortPlace(k);
+  if (!samples_.resolved_in_time || replayed_.size() <= 2 * kSlideReach) return own_m;
+  const std::size_t first =
+      std::clamp(k, kSlideReach, replayed_.size() - 1 - kSlideReach) - kSlideReach;
+  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d rhs = Eigen::Vector3d::Zero();
+  for (std::size_t a = first; a <= first + 2 * kSlideReach; ++a) {
+    if (!replayed_[a].ok) return own_m;
+    const double u = (samples_.samples[a].t_s - samples_.samples[k].t_s) / samples_.period_s;
+    const Eigen::Vector3d basis(1.0, u, u * u);
+    N += basis * basis.transpose();
+    rhs += basis * FreePortPlace(a);
+  }
+  return N.llt().solve(rhs)[0];
+}
+
+/// Returns the largest change of the port's friction since the last replay.
+double Replay::ApplyEffects(const Eigen::VectorXd& theta) {
+  double change = 0.0;
   std::vector<EffectMemory> memory(layout_.Blocks().size());
   for (auto& m : memory) m.fill(0.0);
+  std::vector<double> s_port_free_m(replayed_.size(), 0.0);
+  for (std::size_t k = 0; k < replayed_.size(); ++k)
+    if (replayed_[k].ok) s_port_free_m[k] = SmoothPortPlace(k);
   for (std::size_t k = 0; k < replayed_.size(); ++k) {
     ReplayedSample& sample = replayed_[k];
-    Moment now{samples_, k, samples_.samples[k].t_s, 0.0, 0.0};
-    if (sample.ok) {
-      now.ds_port_dfriction_m = sample.solved.ds_port_dfriction_m;
-      now.s_port_free_m = sample.solved.s_port_m -
-                          now.ds_port_dfriction_m * sample.inputs[model_input::kPortFriction];
-    }
+    Moment now{samples_, k, samples_.samples[k].t_s, s_port_free_m[k], 0.0};
+    if (sample.ok) now.ds_port_dfriction_m = sample.solved.ds_port_dfriction_m;
+    const double friction = sample.inputs[model_input::kPortFriction];
     sample.inputs.setZero();
     sample.columns.clear();
     for (std::size_t b = 0; b < layout_.Blocks().size(); ++b) {
       const auto& block = layout_.Blocks()[b];
-      InputChange change(theta.data() + block.first, block.first, sample.inputs, sample.columns);
-      block.effect->Apply(theta.data() + block.first, now, memory[b], change);
+      InputChange input(theta.data() + block.first, block.first, sample.inputs, sample.columns);
+      block.effect->Apply(theta.data() + block.first, now, memory[b], input);
     }
+    change = std::max(change, std::abs(sample.inputs[model_input::kPortFriction] - friction));
   }
+  return change;
 }
 
 void Replay::SolveRods() {

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <bitset>
+#include <functional>
 #include <vector>
 
 #include "diagnosis/parameter_layout.h"
@@ -51,9 +52,6 @@ class Replay {
   bool Evaluate(const Eigen::VectorXd& theta);
   /// The same with the forces left as they are.
   bool EvaluateWithForces(const Eigen::VectorXd& theta);
-
-  /// Evaluate twice: what hangs on neighbouring samples (latency, history) is then that of `theta`.
-  bool Settle(const Eigen::VectorXd& theta);
 
   /// Moves unknown tip forces to where they will be, to first order, when the parameters move by
   /// `dtheta`.
@@ -103,7 +101,10 @@ class Replay {
   struct Statistics;  // covariance of a sample's rows and what the force has to do with them
 
   bool Finish();
-  void ApplyEffects(const Eigen::VectorXd& theta);
+  double FreePortPlace(std::size_t k) const;
+  double SmoothPortPlace(std::size_t k) const;
+  double ApplyEffects(const Eigen::VectorXd& theta);
+  bool EvaluateBy(const Eigen::VectorXd& theta, const std::function<void()>& solve);
   void SolveRods();
   void Retime();
   void FitForces();

@@ -27,7 +27,7 @@ class Search {
       : replay_(replay), layout_(layout), options_(options) {}
 
   Selection Run() {
-    replay_.Settle(Eigen::VectorXd::Zero(layout_.Size()));
+    replay_.Evaluate(Eigen::VectorXd::Zero(layout_.Size()));
     replay_.AdaptForcePrior();
     base_ = PlaceOf(replay_);
     basis_ = GenericBasis(replay_);

@@ -26,9 +26,11 @@ class PortFriction : public DirectEffect {
     double& s_last_m = memory[1];
     if (started == 0.0) s_last_m = now.s_port_free_m;
     started = 1.0;
-    const double holding = (s_last_m - now.s_port_free_m) / now.ds_port_dfriction_m;
+    // Along the shaft everything yields; a replay's trial compliances can be negative.
+    const double ds_m = std::min(now.ds_port_dfriction_m, -kLeastYield_m);
+    const double holding = (s_last_m - now.s_port_free_m) / ds_m;
     const double ratio = std::clamp(holding, -coefficient, coefficient);
-    s_last_m = now.s_port_free_m + now.ds_port_dfriction_m * ratio;
+    s_last_m = now.s_port_free_m + ds_m * ratio;
     change.Linear(0, model_input::kPortFriction, ratio / coefficient);
   }
 
@@ -37,6 +39,7 @@ class PortFriction : public DirectEffect {
 
  private:
   static constexpr double kReference = 0.1;
+  static constexpr double kLeastYield_m = 2e-5;  // of the port's place, to a ratio of one
 };
 
 }  // namespace

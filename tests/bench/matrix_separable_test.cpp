@@ -61,7 +61,7 @@ TEST(MatrixSeparable, IsWithinWhatTheBaseLeaves) {
   const SampleSet samples = MakeSampleSet(hidden.recording, "hidden");
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay base(samples, layout);
-  ASSERT_TRUE(base.Settle(Eigen::VectorXd::Zero(layout.Size())));
+  ASSERT_TRUE(base.Evaluate(Eigen::VectorXd::Zero(layout.Size())));
   const double separation = MeasureSeparation(hidden.recording, hidden).value;
   EXPECT_GT(separation, 0.0);
   EXPECT_LT(separation, base.Whiten().e.squaredNorm());

@@ -16,7 +16,7 @@ constexpr double kDuration_s = 20.0;
 double FoundIn(const SampleSet& samples) {
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
-  EXPECT_TRUE(replay.Settle(Eigen::VectorXd::Zero(layout.Size())));
+  EXPECT_TRUE(replay.Evaluate(Eigen::VectorXd::Zero(layout.Size())));
   return BestPortFrequency(replay);
 }
 
@@ -37,7 +37,7 @@ TEST(FrequencyScan, FindsASineOf031Hz) {
   SampleSet samples = SmallSamples(kDuration_s, true, 54);
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
-  ASSERT_TRUE(replay.Settle(Eigen::VectorXd::Zero(layout.Size())));
+  ASSERT_TRUE(replay.Evaluate(Eigen::VectorXd::Zero(layout.Size())));
   for (std::size_t k = 0; k < samples.samples.size(); ++k) {
     DiagnosisSample& sample = samples.samples[k];
     const double wave_m = 1e-3 * std::sin(2.0 * std::numbers::pi * 0.31 * sample.t_s + 0.4);

@@ -65,9 +65,9 @@ class ReplayDerivatives : public testing::TestWithParam<bool> {
     }
   }
   /// Forces are fitted here, and then stay.
-  void Settle() {
+  void Evaluate() {
     replay_.TakeOwnDerivatives(true);
-    ASSERT_TRUE(replay_.Settle(theta_));
+    ASSERT_TRUE(replay_.Evaluate(theta_));
     forces_N_ = replay_.Forces();
     At(theta_);
   }
@@ -108,7 +108,7 @@ class ReplayDerivatives : public testing::TestWithParam<bool> {
   /// Every parameter's column against differences, about the point as it is, to `tolerance` of the
   /// column's norm.
   void CheckAll(double tolerance = 1e-5) {
-    Settle();
+    Evaluate();
     const Eigen::MatrixXd X = Derivatives(replay_);
     const bool breathes = theta_[Index("port_motion")] != 0.0;
     for (int j = 0; j < layout_.Size(); ++j) {
@@ -210,7 +210,7 @@ void CheckSamples(const Eigen::VectorXd& column, const Eigen::VectorXd& numeric,
 TEST_P(ReplayDerivatives, OfPlayWhileTheWristIsDragged) {
   SwitchOn("backlash", 0.6);
   SwitchOn("port_offset", 0.4);
-  Settle();
+  Evaluate();
   const int j = Index("backlash");
   const Eigen::MatrixXd X = Derivatives(replay_);
   CheckSamples(X.col(j), -Numeric(j), Dragged(samples_, theta_[j]));
@@ -219,7 +219,7 @@ TEST_P(ReplayDerivatives, OfPlayWhileTheWristIsDragged) {
 TEST_P(ReplayDerivatives, OfFrictionWhileTheShaftSlides) {
   SwitchOn("port_friction", 0.5);
   SwitchOn("precurvature", 0.4);
-  Settle();
+  Evaluate();
   At(theta_, 4);
   const int j = Index("port_friction");
   std::vector<bool> slides;
@@ -266,7 +266,7 @@ TEST(ReplayResiduals, OfAHealthyRecordingAreTheNoise) {
   const SampleSet samples = WithRawInputs(SmallHidden(20.0, true, 42).recording);
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
-  ASSERT_TRUE(replay.Settle(Eigen::VectorXd::Zero(layout.Size())));
+  ASSERT_TRUE(replay.Evaluate(Eigen::VectorXd::Zero(layout.Size())));
   EXPECT_GT(replay.Whiten().e.size(), 10000);
   ExpectMeanSquare(replay.Whiten(), 1.0);
 }
@@ -277,7 +277,7 @@ TEST(ReplayResiduals, WithAnUnknownLoadAreShortOfThreeRows) {
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
   const Eigen::VectorXd base = Eigen::VectorXd::Zero(layout.Size());
-  ASSERT_TRUE(replay.Settle(base));
+  ASSERT_TRUE(replay.Evaluate(base));
   const WhitenedRows rows = replay.Whiten();
   double taken = 0.0;
   for (std::size_t k = 0; k < samples.samples.size(); ++k) taken += rows.Rows(k) > 3 ? 3.0 : 0.0;
@@ -292,7 +292,7 @@ TEST(ReplayForces, AreMendedFromTheNeighbours) {
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
   const Eigen::VectorXd base = Eigen::VectorXd::Zero(layout.Size());
-  ASSERT_TRUE(replay.Settle(base));
+  ASSERT_TRUE(replay.Evaluate(base));
   const auto right_N = replay.Forces();
   auto wrong_N = right_N;
   const double unit_N = samples.instrument.bending_stiffness_Nm2 / samples.instrument.length_m /
@@ -312,12 +312,12 @@ TEST(ReplayResiduals, AreFreeOfAnEffectThatIsSwitchedOn) {
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(layout.Size());
-  ASSERT_TRUE(replay.Settle(theta));
+  ASSERT_TRUE(replay.Evaluate(theta));
   EXPECT_GT(MeanSquare(replay.Whiten()), 2.0);
   const auto& truth = hidden.label.parameters.at("tag_offset").at("offset_m");
   const int first = layout.Blocks()[layout.Find("tag_offset")].first;
   for (int i = 0; i < 3; ++i) theta[first + i] = truth[i];
-  ASSERT_TRUE(replay.Settle(theta));
+  ASSERT_TRUE(replay.Evaluate(theta));
   ExpectMeanSquare(replay.Whiten(), 1.0);
 }
 
