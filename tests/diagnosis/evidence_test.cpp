@@ -142,7 +142,7 @@ TEST_F(EvidenceTest, FindsWhatIsThere) {
 
 /// Half a normal prior: 2 N(x; 0, s^2) for x > 0, integrated by Simpson's rule.
 TEST_F(EvidenceTest, OfPositiveParametersIsTheIntegralOverPositiveValues) {
-  for (const std::string effect : {"backlash", "port_friction", "tip_compliance"}) {
+  for (const std::string effect : {"port_compliance", "port_friction", "tip_compliance"}) {
     for (const double truth : {-0.6, -0.1, 0.0, 0.1, 0.7}) {
       const int b = Block(effect), j = layout_.Blocks()[b].first;
       ASSERT_EQ(layout_.Blocks()[b].size, 1);
