@@ -40,6 +40,7 @@ class Search {
     FitLeadersFromBase(first);
     FixMeasure();
     FitRivals();
+    FitPartsOfBest();
     if (Unexplained()) {
       int fresh = 0;
       for (const auto& s : first.scored)
@@ -119,6 +120,23 @@ class Search {
                           .rounds = kFitRounds,
                           .worth = best_.log_posterior}));
     }
+  }
+
+  /// One of a pair may do, with the rest of the world elsewhere than where the pair fits.
+  void FitPartsOfBest() {
+    const Hypothesis pair = best_.hypothesis;
+    if (pair.effects.size() < 2) return;
+    const Place place = best_.place;
+    for (const int effect : pair.effects) {
+      if (Tried({{effect}, false}) != nullptr) continue;
+      GoTo(replay_, layout_, place);
+      Keep(FitHypothesis(replay_, layout_, {{effect}, false}, options_,
+                         {.basis = basis_,
+                          .may_miss = may_miss_,
+                          .rounds = kFirstRounds,
+                          .worth = best_.log_posterior}));
+    }
+    FitRivals();
   }
 
   /// What the fits say of a hypothesis beyond the linear problem about the best place: its own fit,
