@@ -155,8 +155,7 @@ double Evidence::Merit(const WeighedHypothesis& weighed, const Eigen::VectorXd& 
          x.cwiseQuotient(PriorSd(weighed)).squaredNorm();
 }
 
-Eigen::VectorXd Evidence::Mode(const WeighedHypothesis& weighed) const {
-  const Eigen::MatrixXd C = Covariance(weighed);
+Eigen::VectorXd Evidence::Mode(const WeighedHypothesis& weighed, const Eigen::MatrixXd& C) const {
   std::vector<int> positive;
   for (const int j : Subset(weighed.hypothesis))
     if (layout_.Parameter(j).positive) positive.push_back(j);

@@ -41,9 +41,10 @@ class Evidence {
   /// problems made about different points.
   double LogEvidenceOfNone() const { return none_; }
 
-  /// The most likely unknowns given that `weighed` holds, with its best widths.
-  Eigen::VectorXd Mode(const WeighedHypothesis& weighed) const;
+  /// Of all unknowns given that `weighed` holds, with its best widths.
   Eigen::MatrixXd Covariance(const WeighedHypothesis& weighed) const;
+  /// The most likely unknowns then; `covariance`: Covariance(weighed).
+  Eigen::VectorXd Mode(const WeighedHypothesis& weighed, const Eigen::MatrixXd& covariance) const;
   /// Minus twice the log of how likely the unknowns `x` are under `weighed`, up to the constant
   /// that LogEvidenceOfNone leaves out too.
   double Merit(const WeighedHypothesis& weighed, const Eigen::VectorXd& x) const;

@@ -145,7 +145,8 @@ HeldOut MeasureHeldOut(const Replay& base, const Replay& extended, const Selecti
     const NormalSums train = WithoutFold(selection.problem, fold, folds);
     const Evidence evidence(train, layout, selection.generic_sd, {.unknown_sd = {}});
     const Eigen::VectorXd base_step = BaseParameters(base_train, layout) - base.Theta();
-    const Eigen::VectorXd step = evidence.Mode(weighed).head(layout.Size()) - extended.Theta();
+    const Eigen::VectorXd step =
+        evidence.Mode(weighed, evidence.Covariance(weighed)).head(layout.Size()) - extended.Theta();
     const auto base_free = base.ForceFreeResiduals({}, base_step);
     const auto base_tip = base.ForceFreeResiduals(tip.hidden, base_step);
     const auto free = extended.ForceFreeResiduals({}, step);

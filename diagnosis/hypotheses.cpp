@@ -34,18 +34,15 @@ std::vector<Hypothesis> AllHypotheses(int effects) {
   return all;
 }
 
-std::vector<ScoredHypothesis> Score(const NormalSums& sums, const ParameterLayout& layout,
-                                    const Eigen::VectorXd& generic_sd,
+std::vector<ScoredHypothesis> Score(const Evidence& evidence, int effects,
                                     const std::vector<Hypothesis>& hypotheses,
                                     const SelectionOptions& options,
-                                    const EvidenceOptions& evidence_options,
                                     const std::vector<Correction>& corrections) {
-  const Evidence evidence(sums, layout, generic_sd, evidence_options);
   std::vector<ScoredHypothesis> scored(hypotheses.size());
   tbb::parallel_for(std::size_t{0}, hypotheses.size(), [&](std::size_t i) {
     scored[i].weighed = evidence.Weigh(hypotheses[i]);
     scored[i].log_posterior =
-        scored[i].weighed.log_evidence + LogPrior(hypotheses[i], layout.EffectCount(), options);
+        scored[i].weighed.log_evidence + LogPrior(hypotheses[i], effects, options);
     for (const Correction& correction : corrections)
       if (correction.hypothesis == hypotheses[i]) scored[i].log_posterior += correction.log;
   });

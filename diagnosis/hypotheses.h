@@ -33,12 +33,10 @@ std::vector<Hypothesis> KnownHypotheses(int effects, bool pairs);
 /// Those, and something unknown by itself or beside each single effect.
 std::vector<Hypothesis> AllHypotheses(int effects);
 
-/// `hypotheses` weighed on `sums`, best first.
-std::vector<ScoredHypothesis> Score(const NormalSums& sums, const ParameterLayout& layout,
-                                    const Eigen::VectorXd& generic_sd,
+/// `hypotheses` among `effects` ones of the catalogue, weighed, best first.
+std::vector<ScoredHypothesis> Score(const Evidence& evidence, int effects,
                                     const std::vector<Hypothesis>& hypotheses,
                                     const SelectionOptions& options,
-                                    const EvidenceOptions& evidence = {},
                                     const std::vector<Correction>& corrections = {});
 
 }  // namespace flextip

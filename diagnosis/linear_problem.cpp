@@ -27,30 +27,43 @@ class BlockBuilder {
     sums.g.head(P).noalias() = X.transpose() * z;
     sums.c = z.squaredNorm();
     sums.rows = count;
-    if (basis_.cols() > 0)
-      for (std::size_t k = begin; k < end; ++k) AddGeneric(k, z, first, sums);
+    if (basis_.cols() > 0) AddGeneric(begin, end, z, sums);
     return sums;
   }
 
  private:
-  void AddGeneric(std::size_t k, const Eigen::VectorXd& z, int first, NormalSums& sums) const {
-    const int n = rows_.Rows(k);
-    if (n == 0) return;
-    const auto P = rows_.X.cols(), J = basis_.cols();
-    const Eigen::RowVectorXd phi = basis_.row(Eigen::Index(k));
-    const Eigen::MatrixXd phi2 = phi.transpose() * phi;
-    const Eigen::MatrixXd& U = rows_.units[k];
-    const Eigen::MatrixXd UU = U.transpose() * U;
-    const Eigen::MatrixXd XU = rows_.X.middleRows(rows_.first_row[k], n).transpose() * U;
-    const Eigen::VectorXd Uz = U.transpose() * z.segment(rows_.first_row[k] - first, n);
-    for (int a = 0; a < n; ++a) {
-      const Eigen::Index at = P + row_place_[rows_.rows[k][a]] * J;
-      sums.g.segment(at, J) += Uz[a] * phi.transpose();
-      sums.H.block(0, at, P, J).noalias() += XU.col(a) * phi;
-      for (int b = a; b < n; ++b) {
-        const Eigen::Index bt = P + row_place_[rows_.rows[k][b]] * J;
-        sums.H.block(at, bt, J, J) += UU(a, b) * phi2;
+  /// A row's generic column is what an error in the row becomes, times the basis: sums over samples
+  /// of products of the one and products of the other, as matrix products.
+  void AddGeneric(std::size_t begin, std::size_t end, const Eigen::VectorXd& z,
+                  NormalSums& sums) const {
+    const auto P = rows_.X.cols(), J = basis_.cols(), R = (sums.g.size() - P) / J;
+    const auto n = Eigen::Index(end - begin);
+    const Eigen::MatrixXd phi = basis_.middleRows(Eigen::Index(begin), n);
+    Eigen::MatrixXd phi_phi(n, J * J);
+    for (Eigen::Index j = 0; j < J; ++j)
+      phi_phi.middleCols(j * J, J) = phi.array().colwise() * phi.col(j).array();
+    Eigen::MatrixXd XU = Eigen::MatrixXd::Zero(P * R, n), UU = Eigen::MatrixXd::Zero(R * R, n);
+    Eigen::MatrixXd Uz = Eigen::MatrixXd::Zero(R, n);
+    for (std::size_t k = begin; k < end; ++k) {
+      const int count = rows_.Rows(k), first = rows_.first_row[k];
+      const auto at = Eigen::Index(k - begin);
+      const Eigen::MatrixXd& U = rows_.units[k];
+      const Eigen::MatrixXd UU_k = U.transpose() * U;
+      const Eigen::MatrixXd XU_k = rows_.X.middleRows(first, count).transpose() * U;
+      const Eigen::VectorXd Uz_k = U.transpose() * z.segment(first - rows_.first_row[begin], count);
+      for (int a = 0; a < count; ++a) {
+        const Eigen::Index row = row_place_[rows_.rows[k][a]];
+        XU.block(row * P, at, P, 1) = XU_k.col(a);
+        Uz(row, at) = Uz_k[a];
+        for (int b = a; b < count; ++b) UU(row * R + row_place_[rows_.rows[k][b]], at) = UU_k(a, b);
       }
+    }
+    const Eigen::MatrixXd XU_phi = XU * phi, UU_phi = UU * phi_phi, Uz_phi = Uz * phi;
+    for (Eigen::Index a = 0; a < R; ++a) {
+      sums.g.segment(P + a * J, J) = Uz_phi.row(a);
+      sums.H.block(0, P + a * J, P, J) = XU_phi.middleRows(a * P, P);
+      for (Eigen::Index b = a; b < R; ++b)
+        sums.H.block(P + a * J, P + b * J, J, J) = UU_phi.row(a * R + b).reshaped(J, J);
     }
   }
 

@@ -71,8 +71,9 @@ Probabilities MakeProbabilities(const Selection& selection, const ParameterLayou
   std::mt19937_64 rng(options.seed);
   for (int bag = 0; bag < options.bags; ++bag) {
     const NormalSums sums = DrawBag(selection.problem, rng);
-    add(Score(sums, layout, selection.generic_sd, leaders, selection_options,
-              {.scales = {0.3, 1.0, 3.0}, .unknown_sd = {0.3, 1.0}}, selection.corrections),
+    const Evidence of_bag(sums, layout, selection.generic_sd,
+                          {.scales = {0.3, 1.0, 3.0}, .unknown_sd = {0.3, 1.0}});
+    add(Score(of_bag, layout.EffectCount(), leaders, selection_options, selection.corrections),
         0.5 / options.bags);
   }
   Probabilities result;

@@ -181,8 +181,8 @@ class Search {
       const double log = Shortfall(s, weighing) - (tried ? common : 0.0);
       if (log != 0.0) selection_.corrections.push_back({s.weighed.hypothesis, log});
     }
-    selection_.scored = Score(weighing.problem.total, layout_, weighing.generic_sd, all, options_,
-                              {}, selection_.corrections);
+    selection_.scored = Score({weighing.problem.total, layout_, weighing.generic_sd},
+                              layout_.EffectCount(), all, options_, selection_.corrections);
     selection_.converged = best_.distance < kNearRest && !rivals_left_;
     selection_.problem = std::move(weighing.problem);
     selection_.generic_sd = std::move(weighing.generic_sd);

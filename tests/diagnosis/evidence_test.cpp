@@ -205,7 +205,7 @@ TEST_F(EvidenceTest, ModeAndCovarianceAreTheTextbooks) {
     EXPECT_LT((unit.asDiagonal() * (evidence.Covariance(weighed) - covariance) * unit.asDiagonal())
                   .norm(),
               1e-8);
-    EXPECT_LT(unit.cwiseProduct(evidence.Mode(weighed) - mean).norm(), 1e-8);
+    EXPECT_LT(unit.cwiseProduct(evidence.Mode(weighed, covariance) - mean).norm(), 1e-8);
     const double cost = (z_ - X_ * mean).squaredNorm() + mean.cwiseQuotient(sd).squaredNorm();
     EXPECT_NEAR(evidence.Merit(weighed, mean), cost, 1e-7 * cost);
   }
