@@ -46,6 +46,8 @@ bool Replay::EvaluateBy(const Eigen::VectorXd& theta, const std::function<void()
   for (int pass = 0; pass < kMostPasses; ++pass) {
     const double change = ApplyEffects(theta);
     if (pass > 0 && change < kSameFriction) break;
+    if (pass == 0)
+      for (ReplayedSample& sample : replayed_) sample.stale = true;
     Retime();
     solve();
   }
@@ -106,7 +108,9 @@ double Replay::ApplyEffects(const Eigen::VectorXd& theta) {
       InputChange input(theta.data() + block.first, block.first, sample.inputs, sample.columns);
       block.effect->Apply(theta.data() + block.first, now, memory[b], input);
     }
-    change = std::max(change, std::abs(sample.inputs[model_input::kPortFriction] - friction));
+    const double by = std::abs(sample.inputs[model_input::kPortFriction] - friction);
+    sample.stale = by > 0.2 * kSameFriction;
+    change = std::max(change, by);
   }
   return change;
 }
@@ -116,6 +120,7 @@ void Replay::SolveRods() {
     EffectRodSolver solver;
     for (std::size_t k = begin; k < end; ++k) {
       ReplayedSample& sample = replayed_[k];
+      if (!sample.stale) continue;
       sample.solved = SolveSample(samples_, k, sample.inputs, sample.f_tip_N, solver);
       sample.ok = sample.solved.ok;
     }

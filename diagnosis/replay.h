@@ -16,7 +16,8 @@ namespace flextip {
 
 /// One sample after a replay.
 struct ReplayedSample {
-  bool ok = false;  ///< the rod has an equilibrium
+  bool ok = false;    ///< the rod has an equilibrium
+  bool stale = true;  ///< its inputs are not those it was solved with
   SolvedSample solved;
   ModelInputs inputs = ModelInputs::Zero();
   std::vector<InputChange::Column> columns;  ///< of the inputs, by parameter

@@ -106,11 +106,20 @@ void Replay::MendForce(std::size_t k) {
   }
 }
 
-/// Each sample from where it was; where that ends badly, from its neighbours' force.
+/// Each sample from where it was, moved as the one before had to be; where that ends badly, from
+/// its neighbours' force.
 void Replay::FitForces() {
   ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
     EffectRodSolver solver;
-    for (std::size_t k = begin; k < end; ++k) FitForce(k, solver);
+    Eigen::Vector3d moved_N = Eigen::Vector3d::Zero();
+    for (std::size_t k = begin; k < end; ++k) {
+      if (!replayed_[k].stale) continue;
+      const Eigen::Vector3d before_N = replayed_[k].f_tip_N;
+      replayed_[k].f_tip_N += moved_N;
+      FitForce(k, solver);
+      moved_N = replayed_[k].ok ? Eigen::Vector3d(replayed_[k].f_tip_N - before_N)
+                                : Eigen::Vector3d::Zero();
+    }
   });
   for (std::size_t k = 0; k < replayed_.size(); ++k) MendForce(k);
 }
