@@ -92,8 +92,8 @@ Separation MeasureSeparation(const Recording& recording, const HiddenRecording& 
   if (effect < 0) return {};  // no sensor or motion that could show it
   const Eigen::VectorXd theta = TrueTheta(hidden, layout);
   Replay replay(samples, layout);
-  replay.Evaluate(
-      Eigen::VectorXd::Zero(layout.Size()));  // samples without equilibrium are left out
+  // Samples without equilibrium are left out.
+  replay.Evaluate(Eigen::VectorXd::Zero(layout.Size()));
   const SelectionOptions options;
   const Rows may_miss =
       MayMiss(ProblemHere(replay, GenericBasis(replay), options), options.discrepancy, options);

@@ -15,9 +15,10 @@ constexpr double kAcrossPrior = 20.0;
 constexpr double kAlongOverAcross = 1.5, kLeastAlong = 0.05;
 constexpr double kMaxForceStep = 0.5;  // in the same units
 constexpr int kForceSteps = 15;
-constexpr double kForceRest = 0.05;  // fall of the squared residual that is worth a step
-constexpr int kAlikeReach = 4;       // samples to look for one with the same sensors
-constexpr double kBadFit = 3.0;      // against the neighbour's, that looks like a wrong minimum
+// Fall of the squared residual that is worth a step; the rest is taken off to first order.
+constexpr double kForceRest = 0.05;
+constexpr int kAlikeReach = 4;   // samples to look for one with the same sensors
+constexpr double kBadFit = 3.0;  // against the neighbour's, that looks like a wrong minimum
 
 }  // namespace
 
