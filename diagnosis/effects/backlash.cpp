@@ -39,7 +39,9 @@ class Backlash : public DirectEffect {
       const bool as_at_start = dragged == 0.0;
       const double by_play = wrist - measured[i] - (as_at_start ? start : 0.0);
       change.Linear(0, model_input::kWrist + i, by_play / width);
-      if (as_at_start) change.Linear(1 + i, model_input::kWrist + i, 1.0);
+      if (!as_at_start) continue;
+      change.Add(model_input::kWrist + i, start);
+      if (start == theta[1 + i]) change.Derivative(1 + i, model_input::kWrist + i, 1.0);
     }
   }
 

@@ -238,6 +238,15 @@ TEST_P(ReplayDerivatives, OfWhereTheWristStoodInItsPlay) {
   }
 }
 
+TEST_P(ReplayDerivatives, PlayHoldsTheWristWhereverItIsSaidToStart) {
+  SwitchOn("backlash", 0.6);
+  const int j = Index("backlash");
+  theta_[j + 1] = 5.0 * theta_[j];
+  Evaluate();
+  for (const ReplayedSample& sample : replay_.Samples())
+    EXPECT_LE(std::abs(sample.inputs[model_input::kWrist]), 0.5 * theta_[j] + 1e-12);
+}
+
 TEST_P(ReplayDerivatives, OfFrictionWhileTheShaftSlides) {
   SwitchOn("port_friction", 0.5);
   SwitchOn("precurvature", 0.4);
