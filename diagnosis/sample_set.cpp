@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/rotation.h"
+#include "diagnosis/outliers.h"
 #include "diagnosis/smoothing.h"
 
 namespace flextip {
@@ -59,7 +60,7 @@ bool IsDead(const Series<T>& series, Get get) {
 class Builder {
  public:
   Builder(const Recording& recording, std::string name)
-      : recording_(recording), name_(std::move(name)) {}
+      : recording_(WithoutOutliers(recording, set_.warnings)), name_(std::move(name)) {}
 
   SampleSet Build() {
     if (!recording_.wrist0) {
@@ -328,10 +329,10 @@ class Builder {
   }
   TimeNs HalfPeriod() const { return TimeNs(0.51e9 * set_.period_s); }
 
-  const Recording& recording_;
+  SampleSet set_;
+  const Recording recording_;  // without outliers
   std::string name_;
   std::vector<TimeNs> times_;
-  SampleSet set_;
 };
 
 }  // namespace
