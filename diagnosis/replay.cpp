@@ -135,17 +135,34 @@ void Replay::Retime() {
   });
 }
 
-/// Rate and bend by the least-squares parabola through two samples on either side.
+/// Where the five samples begin that say how sample `k` moves: two on either side, at the ends
+/// those nearest to it that are judged by all that their sensors said, the others' forces being
+/// poor.
+std::optional<std::size_t> Replay::FirstOfFive(std::size_t k) const {
+  const auto n = std::ptrdiff_t(replayed_.size()), middle = std::ptrdiff_t(k);
+  const auto is_good = [&](std::ptrdiff_t first) {
+    for (std::ptrdiff_t a = first; a < first + 5; ++a) {
+      if (a < 0 || a >= n || !replayed_[a].ok) return false;
+      const DiagnosisSample& sample = samples_.samples[a];
+      if (!samples_.has_load && sample.present != sample.spoken) return false;
+    }
+    return true;
+  };
+  for (const std::ptrdiff_t by : {0, 1, -1, 2, -2})
+    if (is_good(middle - 2 + by)) return std::size_t(middle - 2 + by);
+  return {};
+}
+
+/// Rate and bend by the least-squares parabola through them.
 TimedGeometry Replay::WithRate(std::size_t k) const {
   TimedGeometry timed{replayed_[k].solved.at, Geometry::Zero(), Geometry::Zero()};
-  const std::size_t n = replayed_.size();
-  if (!samples_.resolved_in_time || n < 5) return timed;
-  const std::size_t first = std::clamp<std::size_t>(k, 2, n - 3) - 2;
+  if (!samples_.resolved_in_time) return timed;
+  const auto first = FirstOfFive(k);
+  if (!first) return timed;
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, place::kCount> rhs;
   rhs.setZero();
-  for (std::size_t a = first; a < first + 5; ++a) {
-    if (!replayed_[a].ok) return timed;
+  for (std::size_t a = *first; a < *first + 5; ++a) {
     const double u = (samples_.samples[a].t_s - samples_.samples[k].t_s) / samples_.period_s;
     const Eigen::Vector3d basis(1.0, u, 0.5 * u * u);
     N += basis * basis.transpose();

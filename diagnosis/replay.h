@@ -6,6 +6,7 @@
 #include <array>
 #include <bitset>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "diagnosis/parameter_layout.h"
@@ -109,12 +110,14 @@ class Replay {
   void SolveRods();
   void Retime();
   void FitForces();
+  void BorrowForces();
   Eigen::Vector3d ShortStep(std::size_t k, const Eigen::Vector3d& step_N) const;
   void FitForce(std::size_t k, EffectRodSolver& solver);
   std::size_t NextAlike(std::size_t k, int step) const;
   void MendForce(std::size_t k);
   bool TryForce(std::size_t k, const Eigen::Vector3d& f_N, EffectRodSolver& solver);
   void CompareSamples();
+  std::optional<std::size_t> FirstOfFive(std::size_t k) const;
   TimedGeometry WithRate(std::size_t k) const;
   double ForceUnit(std::size_t k) const;
   Eigen::Vector3d MeanForce(std::size_t k) const;

@@ -107,6 +107,25 @@ void Replay::MendForce(std::size_t k) {
   }
 }
 
+/// Samples that are not judged have the force of the nearest that is: how the shaft moves and
+/// slides at the ends follows from their shapes, too.
+void Replay::BorrowForces() {
+  const auto n = std::ptrdiff_t(replayed_.size());
+  const auto is_judged = [&](std::ptrdiff_t k) {
+    return k >= 0 && k < n && replayed_[k].ok && samples_.samples[k].present.any();
+  };
+  EffectRodSolver solver;
+  for (std::ptrdiff_t k = 0; k < n; ++k) {
+    if (samples_.samples[k].present.any()) continue;
+    for (std::ptrdiff_t by = 1; by < n; ++by) {
+      if (!is_judged(k - by) && !is_judged(k + by)) continue;
+      const auto& nearest = replayed_[is_judged(k - by) ? k - by : k + by];
+      replayed_[k].ok = TryForce(k, nearest.f_tip_N, solver);
+      break;
+    }
+  }
+}
+
 /// Each sample from where it was, moved as the one before had to be; where that ends badly, from
 /// its neighbours' force.
 void Replay::FitForces() {
@@ -114,7 +133,7 @@ void Replay::FitForces() {
     EffectRodSolver solver;
     Eigen::Vector3d moved_N = Eigen::Vector3d::Zero();
     for (std::size_t k = begin; k < end; ++k) {
-      if (!replayed_[k].stale) continue;
+      if (!replayed_[k].stale || samples_.samples[k].present.none()) continue;
       const Eigen::Vector3d before_N = replayed_[k].f_tip_N;
       replayed_[k].f_tip_N += moved_N;
       FitForce(k, solver);
@@ -122,7 +141,9 @@ void Replay::FitForces() {
                                 : Eigen::Vector3d::Zero();
     }
   });
-  for (std::size_t k = 0; k < replayed_.size(); ++k) MendForce(k);
+  for (std::size_t k = 0; k < replayed_.size(); ++k)
+    if (samples_.samples[k].present.any()) MendForce(k);
+  BorrowForces();
 }
 
 void Replay::AdaptForcePrior() {

@@ -317,6 +317,40 @@ TEST(ReplayResiduals, WithAnUnknownLoadAreShortOfThreeRows) {
   ExpectMeanSquare(rows, expected);
 }
 
+/// Squared whitened residual of each sample.
+std::vector<double> Squares(const Replay& replay) {
+  const WhitenedRows rows = replay.Whiten();
+  std::vector<double> squares;
+  for (std::size_t k = 0; k + 1 < rows.first_row.size(); ++k)
+    squares.push_back(rows.e.segment(rows.first_row[k], rows.Rows(k)).squaredNorm());
+  return squares;
+}
+
+/// What is not judged at the ends has no force of its own; a camera read between its frames asks
+/// for how the shape moves there all the same.
+TEST(ReplayForces, OfSamplesThatAreNotJudgedDoNotSpoilThoseBeside) {
+  const SampleSet samples = SmallSamples(8.0, false, 45);
+  const ParameterLayout layout(samples, MakeCatalogue(samples));
+  Replay replay(samples, layout);
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(layout.Size());
+  ASSERT_TRUE(replay.Evaluate(theta));
+  theta[layout.Blocks()[layout.Find("camera_latency")].first] = 0.018;  // frames: 0.04 s
+  ASSERT_TRUE(replay.Evaluate(theta));
+  const std::vector<double> squares = Squares(replay);
+  std::vector<std::size_t> judged;
+  for (std::size_t k = 0; k < squares.size(); ++k)
+    if (samples.samples[k].Has(row::kTipPosition)) judged.push_back(k);
+  ASSERT_GT(judged.size(), 100U);
+  const auto largest = [&](std::size_t from, std::size_t to) {
+    double value = 0.0;
+    for (std::size_t i = from; i < to; ++i) value = std::max(value, squares[judged[i]]);
+    return value;
+  };
+  const std::size_t n = judged.size();
+  EXPECT_LT(largest(0, 3), 2.0 * largest(3, 23));
+  EXPECT_LT(largest(n - 3, n), 2.0 * largest(n - 23, n - 3));
+}
+
 /// One sample's force far off: alone it would stay in a wrong minimum, whatever stretch it begins.
 TEST(ReplayForces, AreMendedFromTheNeighbours) {
   const SampleSet samples = SmallSamples(8.0, false, 44);
