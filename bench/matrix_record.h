@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/matrix_case.h"
-#include "bench/matrix_separable.h"
+#include "bench/matrix_rival.h"
 
 namespace flextip {
 
@@ -27,7 +27,7 @@ struct MatrixRecord {
   int attempt = 0;           ///< draws that had no equilibrium
   EffectNames label;         ///< right answer, sorted: effects, or none, or unknown
   std::string form;          ///< where unknown: which
-  /// Of a single effect from its nearest rival (matrix_separable.h), which is an effect or none.
+  /// Of a single effect or a pair from its nearest rival (matrix_rival.h).
   double separation = 0.0;
   std::string rival;  ///< empty where that was not measured
   std::string error;  ///< a refusal's message; what follows is empty then
@@ -52,7 +52,7 @@ struct MatrixRecord {
   EffectNames warnings;
 
   bool IsRight() const { return verdict == label; }
-  /// One effect that the recording holds enough to tell.
+  /// One effect or two that the recording holds enough to tell.
   bool IsSeparable() const { return !rival.empty() && separation >= kSeparable; }
   /// Whether every effect of the label is in the verdict, or in a group declared indistinguishable
   /// from it.

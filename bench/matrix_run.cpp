@@ -133,9 +133,8 @@ void SetResult(const DiagnosisResult& result, MatrixRecord& record) {
   record.warnings = result.warnings;
 }
 
-void SetSeparation(const Recording& recording, const HiddenRecording& hidden,
-                   MatrixRecord& record) {
-  const Separation separation = MeasureSeparation(recording, hidden);
+void SetSeparation(TrueModel& truth, MatrixRecord& record) {
+  const Separation separation = MeasureSeparation(truth);
   record.separation = separation.value;
   record.rival = separation.rival;
 }
@@ -173,7 +172,10 @@ MatrixRecord RunMatrixCase(const MatrixCase& one) {
     const TemporaryFolder folder;
     WriteHidden(folder.Path(), hidden);
     const Recording recording = ReadRecording(folder.Path()).recording;
-    if (one.part == "singles") SetSeparation(recording, hidden, record);
+    if (one.part == "singles" || one.part == "pairs") {
+      TrueModel truth(recording, hidden);
+      SetSeparation(truth, record);
+    }
     record = Judge(recording, hidden, record);
   } catch (const InputError& error) {
     record.error = error.what();

@@ -19,7 +19,7 @@ nlohmann::json ConfusionJson(const Confusion& confusion) {
   return {{"title", confusion.title}, {"answers", rows}};
 }
 
-/// Single effects that no diagnosis could have told from a rival, right or not.
+/// Single effects and pairs that no diagnosis could have told from a rival, right or not.
 std::string NotSeparable(const std::vector<MatrixRecord>& records) {
   std::string text;
   for (const MatrixRecord& r : records) {

@@ -29,6 +29,15 @@ MatrixRecord Single(const std::string& effect, const std::string& answer, double
   return record;
 }
 
+MatrixRecord Pair(const EffectNames& answer, double separation) {
+  MatrixRecord record = Single("length", "", separation);
+  record.made.part = "pairs";
+  record.label = {"length", "stiffness"};
+  record.verdict = answer;
+  record.rival = "length";
+  return record;
+}
+
 double ValueOf(const std::vector<MatrixFigure>& figures, const std::string& figure,
                const std::string& group, int of) {
   for (const MatrixFigure& f : figures) {
@@ -48,6 +57,18 @@ TEST(MatrixSummary, SinglesCountTwiceAllAndSeparable) {
   EXPECT_EQ(ValueOf(figures, "right cause first, separable only", "singles plain", 1), 1.0);
   EXPECT_EQ(ValueOf(figures, "mean probability of the truth", "singles plain", 2), 0.5);
   EXPECT_EQ(ValueOf(figures, "mean probability, separable only", "singles plain", 1), 0.9);
+}
+
+TEST(MatrixSummary, PairsCountTwiceToo) {
+  const std::vector<MatrixRecord> records = {Pair({"length", "stiffness"}, kSeparable),
+                                             Pair({"length", "tag_offset"}, kSeparable),
+                                             Pair({"hand_eye"}, kSeparable - 0.1)};
+  const auto figures = Figures(records);
+  EXPECT_EQ(ValueOf(figures, "both right", "pairs plain", 3), 1.0 / 3.0);
+  EXPECT_EQ(ValueOf(figures, "both right, separable only", "pairs plain", 2), 0.5);
+  EXPECT_EQ(ValueOf(figures, "at least one right", "pairs plain", 3), 2.0 / 3.0);
+  EXPECT_EQ(ValueOf(figures, "at least one right, separable only", "pairs plain", 2), 1.0);
+  EXPECT_THAT(Misses(records), HasSubstr("17.9 apart from length, answered hand_eye"));
 }
 
 TEST(MatrixSummary, MissesNameTheRivalsOfWhatIsNotSeparable) {
