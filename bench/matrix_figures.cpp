@@ -100,7 +100,10 @@ class FigureMaker {
     for (const std::string& size : sizes) Pairs(size);
     LeaveOuts();
     Overall();
-    for (const std::string& size : sizes) Parameters(size);
+    for (const std::string& size : sizes) {
+      Parameters(size);
+      Deviations(size);
+    }
     return figures_;
   }
 
@@ -236,6 +239,21 @@ class FigureMaker {
     Add("within 3 sd", name, Mean(within), count, ">= 0.95");
     Add("median |error| / sd", name, Quantile(errors, 0.5), count, "0.67");
     Add("mean (error / sd)^2", name, Mean(squares), count, "1");
+  }
+
+  /// Stated standard deviations against the least there can be.
+  void Deviations(const std::string& size) {
+    std::vector<double> ratios, within;
+    for (const MatrixRecord& r : records_) {
+      if (r.made.size != size) continue;
+      for (const JudgedParameter& p : r.parameters)
+        if (p.bound > 0.0) ratios.push_back(p.sd / p.bound);
+    }
+    for (const double ratio : ratios) within.push_back(ratio >= 0.5 && ratio <= 2.0 ? 1.0 : 0.0);
+    const int count = static_cast<int>(ratios.size());
+    const std::string name = "singles and pairs " + size;
+    Add("sd over Cramer-Rao bound, median", name, Quantile(ratios, 0.5), count, "0.5 to 2");
+    Add("sd 0.5 to 2 times the bound", name, Mean(within), count);
   }
 
   const std::vector<MatrixRecord>& records_;

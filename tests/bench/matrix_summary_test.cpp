@@ -71,6 +71,20 @@ TEST(MatrixSummary, PairsCountTwiceToo) {
   EXPECT_THAT(Misses(records), HasSubstr("17.9 apart from length, answered hand_eye"));
 }
 
+TEST(MatrixSummary, DeviationsCountWhereABoundWasMeasured) {
+  std::vector<MatrixRecord> records = {Single("length", "length", 50.0),
+                                       Pair({"length", "stiffness"}, 50.0)};
+  for (const double sd : {0.4, 1.2})
+    records[0].parameters.push_back({"length", "delta_m", 0, 0.0, 0.0, sd, 1.0});
+  for (const double sd : {1.6, 6.0, 9.0})
+    records[1].parameters.push_back({"length", "delta_m", 0, 0.0, 0.0, sd, 2.0});
+  records[1].parameters.push_back({"length", "delta_m", 0, 0.0, 0.0, 7.0, 0.0});
+  const auto figures = Figures(records);  // 0.4, 0.8, 1.2, 3, 4.5
+  const std::string of = "singles and pairs plain";
+  EXPECT_DOUBLE_EQ(ValueOf(figures, "sd over Cramer-Rao bound, median", of, 5), 1.2);
+  EXPECT_DOUBLE_EQ(ValueOf(figures, "sd 0.5 to 2 times the bound", of, 5), 0.4);
+}
+
 TEST(MatrixSummary, MissesNameTheRivalsOfWhatIsNotSeparable) {
   EXPECT_THAT(Misses({Single("stiffness", "stiffness", 100.0)}), Not(HasSubstr("separable")));
   const std::string misses = Misses({Single("tag_offset", "tag_offset", 3.0)});
@@ -83,7 +97,7 @@ TEST(MatrixRecordFile, RoundTripIsExact) {
   MatrixRecord record = Single("stiffness", "length", 1.0 / 3.0);
   record.probabilities = {{{"length"}, 2.0 / 3.0}, {{"length", "stiffness"}, 0.1}};
   record.indistinguishable = {{"length", "port_offset"}};
-  record.parameters = {{"length", "delta_m", 0, 0.1, 1.0 / 7.0, 0.01}};
+  record.parameters = {{"length", "delta_m", 0, 0.1, 1.0 / 7.0, 0.01, 0.1 / 3.0}};
   record.made.seed = 1'234'567'890'123ULL;
   std::ofstream(file) << JsonLine(record) << "\n{\"cut o";
   const auto read = ReadRecords(file);
@@ -93,6 +107,7 @@ TEST(MatrixRecordFile, RoundTripIsExact) {
   EXPECT_EQ(read[0].separation, record.separation);
   EXPECT_EQ(read[0].probabilities, record.probabilities);
   EXPECT_EQ(read[0].parameters[0].value, record.parameters[0].value);
+  EXPECT_EQ(read[0].parameters[0].bound, record.parameters[0].bound);
   std::ofstream(file) << JsonLine(record) << "\n{}\n";
   EXPECT_THROW(ReadRecords(file), InputError);
   std::filesystem::remove(file);

@@ -1,7 +1,13 @@
-// The model with the label's parameters: what it names and what not.
+// The model with the label's parameters: what it names, what it could know at best.
 #include "bench/matrix_true_model.h"
 
 #include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "bench/matrix_bound.h"
+#include "diagnosis/linear_problem.h"
 
 namespace flextip {
 namespace {
@@ -39,6 +45,49 @@ TEST(TrueModel, KnowsWhatTheLabelNamesAndWhatNot) {
   EXPECT_GT(nuisance, 0);
   ASSERT_EQ(truth.present.size(), 1u);
   EXPECT_EQ(truth.layout.Blocks()[truth.present[0]].effect->Name(), "port_motion");
+}
+
+TEST(CramerRaoBound, IsTheInverseOfWhatDataAndPriorSay) {
+  Eigen::Matrix2d H;
+  H << 4.0, 2.0, 2.0, 4.0;
+  const Eigen::MatrixXd free = PosteriorCovariance(H, Eigen::Vector2d(1e5, 1e5));
+  EXPECT_NEAR(free(0, 0), 1.0 / 3.0, 1e-6);
+  EXPECT_NEAR(free(0, 1), -1.0 / 6.0, 1e-6);
+  const Eigen::MatrixXd held = PosteriorCovariance(H, Eigen::Vector2d(0.5, 1e-6));
+  EXPECT_NEAR(held(0, 0), 1.0 / (4.0 + 4.0), 1e-6);
+  EXPECT_NEAR(held(1, 1), 1e-12, 1e-15);
+}
+
+double BoundOn(const HiddenRecording& hidden, const std::string& effect) {
+  TrueModel truth(hidden.recording, hidden);
+  for (const EffectFit& bound : CramerRaoBounds(truth))
+    if (bound.effect == effect) return bound.parameters.at(0).sd.at(0);
+  ADD_FAILURE() << effect << " has no bound";
+  return 0.0;
+}
+
+/// Who must learn how the EM field is bent knows less of the length.
+TEST(CramerRaoBound, OfAPairIsLargerThanOfOneAlone) {
+  HiddenRecording hidden = Hidden("length", EffectSize::kPlain);
+  const double alone = BoundOn(hidden, "length");
+  hidden.label.present = {"em_distortion", "length"};
+  EXPECT_GT(BoundOn(hidden, "length"), 1.01 * alone);
+  EXPECT_GT(alone, 0.0);
+}
+
+/// Reported is the scale, fitted its logarithm.
+TEST(CramerRaoBound, IsInTheTermsOfTheReport) {
+  const HiddenRecording hidden = Hidden("stiffness", EffectSize::kStrong);
+  TrueModel truth(hidden.recording, hidden);
+  const auto bounds = CramerRaoBounds(truth);
+  const double scale = hidden.label.parameters.at("stiffness").at("scale").at(0);
+  ASSERT_EQ(bounds.size(), 1u);
+  EXPECT_NEAR(bounds[0].parameters.at(0).value.at(0), scale, 1e-12);
+  const Eigen::MatrixXd C =
+      PosteriorCovariance(MakeLinearProblem(truth.replay, {}, 1).total.H,
+                          truth.layout.Widened({truth.layout.Find("stiffness")}, {3.0}));
+  const int j = truth.layout.Blocks()[truth.layout.Find("stiffness")].first;
+  EXPECT_NEAR(bounds[0].parameters.at(0).sd.at(0), scale * std::sqrt(C(j, j)), 1e-12);
 }
 
 }  // namespace
