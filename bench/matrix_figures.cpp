@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace flextip {
 namespace {
@@ -217,6 +218,12 @@ class FigureMaker {
     Add("held-out error, extended over base", "median", Quantile(ratios, 0.5), gained);
     Add("held-out error of extended, noise sd", "median",
         Quantile(Each(gained, [](auto& r) { return r.extended_weighted_rms; }), 0.5), gained);
+    Group beside_truth = main;
+    std::erase_if(beside_truth, [](auto* r) { return r->heldout_over_true <= 0.0; });
+    const auto over_true = Each(beside_truth, [](auto& r) { return r.heldout_over_true; });
+    for (const auto& [part, name] : {std::pair(0.5, "median"), std::pair(0.9, "90 %")})
+      Add("held-out error, extended over true", name, Quantile(over_true, part), beside_truth,
+          "<= 1.05");
     const auto seconds = Each(main, [](auto& r) { return r.seconds; });
     Add("seconds", "median", Quantile(seconds, 0.5), main, "<= 5");
     Add("seconds", "95 %", Quantile(seconds, 0.95), main, "<= 5");

@@ -46,6 +46,7 @@ struct MatrixRecord {
   bool gain_measured = false;
   double heldout_error_ratio = 1.0, tip_error_ratio = 1.0;  ///< extended over base
   double extended_weighted_rms = 0.0;                       ///< held out, in noise sd
+  double heldout_over_true = 0.0;  ///< the same over that of the true model; 0: not measured
   double base_chi2_per_dof = 0.0, extended_chi2_per_dof = 0.0;
   int fits = 0;
   bool converged = false;

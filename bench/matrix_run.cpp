@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "bench/matrix_bound.h"
+#include "bench/matrix_heldout.h"
 #include "bench/matrix_parameters.h"
 #include "bench/matrix_separable.h"
 #include "core/error.h"
@@ -61,7 +62,8 @@ void SetLabel(const HiddenRecording& hidden, MatrixRecord& record) {
 
 bool IsFinite(const MatrixRecord& r) {
   double sum = r.separation + r.p_verdict + r.p_truth + r.heldout_error_ratio + r.tip_error_ratio +
-               r.extended_weighted_rms + r.base_chi2_per_dof + r.extended_chi2_per_dof;
+               r.extended_weighted_rms + r.heldout_over_true + r.base_chi2_per_dof +
+               r.extended_chi2_per_dof;
   for (const auto& [names, probability] : r.probabilities) sum += probability;
   for (const JudgedParameter& p : r.parameters) sum += p.truth + p.value + p.sd + p.bound;
   return std::isfinite(sum);
@@ -102,8 +104,11 @@ void SetSeparation(TrueModel& truth, MatrixRecord& record) {
 }
 
 /// How near the right answer comes to what anyone could say of the recording.
-void SetAgainstTruth(TrueModel& truth, MatrixRecord& record) {
+void SetAgainstTruth(TrueModel& truth, const DiagnosisResult& result, MatrixRecord& record) {
   SetBounds(CramerRaoBounds(truth), record.parameters);
+  if (!result.gain.measured) return;
+  const double error = TrueHeldOutError(truth, result.noise_scale);
+  if (error > 0.0) record.heldout_over_true = result.extended.weighted_rms / error;
 }
 
 MatrixRecord Judge(const Recording& recording, const HiddenRecording& hidden,
@@ -124,7 +129,7 @@ MatrixRecord Judge(const Recording& recording, const HiddenRecording& hidden,
   if (!record.made.without.empty()) record.label = {"unknown"};
   SetResult(result, record);
   record.parameters = JudgeParameters(hidden, result);
-  if (truth && record.IsRight()) SetAgainstTruth(*truth, record);
+  if (truth && record.IsRight()) SetAgainstTruth(*truth, result, record);
   if (!IsFinite(record)) throw WorkError("the result holds a number that is not finite");
   return record;
 }

@@ -85,6 +85,16 @@ TEST(MatrixSummary, DeviationsCountWhereABoundWasMeasured) {
   EXPECT_DOUBLE_EQ(ValueOf(figures, "sd 0.5 to 2 times the bound", of, 5), 0.4);
 }
 
+TEST(MatrixSummary, HeldOutErrorsAreHeldAgainstTheTrueModelWhereItWasMeasured) {
+  std::vector<MatrixRecord> records(4, Single("length", "length", 50.0));
+  records[0].heldout_over_true = 1.2;
+  records[1].heldout_over_true = 0.99;
+  records[2].heldout_over_true = 1.0;
+  const auto figures = Figures(records);
+  EXPECT_DOUBLE_EQ(ValueOf(figures, "held-out error, extended over true", "median", 3), 1.0);
+  EXPECT_DOUBLE_EQ(ValueOf(figures, "held-out error, extended over true", "90 %", 3), 1.16);
+}
+
 TEST(MatrixSummary, MissesNameTheRivalsOfWhatIsNotSeparable) {
   EXPECT_THAT(Misses({Single("stiffness", "stiffness", 100.0)}), Not(HasSubstr("separable")));
   const std::string misses = Misses({Single("tag_offset", "tag_offset", 3.0)});
@@ -98,6 +108,7 @@ TEST(MatrixRecordFile, RoundTripIsExact) {
   record.probabilities = {{{"length"}, 2.0 / 3.0}, {{"length", "stiffness"}, 0.1}};
   record.indistinguishable = {{"length", "port_offset"}};
   record.parameters = {{"length", "delta_m", 0, 0.1, 1.0 / 7.0, 0.01, 0.1 / 3.0}};
+  record.heldout_over_true = 1.0 / 9.0;
   record.made.seed = 1'234'567'890'123ULL;
   std::ofstream(file) << JsonLine(record) << "\n{\"cut o";
   const auto read = ReadRecords(file);
@@ -108,6 +119,7 @@ TEST(MatrixRecordFile, RoundTripIsExact) {
   EXPECT_EQ(read[0].probabilities, record.probabilities);
   EXPECT_EQ(read[0].parameters[0].value, record.parameters[0].value);
   EXPECT_EQ(read[0].parameters[0].bound, record.parameters[0].bound);
+  EXPECT_EQ(read[0].heldout_over_true, record.heldout_over_true);
   std::ofstream(file) << JsonLine(record) << "\n{}\n";
   EXPECT_THROW(ReadRecords(file), InputError);
   std::filesystem::remove(file);

@@ -1,4 +1,4 @@
-// The model with the label's parameters: what it names, what it could know at best.
+// The model with the label's parameters: what it names, what it could know at best, what it leaves.
 #include "bench/matrix_true_model.h"
 
 #include <gtest/gtest.h>
@@ -7,10 +7,17 @@
 #include <cmath>
 
 #include "bench/matrix_bound.h"
+#include "bench/matrix_heldout.h"
 #include "diagnosis/linear_problem.h"
 
 namespace flextip {
 namespace {
+
+std::array<double, kChannelCount> StatedNoise() {
+  std::array<double, kChannelCount> scale;
+  scale.fill(1.0);
+  return scale;
+}
 
 HiddenRecording Hidden(const std::string& effect, EffectSize size, bool with_load = true) {
   HiddenOptions options;
@@ -88,6 +95,60 @@ TEST(CramerRaoBound, IsInTheTermsOfTheReport) {
                           truth.layout.Widened({truth.layout.Find("stiffness")}, {3.0}));
   const int j = truth.layout.Blocks()[truth.layout.Find("stiffness")].first;
   EXPECT_NEAR(bounds[0].parameters.at(0).sd.at(0), scale * std::sqrt(C(j, j)), 1e-12);
+}
+
+TEST(TrueHeldOut, FitsOnlyWhatIsFree) {
+  Eigen::Matrix2d X;
+  X << 1.0, 0.0, 1.0, 2.0;
+  const Eigen::Vector2d z(1.0, 7.0);
+  NormalSums sums(2);
+  sums.H = X.transpose() * X;
+  sums.g = X.transpose() * z;
+  const Eigen::VectorXd wide = Eigen::VectorXd::Constant(2, 1e6);
+  // The first stays 3, so the second explains 7 - 3 by 2 x.
+  const Eigen::VectorXd fitted = FitFree(sums, {1}, wide, Eigen::Vector2d(3.0, 100.0));
+  EXPECT_EQ(fitted[0], 3.0);
+  EXPECT_NEAR(fitted[1], 2.0, 1e-6);
+  const Eigen::VectorXd narrow = FitFree(sums, {1}, 0.5 * Eigen::Vector2d::Ones(), fitted);
+  EXPECT_NEAR(narrow[1], 2.0 * 4.0 / (4.0 + 4.0), 1e-9);
+  EXPECT_EQ(FitFree(sums, {}, wide, fitted), fitted);
+}
+
+/// Of all rows, with parameters as the replay has them, in standard deviations.
+double WeightedRms(const Replay& replay) {
+  const auto residuals = replay.ForceFreeResiduals();
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    const Rows sd = replay.RowNoise(k);
+    for (int r = 0; r < row::kCount; ++r) {
+      if (!replay.Set().samples[k].present[r]) continue;
+      sum += std::pow(residuals[k][r] / sd[r], 2);
+      count += 1.0;
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+TEST(TrueHeldOut, TheTrueModelLeavesNoiseAndTheBaseDoesNot) {
+  const HiddenRecording hidden = Hidden("length", EffectSize::kPlain, false);
+  TrueModel truth(hidden.recording, hidden);
+  const double error = TrueHeldOutError(truth, StatedNoise());
+  EXPECT_GT(error, 0.8);  // unknown forces take up some of the noise
+  EXPECT_LT(error, 1.05);
+  truth.replay.Evaluate(Eigen::VectorXd::Zero(truth.layout.Size()));
+  EXPECT_GT(WeightedRms(truth.replay), 2.0 * error);
+  auto doubled = StatedNoise();
+  for (double& scale : doubled) scale = 2.0;
+  EXPECT_LT(TrueHeldOutError(truth, doubled), 0.6 * error);
+}
+
+/// A breath is no pure sine, and the label says nothing of its overtone.
+TEST(TrueHeldOut, WhatTheLabelDoesNotNameIsFitted) {
+  const HiddenRecording hidden = Hidden("port_motion", EffectSize::kStrong);
+  TrueModel truth(hidden.recording, hidden);
+  const double error = TrueHeldOutError(truth, StatedNoise());
+  ASSERT_TRUE(truth.StandAtTruth());
+  EXPECT_GT(WeightedRms(truth.replay), 1.2 * error);
 }
 
 }  // namespace
