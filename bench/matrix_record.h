@@ -18,7 +18,9 @@ struct JudgedParameter {
   std::string effect, parameter;
   int entry = 0;
   double truth = 0.0, value = 0.0, sd = 0.0;
-  double bound = 0.0;  ///< on sd (matrix_bound.h); 0 where not measured: the verdict was wrong
+  /// On sd (matrix_bound.h). 0 where not measured as the verdict was wrong, or where the number
+  /// does not change to first order (an axis along itself).
+  double bound = 0.0;
 };
 
 struct MatrixRecord {

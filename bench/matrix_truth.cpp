@@ -7,16 +7,26 @@
 namespace flextip {
 namespace {
 
-/// An effect's reported numbers by the label, with `unnamed` for each that it does not name.
-std::vector<std::vector<double>> ReportedTruth(const ParameterLayout::Block& block,
-                                               const EffectParameters& truth, double unnamed) {
-  std::vector<std::vector<double>> values;
-  for (const ReportedParameter& parameter : block.effect->Report(
-           Eigen::VectorXd::Zero(block.size), Eigen::MatrixXd::Identity(block.size, block.size))) {
+using Values = std::vector<std::vector<double>>;
+
+/// An effect's reported parameters: what `truth` does not name is zero.
+Values ReportedTruth(const std::vector<ReportedParameter>& reported,
+                     const EffectParameters& truth) {
+  Values values;
+  for (const ReportedParameter& parameter : reported) {
     const auto found = truth.find(parameter.name);
-    values.push_back(found == truth.end() ? std::vector<double>(parameter.value.size(), unnamed)
+    values.push_back(found == truth.end() ? std::vector<double>(parameter.value.size(), 0.0)
                                           : found->second);
   }
+  return values;
+}
+
+/// The same with each number changed that `label` does not name.
+Values WithOthersChanged(Values values, const std::vector<ReportedParameter>& reported,
+                         const EffectParameters& label) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (double& value : values[i])
+      if (!label.contains(reported[i].name)) value += 1.0;
   return values;
 }
 
@@ -36,14 +46,21 @@ TrueParameters TrueTheta(const HiddenRecording& hidden, ParameterLayout& layout)
   TrueParameters all{Eigen::VectorXd::Zero(layout.Size()), {}};
   for (int b = 0; b < static_cast<int>(layout.Blocks().size()); ++b) {
     const auto& block = layout.Blocks()[b];
-    EffectParameters truth;
-    if (!block.nuisance) truth = TruthOf(hidden, block.effect->Name());
+    EffectParameters truth, label;
+    if (!block.nuisance) {
+      truth = TruthOf(hidden, block.effect->Name());
+      label = hidden.label.parameters.at(block.effect->Name());
+    }
     if (block.effect->Name() == "port_motion") {
       static_cast<PortMotion&>(layout.MutableEffect(b))
           .SetFrequency(truth.at("frequency_hz").at(0));
     }
-    const Eigen::VectorXd theta = block.effect->FromReported(ReportedTruth(block, truth, 0.0));
-    const Eigen::VectorXd other = block.effect->FromReported(ReportedTruth(block, truth, 1.0));
+    const auto reported = block.effect->Report(Eigen::VectorXd::Zero(block.size),
+                                               Eigen::MatrixXd::Identity(block.size, block.size));
+    const Values values = ReportedTruth(reported, truth);
+    const Eigen::VectorXd theta = block.effect->FromReported(values);
+    const Eigen::VectorXd other =
+        block.effect->FromReported(WithOthersChanged(values, reported, label));
     all.theta.segment(block.first, block.size) = theta;
     for (int j = 0; j < block.size; ++j)
       if (other[j] != theta[j]) all.unnamed.push_back(block.first + j);

@@ -15,11 +15,11 @@ EffectParameters TruthOf(const HiddenRecording& hidden, const std::string& effec
 
 /// The label as a point of the diagnosis's parameters.
 struct TrueParameters {
-  /// Of all effects, present or within tolerance; what the label does not name is zero.
+  /// Of all effects, present or within tolerance; what TruthOf does not name is zero.
   Eigen::VectorXd theta;
   /// Indices of `theta` that the label does not name: the registration, the mean of an unknown
   /// force, and what effects fit beside what they are named after (a breath's overtone, where the
-  /// play began, where the EM bias is zero).
+  /// play began, where the EM bias is zero, the turn beside a focal length).
   std::vector<int> unnamed;
 };
 
