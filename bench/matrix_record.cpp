@@ -14,14 +14,15 @@ namespace flextip {
 // Every member under its own name.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MatrixCase, part, effects, drawn, size, load, left_out, without,
                                    family, duration_s, index, seed)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedParameter, effect, parameter, entry, truth, value, sd)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedParameter, effect, parameter, entry, truth, value, sd,
+                                   bound)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MatrixRecord, made, key, motion, load, attempt, label, form,
                                    separation, rival, error, verdict, probabilities, p_verdict,
                                    p_truth, truth_in_credible_set, credible_set_size,
                                    indistinguishable, full_verdict, full_indistinguishable,
                                    parameters, gain_measured, heldout_error_ratio, tip_error_ratio,
-                                   extended_weighted_rms, base_chi2_per_dof, extended_chi2_per_dof,
-                                   fits, converged, seconds, warnings)
+                                   extended_weighted_rms, heldout_over_true, base_chi2_per_dof,
+                                   extended_chi2_per_dof, fits, converged, seconds, warnings)
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/matrix_case.h"
-#include "bench/matrix_separable.h"
+#include "bench/matrix_rival.h"
 
 namespace flextip {
 
@@ -18,6 +18,9 @@ struct JudgedParameter {
   std::string effect, parameter;
   int entry = 0;
   double truth = 0.0, value = 0.0, sd = 0.0;
+  /// On sd (matrix_bound.h). 0 where not measured as the verdict was wrong, or where the number
+  /// does not change to first order (an axis along itself).
+  double bound = 0.0;
 };
 
 struct MatrixRecord {
@@ -27,7 +30,7 @@ struct MatrixRecord {
   int attempt = 0;           ///< draws that had no equilibrium
   EffectNames label;         ///< right answer, sorted: effects, or none, or unknown
   std::string form;          ///< where unknown: which
-  /// Of a single effect from its nearest rival (matrix_separable.h), which is an effect or none.
+  /// Of a single effect or a pair from its nearest rival (matrix_rival.h).
   double separation = 0.0;
   std::string rival;  ///< empty where that was not measured
   std::string error;  ///< a refusal's message; what follows is empty then
@@ -45,6 +48,7 @@ struct MatrixRecord {
   bool gain_measured = false;
   double heldout_error_ratio = 1.0, tip_error_ratio = 1.0;  ///< extended over base
   double extended_weighted_rms = 0.0;                       ///< held out, in noise sd
+  double heldout_over_true = 0.0;  ///< the same over that of the true model; 0: not measured
   double base_chi2_per_dof = 0.0, extended_chi2_per_dof = 0.0;
   int fits = 0;
   bool converged = false;
@@ -52,7 +56,7 @@ struct MatrixRecord {
   EffectNames warnings;
 
   bool IsRight() const { return verdict == label; }
-  /// One effect that the recording holds enough to tell.
+  /// One effect or two that the recording holds enough to tell.
   bool IsSeparable() const { return !rival.empty() && separation >= kSeparable; }
   /// Whether every effect of the label is in the verdict, or in a group declared indistinguishable
   /// from it.

@@ -7,10 +7,12 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <numbers>
+#include <optional>
 
+#include "bench/matrix_bound.h"
+#include "bench/matrix_heldout.h"
+#include "bench/matrix_parameters.h"
 #include "bench/matrix_separable.h"
-#include "bench/matrix_truth.h"
 #include "core/error.h"
 #include "diagnosis/diagnose.h"
 #include "recording/recording_reader.h"
@@ -60,49 +62,11 @@ void SetLabel(const HiddenRecording& hidden, MatrixRecord& record) {
 
 bool IsFinite(const MatrixRecord& r) {
   double sum = r.separation + r.p_verdict + r.p_truth + r.heldout_error_ratio + r.tip_error_ratio +
-               r.extended_weighted_rms + r.base_chi2_per_dof + r.extended_chi2_per_dof;
+               r.extended_weighted_rms + r.heldout_over_true + r.base_chi2_per_dof +
+               r.extended_chi2_per_dof;
   for (const auto& [names, probability] : r.probabilities) sum += probability;
-  for (const JudgedParameter& p : r.parameters) sum += p.truth + p.value + p.sd;
+  for (const JudgedParameter& p : r.parameters) sum += p.truth + p.value + p.sd + p.bound;
   return std::isfinite(sum);
-}
-
-/// As near to what was found as the same motion can be said.
-EffectParameters TruthNear(const HiddenRecording& hidden, const EffectFit& fit) {
-  EffectParameters truth = TruthOf(hidden, fit.effect);
-  truth.erase("turn");                // the label has none: not judged
-  if (fit.effect == "port_motion") {  // -a with phase + pi is the same motion
-    const auto& value = fit.parameters.at(0).value;
-    auto& amplitude = truth["amplitude_m"];
-    double product = 0.0;
-    for (int i = 0; i < 3; ++i) product += amplitude[i] * value.at(i);
-    if (product < 0) {
-      for (double& a : amplitude) a = -a;
-      truth["phase_rad"][0] += std::numbers::pi;
-    }
-  }
-  return truth;
-}
-
-void JudgeParameters(const HiddenRecording& hidden, const DiagnosisResult& result,
-                     MatrixRecord& record) {
-  for (const EffectFit& fit : result.parameters) {
-    const auto& present = hidden.label.present;
-    if (std::find(present.begin(), present.end(), fit.effect) == present.end()) continue;
-    EffectParameters truth = TruthNear(hidden, fit);
-    for (const ReportedParameter& parameter : fit.parameters) {
-      if (!truth.contains(parameter.name)) continue;
-      const std::vector<double>& values = truth.at(parameter.name);
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        const double value = parameter.value.at(i);
-        double expected = values[i];
-        if (parameter.name == "phase_rad") {
-          expected = value + std::remainder(expected - value, 2.0 * std::numbers::pi);
-        }
-        record.parameters.push_back(
-            {fit.effect, parameter.name, static_cast<int>(i), expected, value, parameter.sd.at(i)});
-      }
-    }
-  }
 }
 
 void SetProbabilities(const DiagnosisResult& result, MatrixRecord& record) {
@@ -133,14 +97,22 @@ void SetResult(const DiagnosisResult& result, MatrixRecord& record) {
   record.warnings = result.warnings;
 }
 
-void SetSeparation(const Recording& recording, const HiddenRecording& hidden,
-                   MatrixRecord& record) {
-  const Separation separation = MeasureSeparation(recording, hidden);
+void SetSeparation(TrueModel& truth, MatrixRecord& record) {
+  const Separation separation = MeasureSeparation(truth);
   record.separation = separation.value;
   record.rival = separation.rival;
 }
 
-MatrixRecord Judge(const Recording& recording, const HiddenRecording& hidden, MatrixRecord record) {
+/// How near the right answer comes to what anyone could say of the recording.
+void SetAgainstTruth(TrueModel& truth, const DiagnosisResult& result, MatrixRecord& record) {
+  SetBounds(CramerRaoBounds(truth), record.parameters);
+  if (!result.gain.measured) return;
+  const double error = TrueHeldOutError(truth, result.noise_scale);
+  if (error > 0.0) record.heldout_over_true = result.extended.weighted_rms / error;
+}
+
+MatrixRecord Judge(const Recording& recording, const HiddenRecording& hidden,
+                   std::optional<TrueModel>& truth, MatrixRecord record) {
   const std::string name = "recording";
   DiagnoseOptions options;
   if (!record.made.without.empty()) {
@@ -156,7 +128,8 @@ MatrixRecord Judge(const Recording& recording, const HiddenRecording& hidden, Ma
   record.seconds = seconds.count();
   if (!record.made.without.empty()) record.label = {"unknown"};
   SetResult(result, record);
-  JudgeParameters(hidden, result, record);
+  record.parameters = JudgeParameters(hidden, result);
+  if (truth && record.IsRight()) SetAgainstTruth(*truth, result, record);
   if (!IsFinite(record)) throw WorkError("the result holds a number that is not finite");
   return record;
 }
@@ -173,8 +146,12 @@ MatrixRecord RunMatrixCase(const MatrixCase& one) {
     const TemporaryFolder folder;
     WriteHidden(folder.Path(), hidden);
     const Recording recording = ReadRecording(folder.Path()).recording;
-    if (one.part == "singles") SetSeparation(recording, hidden, record);
-    record = Judge(recording, hidden, record);
+    std::optional<TrueModel> truth;
+    if (one.part == "singles" || one.part == "pairs") {
+      truth.emplace(recording, hidden);
+      SetSeparation(*truth, record);
+    }
+    record = Judge(recording, hidden, truth, record);
   } catch (const InputError& error) {
     record.error = error.what();
   } catch (const WorkError& error) {

@@ -1,23 +1,12 @@
-// The matrix in figures: how often the diagnosis is right, how sure it is, how good its numbers.
+// The matrix in words and tables: figures, confusions and the list of misses.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "bench/matrix_record.h"
+#include "bench/matrix_figures.h"
 
 namespace flextip {
-
-/// One figure over a group of cases.
-struct MatrixFigure {
-  std::string figure, group;
-  double value = 0.0;
-  int of = 0;  ///< so many cases (or numbers) it is a figure of
-  std::string target;
-};
-
-/// In the order of printing; figures without cases are left out.
-std::vector<MatrixFigure> Figures(const std::vector<MatrixRecord>& records);
 
 std::string FigureTable(const std::vector<MatrixFigure>& figures);
 

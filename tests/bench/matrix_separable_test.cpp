@@ -9,42 +9,46 @@
 namespace flextip {
 namespace {
 
-HiddenRecording Hidden(const std::string& effect, EffectSize size, LoadKind load) {
+using Names = std::vector<std::string>;
+
+HiddenRecording Hidden(const Names& effects, EffectSize size, LoadKind load,
+                       double duration_s = 6.0) {
   HiddenOptions options;
-  options.effects = {effect};
+  options.effects = effects;
   options.size = size;
   options.scene.load = load;
-  options.scene.duration_s = 6.0;
+  options.scene.duration_s = duration_s;
   options.links_per_side = 30;
   return MakeHidden(options, 31);
 }
 
 Separation SeparationOf(const HiddenRecording& hidden) {
-  return MeasureSeparation(hidden.recording, hidden);
+  TrueModel truth(hidden.recording, hidden);
+  return MeasureSeparation(truth);
 }
 
 TEST(MatrixSeparable, AYieldingTipThatCarriesNothingDoesNotShow) {
   const Separation nothing =
-      SeparationOf(Hidden("tip_compliance", EffectSize::kPlain, LoadKind::kNone));
+      SeparationOf(Hidden({"tip_compliance"}, EffectSize::kPlain, LoadKind::kNone));
   EXPECT_NEAR(nothing.value, 0.0, 1.0);
   EXPECT_EQ(nothing.rival, "none");
-  EXPECT_GT(SeparationOf(Hidden("tip_compliance", EffectSize::kStrong, LoadKind::kVarying)).value,
+  EXPECT_GT(SeparationOf(Hidden({"tip_compliance"}, EffectSize::kStrong, LoadKind::kVarying)).value,
             kSeparable);
 }
 
 /// A known force that never changes moves the tip like one of the sensors' frames.
 TEST(MatrixSeparable, AYieldingTipUnderAConstantForceHasRivals) {
   const Separation separation =
-      SeparationOf(Hidden("tip_compliance", EffectSize::kStrong, LoadKind::kHungMass));
+      SeparationOf(Hidden({"tip_compliance"}, EffectSize::kStrong, LoadKind::kHungMass));
   EXPECT_LT(separation.value, kSeparable);
   EXPECT_NE(separation.rival, "none");
 }
 
 TEST(MatrixSeparable, ALargerEffectIsFurtherFromItsRivals) {
   const Separation subtle =
-      SeparationOf(Hidden("em_latency", EffectSize::kSubtle, LoadKind::kNone));
+      SeparationOf(Hidden({"em_latency"}, EffectSize::kSubtle, LoadKind::kNone));
   const Separation strong =
-      SeparationOf(Hidden("em_latency", EffectSize::kStrong, LoadKind::kNone));
+      SeparationOf(Hidden({"em_latency"}, EffectSize::kStrong, LoadKind::kNone));
   EXPECT_GT(strong.value, subtle.value);
   EXPECT_GT(strong.value, kSeparable);
 }
@@ -62,13 +66,35 @@ TEST(MatrixSeparable, IsWithinWhatTheBaseLeaves) {
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay base(samples, layout);
   ASSERT_TRUE(base.Evaluate(Eigen::VectorXd::Zero(layout.Size())));
-  const double separation = MeasureSeparation(hidden.recording, hidden).value;
+  const double separation = SeparationOf(hidden).value;
   EXPECT_GT(separation, 0.0);
   EXPECT_LT(separation, base.Whiten().e.squaredNorm());
 }
 
+/// A tip that carries nothing adds nothing to the latency; one that does, does.
+TEST(MatrixSeparable, APairNeedsBothOfItToShow) {
+  const auto pair = [](LoadKind load) {
+    return SeparationOf(Hidden({"tip_compliance", "em_latency"}, EffectSize::kStrong, load, 20.0));
+  };
+  const Separation nothing = pair(LoadKind::kNone), varying = pair(LoadKind::kVarying);
+  EXPECT_NEAR(nothing.value, 0.0, 1.0);
+  EXPECT_EQ(nothing.rival, "em_latency");
+  EXPECT_GT(varying.value, kSeparable);
+}
+
+/// Without the sensor, an effect of it is as if it were not there.
+TEST(MatrixSeparable, AnEffectOfNoSensorIsNotSeparable) {
+  HiddenRecording hidden = Hidden({"stiffness"}, EffectSize::kStrong, LoadKind::kVarying);
+  hidden.recording.em0.reset();
+  EXPECT_GT(SeparationOf(hidden).value, kSeparable);
+  hidden.label.present = {"stiffness", "em_latency"};
+  const Separation separation = SeparationOf(hidden);
+  EXPECT_EQ(separation.value, 0.0);
+  EXPECT_EQ(separation.rival, "stiffness");
+}
+
 TEST(MatrixTruth, IsInTheTermsOfTheReport) {
-  const HiddenRecording hidden = Hidden("self_weight", EffectSize::kPlain, LoadKind::kNone);
+  const HiddenRecording hidden = Hidden({"self_weight"}, EffectSize::kPlain, LoadKind::kNone);
   EXPECT_EQ(TruthOf(hidden, "self_weight").at("mass_per_length_kg_m").at(0),
             hidden.label.parameters.at("self_weight").at("mass_per_length_kg_m").at(0) +
                 hidden.recording.instrument.mass_per_length_kg_m);
