@@ -10,7 +10,7 @@ namespace flextip {
 
 struct SelectionOptions {
   int blocks = 20;                  ///< of time, for bagging and held-out parts
-  double discrepancy = 0.04;        ///< what a right form may miss of its effect's signal, relative
+  double discrepancy = 0.06;        ///< what a right form may miss of its effect's signal, relative
   double first_discrepancy = 0.15;  ///< while linearised far from the answer
   double least_discrepancy = 0.1;   ///< of the noise
   double prior_none = 0.5, prior_singles = 0.33, prior_pairs = 0.08, prior_unknown = 0.05;
