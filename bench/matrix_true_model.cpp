@@ -25,7 +25,7 @@ bool TrueModel::StandAtTruth() {
   stated.fill(1.0);
   replay.SetNoiseScale(stated);
   if (!replay.Evaluate(parameters.theta)) return false;
-  replay.AdaptForcePrior();
+  replay.FixNoiseModel();
   return true;
 }
 

@@ -20,7 +20,7 @@ class TrueModel {
   TrueModel& operator=(const TrueModel&) = delete;
 
   /// Has the replay stand at the label's parameters, with the stated noise and with what else a
-  /// replay sets from where it stands (Replay::AdaptForcePrior). False where the model has no
+  /// replay sets from where it stands (Replay::FixNoiseModel). False where the model has no
   /// equilibrium there.
   bool StandAtTruth();
 

@@ -5,7 +5,7 @@
 // shaft, could then explain the tip's noise. It is taken for the compliances, which scale what a
 // force does, against the same model without them.
 //
-// Nothing for a known load: its noise enters all hypotheses alike (Replay::AdaptForcePrior).
+// Nothing for a known load: its noise enters all hypotheses alike (Replay::FixNoiseModel).
 #pragma once
 
 #include "diagnosis/replay.h"

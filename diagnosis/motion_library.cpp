@@ -13,6 +13,8 @@ namespace flextip {
 namespace {
 
 constexpr double kSeconds = 20.0, kRate_hz = 12.5;
+// What may hang from an instrument, however stiff it is; a slender one carries a part of EI / L^2.
+constexpr double kSmallMost_N = 2.0, kLargeMost_N = 6.0;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 /// Where the straight shaft would point: inserted part of its length, and two angles about the
@@ -63,7 +65,7 @@ std::vector<Path> Paths() {
 
 struct Condition {
   std::string text;
-  double load_units = 0.0;  ///< force hung from the tip, in EI / L^2
+  double load_N = 0.0;  ///< force hung from the tip
   bool roll = false;
 };
 
@@ -81,12 +83,10 @@ DiagnosisSample SampleAt(const SampleSet& recorded, const Path& path, const Cond
   const double roll = condition.roll ? kTwoPi * u : 0.0;
   sample.y_wrist = ExpRotation(roll * d) * R_mean.col(1);
   for (const auto& other : recorded.samples) sample.present |= other.present;
-  const double unit_N =
-      recorded.instrument.bending_stiffness_Nm2 / std::pow(recorded.instrument.length_m, 2);
   const Eigen::Vector3d down = recorded.gravity_m_s2.norm() > 0.0
                                    ? Eigen::Vector3d(recorded.gravity_m_s2.normalized())
                                    : Eigen::Vector3d(R_mean.col(2));
-  sample.f_tip_N = condition.load_units * unit_N * down;
+  sample.f_tip_N = condition.load_N * down;
   sample.dt_em_s = sample.dt_strain_s = sample.dt_tip_s = sample.dt_port_s = 0.0;
   if (recorded.has_tip && !sample.p_RE_covariance_m2.diagonal().all()) {
     for (const auto& other : recorded.samples)
@@ -106,14 +106,16 @@ std::vector<ImaginedMotion> MotionLibrary(const SampleSet& recorded) {
   R_mean.rightCols<2>() = NormalBasis(mean);
   const double unit_N =
       recorded.instrument.bending_stiffness_Nm2 / std::pow(recorded.instrument.length_m, 2);
+  const double small_N = std::min(kSmallMost_N, 0.4 * unit_N);
+  const double large_N = std::min(kLargeMost_N, 1.2 * unit_N);
   const std::vector<Condition> conditions = {
       {"with nothing at the tip", 0.0, false},
-      {fmt::format("with {:.2g} N hung from the tip", 0.4 * unit_N), 0.4, false},
-      {fmt::format("with {:.2g} N hung from the tip", 1.2 * unit_N), 1.2, false},
+      {fmt::format("with {:.2g} N hung from the tip", small_N), small_N, false},
+      {fmt::format("with {:.2g} N hung from the tip", large_N), large_N, false},
       {fmt::format(
            "with {:.2g} N hung from the tip and a full turn of the instrument about its axis",
-           0.4 * unit_N),
-       0.4, true}};
+           small_N),
+       small_N, true}};
   std::vector<ImaginedMotion> motions;
   for (const Path& path : Paths()) {
     for (const Condition& condition : conditions) {
@@ -121,7 +123,7 @@ std::vector<ImaginedMotion> MotionLibrary(const SampleSet& recorded) {
       motion.samples.samples.clear();
       motion.samples.period_s = 1.0 / kRate_hz;
       motion.samples.resolved_in_time = true;
-      motion.samples.has_load = recorded.has_load || condition.load_units > 0.0;
+      motion.samples.has_load = recorded.has_load || condition.load_N > 0.0;
       for (int k = 0; k < int(kSeconds * kRate_hz); ++k)
         motion.samples.samples.push_back(SampleAt(recorded, path, condition, R_mean, k));
       motions.push_back(std::move(motion));

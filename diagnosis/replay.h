@@ -66,7 +66,7 @@ class Replay {
   /// Sets from where the replay stands, until the next call, what must be the same for all that is
   /// compared. Of an unknown force: how wide its prior along the shaft is, from how large the
   /// forces across it are. With a known load: how the noise of load and wrist enters the rows.
-  void AdaptForcePrior();
+  void FixNoiseModel();
 
   /// `sensors_used`: rows of absent sensors are left out, besides the absent ones.
   WhitenedRows Whiten(const std::bitset<row::kCount>& rows_used = AllRows()) const;
@@ -89,7 +89,7 @@ class Replay {
   /// around, without the noise of a sample's own force; or the sample's own, as differences have
   /// them.
   void TakeOwnDerivatives(bool own) { own_derivatives_ = own; }
-  /// Noise factors and what AdaptForcePrior set, as another replay of the same samples has them.
+  /// Noise factors and what FixNoiseModel set, as another replay of the same samples has them.
   void TakeSettings(const Replay& other);
 
   /// Standard deviation of each row's own noise in sample `k` (the diagonal).
@@ -114,7 +114,7 @@ class Replay {
   Eigen::Vector3d ShortStep(std::size_t k, const Eigen::Vector3d& step_N) const;
   void FitForce(std::size_t k, EffectRodSolver& solver);
   std::size_t NextAlike(std::size_t k, int step) const;
-  void MendForce(std::size_t k);
+  bool MendForce(std::size_t k);
   bool TryForce(std::size_t k, const Eigen::Vector3d& f_N, EffectRodSolver& solver);
   void CompareSamples();
   std::optional<std::size_t> FirstOfFive(std::size_t k) const;

@@ -14,10 +14,11 @@ constexpr double kAcrossPrior = 20.0;
 // Along the shaft, where the force hardly shows, narrow enough to keep it from running away.
 constexpr double kAlongOverAcross = 1.5, kLeastAlong = 0.05;
 constexpr double kMaxForceStep = 0.5;  // in the same units
-constexpr int kForceSteps = 15;
+constexpr int kForceSteps = 6;
 // Fall of the squared residual that is worth a step; the rest is taken off to first order.
 constexpr double kForceRest = 0.05;
-constexpr int kAlikeReach = 4;   // samples to look for one with the same sensors
+constexpr int kAlikeReach = 4;             // samples to look for one with the same sensors
+constexpr std::size_t kMendedAtMost = 20;  // one sample in so many
 constexpr double kBadFit = 3.0;  // against the neighbour's, that looks like a wrong minimum
 
 }  // namespace
@@ -89,14 +90,16 @@ std::size_t Replay::NextAlike(std::size_t k, int step) const {
 }
 
 /// Refits sample `k` from the force and the shape of one next to it where its own fit looks like a
-/// wrong minimum.
-void Replay::MendForce(std::size_t k) {
+/// wrong minimum; false where it does not.
+bool Replay::MendForce(std::size_t k) {
+  bool is_suspect = false;
   for (const int step : {-1, 1}) {
     const std::size_t next = NextAlike(k, step);
     const double rows = double(samples_.samples[k].present.count());
     if (next == k || (replayed_[k].ok &&
                       replayed_[k].force_merit < kBadFit * (replayed_[next].force_merit + rows)))
       continue;
+    is_suspect = true;
     const ReplayedSample own = replayed_[k];
     EffectRodSolver solver;
     SolveSample(samples_, next, replayed_[next].inputs, replayed_[next].f_tip_N, solver);
@@ -105,6 +108,7 @@ void Replay::MendForce(std::size_t k) {
     if (own.ok && (!replayed_[k].ok || own.force_merit < replayed_[k].force_merit))
       replayed_[k] = own;
   }
+  return is_suspect;
 }
 
 /// Samples that are not judged have the force of the nearest that is: how the shaft moves and
@@ -141,12 +145,14 @@ void Replay::FitForces() {
                                 : Eigen::Vector3d::Zero();
     }
   });
-  for (std::size_t k = 0; k < replayed_.size(); ++k)
-    if (samples_.samples[k].present.any()) MendForce(k);
+  // Where many look wrong it is the parameters that are: not worth the time.
+  std::size_t left = replayed_.size() / kMendedAtMost;
+  for (std::size_t k = 0; k < replayed_.size() && left > 0; ++k)
+    if (samples_.samples[k].present.any() && MendForce(k)) --left;
   BorrowForces();
 }
 
-void Replay::AdaptForcePrior() {
+void Replay::FixNoiseModel() {
   if (samples_.has_load) {
     input_noise_.clear();
     for (std::size_t k = 0; k < replayed_.size(); ++k) input_noise_.push_back(InputNoiseHere(k));

@@ -28,7 +28,7 @@ class Search {
 
   Selection Run() {
     replay_.Evaluate(Eigen::VectorXd::Zero(layout_.Size()));
-    replay_.AdaptForcePrior();
+    replay_.FixNoiseModel();
     base_ = PlaceOf(replay_);
     basis_ = GenericBasis(replay_);
     LinearProblem base = ProblemHere(replay_, basis_, options_);
@@ -66,7 +66,7 @@ class Search {
   void FixMeasure() {
     GoTo(replay_, layout_, best_.place);
     replay_.SetNoiseScale(NoiseScale(replay_));
-    replay_.AdaptForcePrior();
+    replay_.FixNoiseModel();
     basis_ = GenericBasis(replay_);
     const Hypothesis leader = best_.hypothesis;
     tried_.clear();
