@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/rotation.h"
 #include "diagnosis/outliers.h"
+#include "diagnosis/sample_streams.h"
 #include "diagnosis/smoothing.h"
 
 namespace flextip {
@@ -16,46 +17,6 @@ constexpr double kMaxRate_hz = 60.0;
 constexpr double kMinResolvedRate_hz = 5.0;
 constexpr double kLongestDelay_s = 0.25;
 constexpr double kStart_s = 0.3;
-
-/// The wrist's samples, thinned where they come faster than the diagnosis needs.
-std::vector<Sample<WristSample>> WristSamples(const WristStream& stream) {
-  const auto& all = stream.samples;
-  if (all.size() < 2) return all;
-  const double span_s = double(all.back().t_ns - all.front().t_ns) * 1e-9;
-  const double rate_hz = double(all.size() - 1) / span_s;
-  const auto stride = std::size_t(std::max(1.0, std::floor(rate_hz / (0.8 * kMaxRate_hz))));
-  std::vector<Sample<WristSample>> kept;
-  for (std::size_t i = 0; i < all.size(); i += stride) kept.push_back(all[i]);
-  return kept;
-}
-
-/// For each of `times` the index of the stream's sample nearest to it, within half a period; -1 for
-/// none. A sample belongs to one time only.
-template <class T>
-std::vector<long> Nearest(const Series<T>& series, const std::vector<TimeNs>& times,
-                          TimeNs half_period_ns) {
-  std::vector<long> nearest(times.size(), -1);
-  for (std::size_t j = 0; j < series.size(); ++j) {
-    const TimeNs t = series[j].t_ns;
-    const auto after = std::lower_bound(times.begin(), times.end(), t);
-    auto k = std::size_t(after - times.begin());
-    if (k == times.size() || (k > 0 && t - times[k - 1] < times[k] - t)) --k;
-    const TimeNs distance = std::abs(t - times[k]);
-    if (distance > half_period_ns) continue;
-    const long other = nearest[k];
-    if (other < 0 || distance < std::abs(series[other].t_ns - times[k])) nearest[k] = long(j);
-  }
-  return nearest;
-}
-
-/// Whether a value ever changes.
-template <class T, class Get>
-bool IsDead(const Series<T>& series, Get get) {
-  if (series.size() < 2) return false;
-  const auto first = get(series.front().value);
-  return std::all_of(series.begin(), series.end(),
-                     [&](const auto& s) { return get(s.value) == first; });
-}
 
 class Builder {
  public:
@@ -94,7 +55,7 @@ class Builder {
 
   void AddWrist() {
     const WristStream& stream = *recording_.wrist0;
-    const auto kept = WristSamples(stream);
+    const auto kept = Thinned(stream.samples, kMaxRate_hz);
     if (int(kept.size()) < kMinSamples) {
       throw InputError(fmt::format("{}: {} samples of the wrist, at least {} are needed to judge",
                                    name_, kept.size(), kMinSamples));
