@@ -25,7 +25,7 @@ namespace {
 struct Options {
   RecordingInput input;
   std::vector<std::string> without;
-  bool closed_loop = true, force = false;
+  bool no_closed_loop = false, force = false;
 };
 
 nlohmann::json Deviations(double max_m, double rms_m) {
@@ -69,6 +69,7 @@ void PrintAnswer(const DiagnosisResult& result, const Options& options) {
   if (result.gain.measured)
     fmt::print("; held-out error {:.2f} of the base's", result.gain.heldout_error_ratio);
   fmt::print("\n");
+  for (const std::string& warning : result.warnings) fmt::print("beware: {}\n", warning);
   if (!result.separating_motion.empty())
     fmt::print("to tell them apart: {}\n", result.separating_motion);
   fmt::print("{}\n", (options.input.out / "report.html").string());
@@ -93,7 +94,7 @@ void Run(const Options& options, bool quiet) {
   output.Warn(result.warnings);
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(DiagnosisJson(result));
   const ExtendedModel model = FromResult(result);
-  if (options.closed_loop && IsKnown(result)) AddClosedLoop(recording, model, output, json);
+  if (!options.no_closed_loop && IsKnown(result)) AddClosedLoop(recording, model, output, json);
   WriteTextFile(output.folder() / "diagnosis.json", json.dump(2) + "\n");
   WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result));
   WriteModel(output.folder() / "model.yaml", model);
@@ -117,7 +118,7 @@ void AddDiagnose(CLI::App& app, AppContext& context) {
       ->add_option("--without", options->without,
                    "Effects to leave out of the catalogue (once for each)")
       ->type_name("EFFECT");
-  command->add_flag("!--no-closed-loop", options->closed_loop,
+  command->add_flag("--no-closed-loop", options->no_closed_loop,
                     "Do not run the controllers with and without the model on a simulated plant "
                     "that has what was found");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");

@@ -17,6 +17,7 @@ constexpr double kMaxRate_hz = 60.0;
 constexpr double kMinResolvedRate_hz = 5.0;
 constexpr double kLongestDelay_s = 0.25;
 constexpr double kStart_s = 0.3;
+constexpr const char* kMoments[] = {"m1_y", "m1_z", "m2_y", "m2_z"};
 
 class Builder {
  public:
@@ -161,6 +162,13 @@ class Builder {
       Warn(fmt::format("strain0: {} of 4 gages always say the same: left out", dead.count()));
     }
     if (dead.all()) return;
+    for (int i = 0; i < 4; ++i) {
+      const double part =
+          PartAtLimit(strain.moments_Nm, [i](const Eigen::Vector4d& m) { return m[i]; });
+      if (part > 0.0 && !dead[i])
+        Warn(fmt::format("strain0: {} is at its limit in {:.0f} % of its readings", kMoments[i],
+                         100.0 * part));
+    }
     set_.has_strain = true;
     set_.noise.moment_Nm = strain.moment_noise_Nm;
     set_.strain_from_wrist_m = {strain.station_from_wrist_m[0], strain.station_from_wrist_m[1]};

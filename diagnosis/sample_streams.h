@@ -52,4 +52,21 @@ bool IsDead(const Series<T>& series, Get get) {
                      [&](const auto& s) { return get(s.value) == first; });
 }
 
+/// Which part of the readings says exactly the largest or the smallest value there is, where that
+/// is no coincidence: a sensor at its limit. Else zero.
+template <class T, class Get>
+double PartAtLimit(const Series<T>& series, Get get) {
+  constexpr double kCoincidence = 0.02;
+  if (series.empty()) return 0.0;
+  const auto [low, high] = std::minmax_element(
+      series.begin(), series.end(),
+      [&](const auto& a, const auto& b) { return get(a.value) < get(b.value); });
+  const double lowest = get(low->value), highest = get(high->value);
+  const auto count = std::count_if(series.begin(), series.end(), [&](const auto& s) {
+    return get(s.value) == lowest || get(s.value) == highest;
+  });
+  const double part = double(count) / double(series.size());
+  return count > 4 && part > kCoincidence ? part : 0.0;
+}
+
 }  // namespace flextip

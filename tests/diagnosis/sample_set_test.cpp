@@ -125,6 +125,17 @@ TEST_F(SampleSetTest, LeavesDeadSensorsOutWithAWarning) {
   }
 }
 
+TEST_F(SampleSetTest, SaysWhichGageIsAtItsLimit) {
+  auto& moments_Nm = recording_.strain0->moments_Nm;
+  const auto [low, high] = std::ranges::minmax_element(
+      moments_Nm, [](const auto& a, const auto& b) { return a.value[2] < b.value[2]; });
+  const double limit = 0.5 * (low->value[2] + high->value[2]);
+  for (auto& sample : moments_Nm) sample.value[2] = std::min(sample.value[2], limit);
+  const SampleSet set = MakeSampleSet(recording_, "folder");
+  EXPECT_THAT(set.warnings, ElementsAre(StartsWith("strain0: m2_y is at its limit in ")));
+  for (const DiagnosisSample& sample : set.samples) EXPECT_TRUE(sample.spoken[row::kStrain + 2]);
+}
+
 TEST_F(SampleSetTest, LeavesOutALoadThatCoversLessThanHalf) {
   recording_.load0->f_tip_N.resize(recording_.load0->f_tip_N.size() / 3);
   const SampleSet set = MakeSampleSet(recording_, "folder");
