@@ -114,7 +114,8 @@ void DescribeRecording(const Work& work, const Selection& selection, const Recor
   result.fits = selection.fits;
   result.converged = selection.converged;
   result.has_load = work.samples.has_load;
-  result.warnings = work.samples.warnings;
+  result.warnings.insert(result.warnings.begin(), work.samples.warnings.begin(),
+                         work.samples.warnings.end());
   result.noise_scale = work.extended.NoiseScales();
   result.centre_m = work.samples.centre;
   result.start_ns = recording.wrist0->samples.front().t_ns;
@@ -148,6 +149,11 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
   result.signatures = FindSignatures(work.base);
   const SelectionOptions selection_options;
   const Selection selection = Select(work.extended, work.layout, selection_options);
+  if (selection.far_samples > 0) {
+    result.warnings.push_back(
+        fmt::format("{} of {} samples are far from what any model says: left out",
+                    selection.far_samples, work.samples.samples.size()));
+  }
   const Probabilities probabilities = MakeProbabilities(selection, work.layout, selection_options);
   result.probabilities = probabilities.hypotheses;
   result.presence = probabilities.presence;

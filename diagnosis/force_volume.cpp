@@ -32,6 +32,7 @@ class Thinned {
     for (std::size_t k = 0; k < replay.Samples().size(); k += stride_)
       forces_N.push_back(replay.Samples()[k].f_tip_N);
     replay_.TakeSettings(replay);
+    replay_.LeaveOut({});
     replay_.SetForces(forces_N);
   }
 

@@ -113,7 +113,7 @@ std::optional<LinearProblem> MoveToTarget(Replay& replay, const Weighing& weighi
                                           const Eigen::MatrixXd& basis,
                                           const SelectionOptions& options) {
   const Eigen::VectorXd from = replay.Theta();
-  const auto forces_N = replay.Forces();
+  const Replay::State here = replay.Save();
   const double before = Merit(weighing.problem, from, weighing.prior_sd, weighing.generic_sd);
   for (double part = 1.0; part > 0.1; part *= 0.4) {
     const Eigen::VectorXd theta = from + part * (weighing.target - from);
@@ -122,8 +122,7 @@ std::optional<LinearProblem> MoveToTarget(Replay& replay, const Weighing& weighi
       LinearProblem there = ProblemHere(replay, basis, options);
       if (Merit(there, theta, weighing.prior_sd, weighing.generic_sd) < before) return there;
     }
-    replay.SetForces(forces_N);
-    replay.Evaluate(from);
+    replay.Restore(here);
   }
   return {};
 }

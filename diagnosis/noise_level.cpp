@@ -10,6 +10,8 @@ constexpr std::size_t kEnough = 60;           // differences
 constexpr double kMedianOfSquare = 0.454936;  // of a squared standard normal
 constexpr double kLeastMemory = 0.12;         // smaller coefficients are chance
 constexpr double kMostMemory = 0.85;
+constexpr double kFar = 10.0;     // mean square of a sample's rows over the median, or over noise
+constexpr double kFewFar = 0.01;  // of all samples
 
 double RobustVariance(std::vector<double> squares) {
   const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
@@ -65,6 +67,25 @@ std::array<double, kChannelCount> NoiseScale(const Replay& replay) {
     scale[c] = mean < 1.1 ? 1.0 : mean;
   }
   return scale;
+}
+
+std::vector<std::size_t> FarSamples(const Replay& replay) {
+  const WhitenedRows rows = replay.Whiten();
+  std::vector<double> mean_squares;
+  for (std::size_t k = 0; k + 1 < rows.first_row.size(); ++k) {
+    const double squares = rows.e.segment(rows.first_row[k], rows.Rows(k)).squaredNorm();
+    mean_squares.push_back(squares / std::max(1, rows.Rows(k)));
+  }
+  if (mean_squares.empty()) return {};
+  std::vector<double> sorted = mean_squares;
+  const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double limit = kFar * std::max(1.0, *middle);
+  std::vector<std::size_t> far;
+  for (std::size_t k = 0; k < mean_squares.size(); ++k)
+    if (mean_squares[k] > limit) far.push_back(k);
+  if (double(far.size()) > kFewFar * double(mean_squares.size())) far.clear();
+  return far;
 }
 
 }  // namespace flextip

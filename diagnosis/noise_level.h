@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "diagnosis/replay.h"
 
@@ -12,5 +13,10 @@ namespace flextip {
 /// and noise that remembers (AR(1) with coefficient phi), which tells a slow pattern from chance as
 /// noise sqrt((1 + phi) / (1 - phi)) times as large would.
 std::array<double, kChannelCount> NoiseScale(const Replay& replay);
+
+/// Samples that are far from what the replay explains, where these are few: a tip that snaps from
+/// one equilibrium to another between two readings, a value that no filter saw. None where they are
+/// many: then it is the model.
+std::vector<std::size_t> FarSamples(const Replay& replay);
 
 }  // namespace flextip

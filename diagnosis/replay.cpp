@@ -178,6 +178,12 @@ void Replay::TakeSettings(const Replay& other) {
   noise_scale_ = other.noise_scale_;
   along_prior_ = other.along_prior_;
   input_noise_ = other.input_noise_;
+  left_out_ = other.left_out_;
+}
+
+void Replay::LeaveOut(const std::vector<std::size_t>& samples) {
+  left_out_.assign(replayed_.size(), false);
+  for (const std::size_t k : samples) left_out_[k] = true;
 }
 
 /// What samples around `k` say, on the mean: with as many before as after it, without itself and

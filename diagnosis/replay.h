@@ -63,6 +63,19 @@ class Replay {
   std::vector<Eigen::Vector3d> Forces() const;
   void SetForces(const std::vector<Eigen::Vector3d>& forces_N);
 
+  /// Where the replay stands, to come back to without solving anything.
+  struct State {
+    Eigen::VectorXd theta;
+    std::vector<ReplayedSample> samples;
+    int failed = 0;
+  };
+  State Save() const { return {theta_, replayed_, failed_}; }
+  void Restore(const State& state) {
+    theta_ = state.theta;
+    replayed_ = state.samples;
+    failed_ = state.failed;
+  }
+
   /// Sets from where the replay stands, until the next call, what must be the same for all that is
   /// compared. Of an unknown force: how wide its prior along the shaft is, from how large the
   /// forces across it are. With a known load: how the noise of load and wrist enters the rows.
@@ -85,11 +98,14 @@ class Replay {
   /// Factors on the data sheets' noise, by channel; at least one.
   void SetNoiseScale(const std::array<double, kChannelCount>& scale) { noise_scale_ = scale; }
   const std::array<double, kChannelCount>& NoiseScales() const { return noise_scale_; }
+  /// These samples do not enter Whiten.
+  void LeaveOut(const std::vector<std::size_t>& samples);
   /// Derivatives by what scales the force (compliances, stiffness, gains) are those of the samples
   /// around, without the noise of a sample's own force; or the sample's own, as differences have
   /// them.
   void TakeOwnDerivatives(bool own) { own_derivatives_ = own; }
-  /// Noise factors and what FixNoiseModel set, as another replay of the same samples has them.
+  /// Noise factors, what FixNoiseModel set and samples left out, as another replay of the same
+  /// samples has them.
   void TakeSettings(const Replay& other);
 
   /// Standard deviation of each row's own noise in sample `k` (the diagonal).
@@ -139,6 +155,7 @@ class Replay {
   std::vector<ReplayedSample> replayed_;
   std::array<double, kChannelCount> noise_scale_;
   std::vector<InputNoise> input_noise_;  // with a known load, as it was fixed; empty: not yet
+  std::vector<bool> left_out_;           // samples; empty: none
   double along_prior_;  // of an unknown force along the shaft, in units of EI / L^2
   int failed_ = 0;
   bool own_derivatives_ = false;

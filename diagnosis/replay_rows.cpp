@@ -107,7 +107,8 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
   WhitenedRows all;
   all.first_row.assign(1, 0);
   for (std::size_t k = 0; k < replayed_.size(); ++k) {
-    const int rows = replayed_[k].ok ? int((samples_.samples[k].present & rows_used).count()) : 0;
+    const bool is_used = replayed_[k].ok && (left_out_.empty() || !left_out_[k]);
+    const int rows = is_used ? int((samples_.samples[k].present & rows_used).count()) : 0;
     all.first_row.push_back(all.first_row.back() + rows);
   }
   all.e.resize(all.first_row.back());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "diagnosis/generic_basis.h"
 #include "diagnosis/hypothesis_fit.h"
@@ -28,6 +29,7 @@ class Search {
 
   Selection Run() {
     replay_.Evaluate(Eigen::VectorXd::Zero(layout_.Size()));
+    LeaveOutFarSamples();
     replay_.FixNoiseModel();
     base_ = PlaceOf(replay_);
     basis_ = GenericBasis(replay_);
@@ -65,6 +67,7 @@ class Search {
   /// are, and what is fitted is comparable. What was fitted before is not.
   void FixMeasure() {
     GoTo(replay_, layout_, best_.place);
+    LeaveOutFarSamples();
     replay_.SetNoiseScale(NoiseScale(replay_));
     replay_.FixNoiseModel();
     basis_ = GenericBasis(replay_);
@@ -73,6 +76,13 @@ class Search {
     best_ = {};
     Keep(FitHypothesis(replay_, layout_, leader, options_,
                        {.basis = basis_, .may_miss = may_miss_, .rounds = kFitRounds}));
+  }
+
+  void LeaveOutFarSamples() {
+    replay_.LeaveOut({});
+    const std::vector<std::size_t> far = FarSamples(replay_);
+    replay_.LeaveOut(far);
+    selection_.far_samples = int(far.size());
   }
 
   void FitFromBase(const Hypothesis& hypothesis) {

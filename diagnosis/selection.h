@@ -12,6 +12,7 @@ namespace flextip {
 struct Selection {
   bool converged = false;
   int fits = 0;
+  int far_samples = 0;                   ///< left out (FarSamples)
   std::vector<ScoredHypothesis> scored;  ///< best first
   LinearProblem problem;                 ///< about the best point
   Eigen::VectorXd generic_sd;

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "diagnosis/diagnose.h"
+#include "diagnosis/noise_level.h"
 #include "simulation/hidden_recording.h"
 
 namespace flextip {
@@ -86,6 +87,32 @@ TEST(WithoutOutliers, OfAHealthyRecordingItStaysHealthy) {
   EXPECT_THAT(result.warnings,
               testing::ElementsAre(testing::HasSubstr("em0"), testing::HasSubstr("strain0"),
                                    testing::HasSubstr("vision0")));
+}
+
+/// Every sensor of one sample says the same wrong thing: no single reading is apart from what the
+/// unknown force could do, but no force does it.
+TEST(FarSamples, AreFoundAndLeftOutWhereTheyAreFew) {
+  Recording recording = MakeHidden({.with_load = false}, 31).recording;
+  for (auto& em : recording.em0->samples)
+    if (em.t_ns >= recording.em0->samples[400].t_ns && em.t_ns < recording.em0->samples[405].t_ns)
+      em.value.p_RS.y() += 0.05;
+  const DiagnosisResult result = Diagnose(recording, "recording");
+  EXPECT_EQ(result.verdict, Verdict{"none"});
+  EXPECT_THAT(result.warnings,
+              testing::ElementsAre("5 of 1000 samples are far from what any model says: left out"));
+}
+
+TEST(FarSamples, AreNoneWhereTheyAreMany) {
+  const SampleSet samples = MakeSampleSet(MakeHidden({.with_load = false}, 31).recording, "hidden");
+  const ParameterLayout layout(samples, MakeCatalogue(samples));
+  Replay replay(samples, layout);
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(layout.Size());
+  ASSERT_TRUE(replay.Evaluate(theta));
+  EXPECT_THAT(FarSamples(replay), testing::IsEmpty());
+  theta[layout.Blocks()[layout.Find("port_offset")].first + 1] = 0.02;
+  ASSERT_TRUE(replay.Evaluate(theta));
+  EXPECT_GT(replay.Whiten().e.squaredNorm(), 20.0 * double(replay.Whiten().e.size()));
+  EXPECT_THAT(FarSamples(replay), testing::IsEmpty());
 }
 
 }  // namespace
