@@ -16,7 +16,7 @@ constexpr double kAlongOverAcross = 1.5, kLeastAlong = 0.05;
 constexpr double kMaxForceStep = 0.5;  // in the same units
 constexpr int kForceSteps = 6;
 // Fall of the squared residual that is worth a step; the rest is taken off to first order.
-constexpr double kForceRest = 0.05, kForceRestOfBad = 0.002;
+constexpr double kForceRest = 0.05;
 constexpr int kAlikeReach = 4;             // samples to look for one with the same sensors
 constexpr std::size_t kMendedAtMost = 20;  // one sample in so many
 constexpr double kBadFit = 3.0;  // against the neighbour's, that looks like a wrong minimum
@@ -63,7 +63,7 @@ void Replay::FitForce(std::size_t k, EffectRodSolver& solver) {
         B.transpose() * noise.solve(residual()) - precision * (sample.f_tip_N - mean_N);
     const Eigen::Matrix3d damped = H + damping * (H.trace() / 3.0) * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d step = ShortStep(k, damped.llt().solve(g));
-    if (step.dot(g) < kForceRest + kForceRestOfBad * sample.force_merit) return;
+    if (step.dot(g) < kForceRest) return;
     const ReplayedSample before = sample;
     const double now =
         TryForce(k, sample.f_tip_N + step, solver) ? merit() : before.force_merit + 1.0;

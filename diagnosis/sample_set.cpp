@@ -155,6 +155,10 @@ class Builder {
     if (!recording_.strain0 || recording_.strain0->moments_Nm.empty()) return;
     const StrainStream& strain = *recording_.strain0;
     if (strain.moment_noise_Nm <= 0.0) return Warn("strain0 states no noise: left out");
+    const auto& wrist = recording_.wrist0->samples;
+    if (std::none_of(wrist.begin(), wrist.end(), [](const auto& s) { return s.value.q_RW; })) {
+      return Warn("strain0 is about the wrist's axes, whose orientation wrist0 lacks: left out");
+    }
     std::bitset<4> dead;
     for (int i = 0; i < 4; ++i)
       dead[i] = IsDead(strain.moments_Nm, [i](const Eigen::Vector4d& m) { return m[i]; });

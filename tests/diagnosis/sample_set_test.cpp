@@ -136,6 +136,14 @@ TEST_F(SampleSetTest, SaysWhichGageIsAtItsLimit) {
   for (const DiagnosisSample& sample : set.samples) EXPECT_TRUE(sample.spoken[row::kStrain + 2]);
 }
 
+TEST_F(SampleSetTest, LeavesStrainOutWhereItsAxesAreUnknown) {
+  for (auto& sample : recording_.wrist0->samples) sample.value.q_RW.reset();
+  const SampleSet set = MakeSampleSet(recording_, "folder");
+  EXPECT_FALSE(set.has_strain);
+  EXPECT_TRUE(set.has_em && set.has_tip);
+  EXPECT_THAT(set.warnings, ElementsAre(StartsWith("strain0 is about the wrist's axes")));
+}
+
 TEST_F(SampleSetTest, LeavesOutALoadThatCoversLessThanHalf) {
   recording_.load0->f_tip_N.resize(recording_.load0->f_tip_N.size() / 3);
   const SampleSet set = MakeSampleSet(recording_, "folder");
