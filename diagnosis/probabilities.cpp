@@ -39,6 +39,28 @@ void FillCredibleSet(double credible, Probabilities& result) {
   }
 }
 
+/// The mean of both; but something unknown is as likely only as both say: what shows in the whole
+/// recording must show in its parts.
+std::map<Verdict, double> Agreed(const std::map<Verdict, double>& whole,
+                                 const std::map<Verdict, double>& bagged) {
+  const Verdict unknown{"unknown"};
+  const auto of = [](const std::map<Verdict, double>& p, const Verdict& verdict) {
+    const auto found = p.find(verdict);
+    return found == p.end() ? 0.0 : found->second;
+  };
+  std::map<Verdict, double> agreed;
+  double known = 0.0;
+  for (const auto& [verdict, p] : whole) {
+    agreed[verdict] = 0.5 * (p + of(bagged, verdict));
+    if (verdict != unknown) known += agreed[verdict];
+  }
+  const double p_unknown = std::min(of(whole, unknown), of(bagged, unknown));
+  if (known <= 0.0) return agreed;
+  for (auto& [verdict, p] : agreed)
+    p = verdict == unknown ? p_unknown : p * (1.0 - p_unknown) / known;
+  return agreed;
+}
+
 }  // namespace
 
 Verdict VerdictOf(const Hypothesis& hypothesis, const ParameterLayout& layout) {
@@ -53,8 +75,9 @@ Verdict VerdictOf(const Hypothesis& hypothesis, const ParameterLayout& layout) {
 Probabilities MakeProbabilities(const Selection& selection, const ParameterLayout& layout,
                                 const SelectionOptions& selection_options,
                                 const ProbabilityOptions& options) {
-  std::map<Verdict, double> probability, evidence;
-  const auto add = [&](const std::vector<ScoredHypothesis>& scored, double weight) {
+  std::map<Verdict, double> whole, bagged, evidence;
+  const auto add = [&](const std::vector<ScoredHypothesis>& scored, double weight,
+                       std::map<Verdict, double>& probability) {
     const auto p = Softmax(scored, options.temperature);
     for (std::size_t i = 0; i < scored.size(); ++i) {
       const Verdict verdict = VerdictOf(scored[i].weighed.hypothesis, layout);
@@ -62,8 +85,7 @@ Probabilities MakeProbabilities(const Selection& selection, const ParameterLayou
       evidence.try_emplace(verdict, scored[i].weighed.log_evidence);
     }
   };
-  // The whole recording counts as much as all bags together.
-  add(selection.scored, options.bags > 0 ? 0.5 : 1.0);
+  add(selection.scored, 1.0, whole);
   std::vector<Hypothesis> leaders;
   for (const auto& s : selection.scored)
     if (int(leaders.size()) < options.leaders || s.weighed.hypothesis.effects.empty())
@@ -74,10 +96,10 @@ Probabilities MakeProbabilities(const Selection& selection, const ParameterLayou
     const Evidence of_bag(sums, layout, selection.generic_sd,
                           {.scales = {0.3, 1.0, 3.0}, .unknown_sd = {0.3, 1.0}});
     add(Score(of_bag, layout.EffectCount(), leaders, selection_options, selection.corrections),
-        0.5 / options.bags);
+        1.0 / options.bags, bagged);
   }
   Probabilities result;
-  for (const auto& [verdict, p] : probability) {
+  for (const auto& [verdict, p] : options.bags > 0 ? Agreed(whole, bagged) : whole) {
     result.hypotheses.push_back({verdict, p, evidence[verdict]});
     if (verdict != Verdict{"none"} && verdict != Verdict{"unknown"})
       for (const auto& name : verdict) result.presence[name] += p;
