@@ -39,8 +39,10 @@ void FillCredibleSet(double credible, Probabilities& result) {
   }
 }
 
-/// The mean of both; but something unknown is as likely only as both say: what shows in the whole
-/// recording must show in its parts.
+constexpr double kInNoPart = 0.05;
+
+/// The mean of both; but something unknown that shows in the whole recording and in none of its
+/// parts is no more likely than these say.
 std::map<Verdict, double> Agreed(const std::map<Verdict, double>& whole,
                                  const std::map<Verdict, double>& bagged) {
   const Verdict unknown{"unknown"};
@@ -54,7 +56,9 @@ std::map<Verdict, double> Agreed(const std::map<Verdict, double>& whole,
     agreed[verdict] = 0.5 * (p + of(bagged, verdict));
     if (verdict != unknown) known += agreed[verdict];
   }
-  const double p_unknown = std::min(of(whole, unknown), of(bagged, unknown));
+  const double in_parts = of(bagged, unknown);
+  const double p_unknown =
+      in_parts < kInNoPart ? std::min(in_parts, of(whole, unknown)) : agreed[unknown];
   if (known <= 0.0) return agreed;
   for (auto& [verdict, p] : agreed)
     p = verdict == unknown ? p_unknown : p * (1.0 - p_unknown) / known;
