@@ -90,34 +90,49 @@ Candidate SearchAcute(const AnglePencil& pencil, PencilPoint low, PencilPoint hi
 constexpr double kProved = 1e-10;     // rad
 constexpr double kRounding = 4e-15;  // of a cosine
 
-/// Climbs to a minimum of the least eigenvalue: secant steps on the offset where they help, else to
-/// the point's own best x, which never descends.
+/// True where `a` is nearer a minimum than `b`; equal cosines are told apart by their balance.
+bool IsBetter(const PencilPoint& a, const PencilPoint& b) {
+  const double gain = b.cosine - a.cosine;
+  return gain > kRounding ||
+         (gain > -kRounding && std::abs(a.balance) < std::abs(b.balance));
+}
+
+/// What is left to gain, about: near 180 degrees the angle is a cone over the directions, elsewhere
+/// it is smooth.
+bool IsBalanced(const PencilPoint& point, double angle) {
+  const double balance = std::abs(point.balance);
+  return balance * balance <= 1e-16 * (std::sin(angle) + balance);
+}
+
+/// Climbs from `best` to a minimum of the least eigenvalue: secant steps on the offset where they
+/// stay between the points that are known to be lower, else toward the point's own best x, twice as
+/// far each time. Never descends.
 PencilPoint Climb(const AnglePencil& pencil, PencilPoint best, Candidate& largest) {
-  constexpr int kMaxSteps = 30;
-  constexpr double kBalanced = 1e-14;
+  constexpr int kMaxSteps = 50;
+  double low = std::log(pencil.SmallestX()), high = std::log(pencil.LargestX());
+  double at = std::log(best.x), last_at = at, last_offset = 0.0, reach = 1.0;
   Offer(pencil, best.x, best.y, largest);
-  double last_log = 0.0, last_offset = 0.0;
-  bool has_last = false;
-  for (int step = 0; step < kMaxSteps && std::abs(best.balance) > kBalanced; ++step) {
-    const double log_x = std::log(best.x), offset = Offset(best);
-    double move = offset;
-    if (has_last && log_x != last_log) {
-      const double slope = (offset - last_offset) / (log_x - last_log);
-      if (slope < 0.0) move = std::clamp(-offset / slope, -4.0, 4.0);
-    }
-    const double x = std::clamp(best.x * std::exp(move), pencil.SmallestX(), pencil.LargestX());
-    const PencilPoint next = pencil.Evaluate(x);
+  for (int step = 0; step < kMaxSteps && !IsBalanced(best, largest.angle); ++step) {
+    const double offset = Offset(best);
+    (offset > 0.0 ? low : high) = at;
+    double next_at = at + reach * offset;
+    const double slope = last_at != at ? (offset - last_offset) / (at - last_at) : 0.0;
+    if (slope < 0.0) next_at = at - offset / slope;
+    if (!(next_at > low && next_at < high)) next_at = 0.5 * (low + high);
+    if (next_at == at) break;
+    const PencilPoint next = pencil.Evaluate(std::exp(next_at));
     Offer(pencil, next.x, next.y, largest);
-    const double gain = best.cosine - next.cosine;
-    const bool better =
-        gain > kRounding ||
-        (gain > -kRounding && std::abs(next.balance) < std::abs(best.balance));
-    if (!better && !has_last) break;
-    has_last = better;
-    if (!better) continue;
-    last_log = log_x;
-    last_offset = offset;
-    best = next;
+    reach *= 2.0;
+    if (IsBetter(next, best)) {
+      last_at = at;
+      last_offset = offset;
+      best = next;
+      at = next_at;
+    } else {
+      last_at = next_at;
+      last_offset = Offset(next);
+      (offset > 0.0 ? high : low) = next_at;
+    }
   }
   return best;
 }
