@@ -52,36 +52,47 @@ void OfferMixtures(const AnglePencil& pencil, const PencilPoint& low, const Penc
   }
 }
 
+constexpr double kTolerance = 1e-13;  // rad
+
+/// No direction has an angle past that of the larger least eigenvalue (rad).
+double Bound(const PencilPoint& low, const PencilPoint& high) {
+  const double missing = std::min(low.missing, high.missing);
+  return 2.0 * std::asin(std::sqrt(std::min(0.5 * missing, 1.0)));
+}
+
+/// Its own angle is within the tolerance of the bound that it is.
+bool IsClosed(const PencilPoint& point) {
+  return point.balance * point.balance <= kTolerance * std::sqrt(std::max(point.missing, 0.0));
+}
+
 /// Closes in on the balanced x between `low` (balance > 0) and `high` (balance < 0): false position
 /// with halving (Illinois) and the crossing of the ends' curves by turns.
 Candidate SearchAcute(const AnglePencil& pencil, PencilPoint low, PencilPoint high) {
-  constexpr int kMaxSteps = 60, kMixFrom = 6;
-  constexpr double kTolerance = 1e-13;  // rad
+  constexpr int kMaxSteps = 60, kMixFrom = 8;
   Candidate best;
-  Offer(pencil, low.x, low.y, best);
-  Offer(pencil, high.x, high.y, best);
   double low_offset = Offset(low), high_offset = Offset(high);
   int last_side = 0;
   for (int step = 0; step < kMaxSteps; ++step) {
     const double width = std::log(high.x / low.x);
-    if (!(width > 4e-16)) break;
-    // No direction has an angle past that of the larger least eigenvalue.
-    if (step >= kMixFrom) OfferMixtures(pencil, low, high, best);
-    const double missing = std::min(low.missing, high.missing);
-    if (2.0 * std::asin(std::sqrt(std::min(0.5 * missing, 1.0))) <= best.angle + kTolerance) break;
+    if (!(width > 4e-16) || IsClosed(low) || IsClosed(high)) break;
+    if (step >= kMixFrom) {
+      OfferMixtures(pencil, low, high, best);
+      if (Bound(low, high) <= best.angle + kTolerance) break;
+    }
     double x = step % 3 == 2
                    ? Crossing(low, high)
                    : low.x * std::exp(width * low_offset / (low_offset - high_offset));
     if (!(x > low.x && x < high.x)) x = std::sqrt(low.x * high.x);
     const PencilPoint point = pencil.Evaluate(x);
-    Offer(pencil, x, point.y, best);
     const int side = point.balance > 0.0 ? -1 : 1;
     (side < 0 ? low : high) = point;
     (side < 0 ? low_offset : high_offset) = Offset(point);
     if (side == last_side) (side < 0 ? high_offset : low_offset) *= 0.5;
     last_side = side;
   }
-  if (high.x > low.x) OfferMixtures(pencil, low, high, best);
+  if (!IsClosed(low) && !IsClosed(high)) OfferMixtures(pencil, low, high, best);
+  Offer(pencil, low.x, low.y, best);
+  Offer(pencil, high.x, high.y, best);
   return best;
 }
 
@@ -99,20 +110,20 @@ bool IsBetter(const PencilPoint& a, const PencilPoint& b) {
 
 /// What is left to gain, about: near 180 degrees the angle is a cone over the directions, elsewhere
 /// it is smooth.
-bool IsBalanced(const PencilPoint& point, double angle) {
+bool IsBalanced(const PencilPoint& point) {
+  const double sine2 = (1.0 - point.cosine) * (1.0 + point.cosine);
   const double balance = std::abs(point.balance);
-  return balance * balance <= 1e-16 * (std::sin(angle) + balance);
+  return balance * balance <= 1e-16 * (std::sqrt(std::max(sine2, 0.0)) + balance);
 }
 
 /// Climbs from `best` to a minimum of the least eigenvalue: secant steps on the offset where they
 /// stay between the points that are known to be lower, else toward the point's own best x, twice as
 /// far each time. Never descends.
-PencilPoint Climb(const AnglePencil& pencil, PencilPoint best, Candidate& largest) {
+PencilPoint Climb(const AnglePencil& pencil, PencilPoint best) {
   constexpr int kMaxSteps = 50;
   double low = std::log(pencil.SmallestX()), high = std::log(pencil.LargestX());
   double at = std::log(best.x), last_at = at, last_offset = 0.0, reach = 1.0;
-  Offer(pencil, best.x, best.y, largest);
-  for (int step = 0; step < kMaxSteps && !IsBalanced(best, largest.angle); ++step) {
+  for (int step = 0; step < kMaxSteps && !IsBalanced(best); ++step) {
     const double offset = Offset(best);
     (offset > 0.0 ? low : high) = at;
     double next_at = at + reach * offset;
@@ -121,7 +132,6 @@ PencilPoint Climb(const AnglePencil& pencil, PencilPoint best, Candidate& larges
     if (!(next_at > low && next_at < high)) next_at = 0.5 * (low + high);
     if (next_at == at) break;
     const PencilPoint next = pencil.Evaluate(std::exp(next_at));
-    Offer(pencil, next.x, next.y, largest);
     reach *= 2.0;
     if (IsBetter(next, best)) {
       last_at = at;
@@ -182,13 +192,20 @@ bool SearchObtuse(const AnglePencil& pencil, const PencilPoint& start, Candidate
   constexpr int kMaxClimbs = 16;
   PencilPoint point = start;
   for (int climb = 0; climb < kMaxClimbs; ++climb) {
-    point = Climb(pencil, point, best);
+    point = Climb(pencil, point);
+    Offer(pencil, point.x, point.y, best);
     if (best.angle >= std::numbers::pi - kProved) return true;
     const double slack = std::max(kProved * std::sin(best.angle), kRounding);
     const Look look = FindLarger(pencil, slack, point);
     if (look != Look::kLarger) return look == Look::kNothingLarger;
   }
   return false;
+}
+
+/// False only where J has full rank by the singular values of A and J_hat.
+bool MayBeSingular(const Eigen::Vector3d& sigma, const Eigen::Vector3d& sigma_hat) {
+  const double condition_hat = sigma_hat.maxCoeff() / sigma_hat.minCoeff();
+  return sigma.minCoeff() <= 1e-14 * condition_hat * sigma.maxCoeff();
 }
 
 /// Fills in `error` from A's decomposition.
@@ -225,11 +242,13 @@ AngleError<3> FindLargestAngle(const Eigen::Matrix3d& J, const Eigen::Matrix3d& 
   error.status = MotionErrorStatus::kSingularTruth;
   if (size == 0.0) return error;
   const Eigen::Matrix3d J_scaled = J / size;
-  const int missing_rank = MissingRank(DecomposeSmall(J_scaled).sigma);
-  if (missing_rank == 0) error.status = MotionErrorStatus::kOk;
   // A = J V_hat Sigma_hat^-1 U_hat^T, but for the factor U_hat^T, which goes to the right vectors.
   SmallSvd svd = DecomposeSmall(J_scaled * svd_hat.V * svd_hat.sigma.cwiseInverse().asDiagonal());
   svd.V = svd_hat.U * svd.V;
+  const int missing_rank = MayBeSingular(svd.sigma, svd_hat.sigma)
+                               ? MissingRank(DecomposeSmall(J_scaled).sigma)
+                               : 0;
+  if (missing_rank == 0) error.status = MotionErrorStatus::kOk;
   FindInSpace(AnglePencil(svd, missing_rank), error);
   return error;
 }
