@@ -9,8 +9,8 @@
 
 namespace flextip {
 
-/// The angle between H w and T w for directions w: with H = I and T = A that between the desired and
-/// the actual motion; with H = J_hat and T = J the same without the inverse.
+/// The angle between H w and T w for directions w: with H = I and T = A that between the desired
+/// and the actual motion; with H = J_hat and T = J the same without the inverse.
 template <int N>
 struct MotionPair {
   using Vector = Eigen::Matrix<double, N, 1>;
@@ -29,8 +29,7 @@ struct MotionPair {
   double Height(const Vector& w, bool past) const {
     const Vector desired = H * w, actual = T * w;
     const double across = Across(desired, actual);
-    const double sine2 =
-        across * across / (desired.squaredNorm() * actual.squaredNorm());
+    const double sine2 = across * across / (desired.squaredNorm() * actual.squaredNorm());
     const bool is_past = desired.dot(actual) < 0.0;
     if (is_past == past) return past ? -sine2 : sine2;
     return is_past ? 2.0 - sine2 : sine2 - 2.0;
@@ -112,8 +111,8 @@ SphereMaximum<N> Refine(const MotionPair<N>& pair, int face, double x, double y,
   return {pair.Angle(w), w.normalized()};
 }
 
-/// All directions of a grid of n cells along each edge of the cube (n + 1 on a quarter circle), each
-/// maximum of the grid refined. `grid` is working space.
+/// All directions of a grid of n cells along each edge of the cube (n + 1 on a quarter circle),
+/// each maximum of the grid refined. `grid` is working space.
 template <int N>
 SphereMaximum<N> SearchSphere(const MotionPair<N>& pair, int n, std::vector<double>& grid) {
   const double h = 2.0 / n;

@@ -55,8 +55,8 @@ double AngleLevel::Value(double x) const noexcept {
 }
 
 bool AngleLevel::IsPositive(double a, double b) const noexcept {
-  // x = a (1 + (b / a - 1) / (1 + z)) maps z > 0 to the interval, end to beginning: without a change
-  // of sign among its coefficients the polynomial in z has no root there.
+  // x = a (1 + (b / a - 1) / (1 + z)) maps z > 0 to the interval, end to beginning: without a
+  // change of sign among its coefficients the polynomial in z has no root there.
   std::array<double, 7> p = coefficients_;
   Stretch(p, a);
   Shift(p);

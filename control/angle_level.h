@@ -8,8 +8,8 @@
 
 namespace flextip {
 
-/// D(x) = det(c (x^2 A^T A + I) + x (A + A^T)) for a level c in (0, 1): positive at all x > 0 if and
-/// only if cos(phi) > -c for all directions (`angle_pencil.h`).
+/// D(x) = det(c (x^2 A^T A + I) + x (A + A^T)) for a level c in (0, 1): positive at all x > 0 if
+/// and only if cos(phi) > -c for all directions (`angle_pencil.h`).
 class AngleLevel {
  public:
   AngleLevel(const AnglePencil& pencil, double c) noexcept;

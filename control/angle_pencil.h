@@ -2,9 +2,9 @@
 //
 // For s = v^T A v, m = |A v|^2, n = |v|^2 and any x > 0, 2 x s / (x^2 m + n) is never further from
 // zero than cos(phi) = s / sqrt(m n), and equals it at x = sqrt(n / m). So the extreme of cos(phi)
-// over all v is the extreme over x of the least eigenvalue of the pencil (x (A + A^T), x^2 A^T A + I).
-// With A = U diag(sigma) V^T, Q = V^T U, tan(beta_i) = x sigma_i, C = diag(cos beta),
-// S = diag(sin beta) and v = V C y that is the least eigenvalue of
+// over all v is the extreme over x of the least eigenvalue of the pencil (x (A + A^T), x^2 A^T A +
+// I). With A = U diag(sigma) V^T, Q = V^T U, tan(beta_i) = x sigma_i, C = diag(cos beta), S =
+// diag(sin beta) and v = V C y that is the least eigenvalue of
 //   K(x) = C Q S + S Q^T C = I - Z^T Z,  Z = Q S - C,
 // with entries of the order of one however far apart A's singular values are. Everything here is in
 // the basis V.
@@ -26,6 +26,8 @@ struct PencilPoint {
   Eigen::Vector3d y = Eigen::Vector3d::UnitX();
 
   double Least() const { return 1.0 - missing; }
+  /// log(PeakX() / x).
+  double Offset() const { return std::atanh(balance); }
   /// x at which this y's 2 x s / (x^2 m + n) is its cosine.
   double PeakX() const { return x * std::sqrt((1.0 + balance) / (1.0 - balance)); }
 };
@@ -51,6 +53,10 @@ class AnglePencil {
   double Angle(double x, const Eigen::Vector3d& y) const noexcept;
   /// v = V C(x) y, of unit length.
   Eigen::Vector3d Direction(double x, const Eigen::Vector3d& y) const noexcept;
+
+  /// Whether some v has A v = 0, and one that has.
+  bool HasUnmoved() const { return sigma_.minCoeff() == 0.0; }
+  Eigen::Vector3d Unmoved() const noexcept;
 
   const Eigen::Vector3d& Sigma() const { return sigma_; }
   const Eigen::Matrix3d& Q() const { return Q_; }

@@ -109,8 +109,7 @@ StepError<3> FindStepError(const Eigen::Matrix3d& J, const Eigen::Matrix3d& J_ha
   const SmallSvd svd = DecomposeSmall(J_hat / size_hat);
   if (MissingRank(svd.sigma) > 0) return error;
   const Eigen::Matrix3d inverse = svd.V * svd.sigma.cwiseInverse().asDiagonal() * svd.U.transpose();
-  const Eigen::Matrix3d G =
-      Eigen::Matrix3d::Identity() - (gain / size_hat) * J * inverse;  // (2.5)
+  const Eigen::Matrix3d G = Eigen::Matrix3d::Identity() - (gain / size_hat) * J * inverse;  // (2.5)
   const double scale = G.cwiseAbs().maxCoeff();
   if (!G.allFinite() || !std::isfinite(scale)) return error;
   error.status = MotionErrorStatus::kOk;
@@ -126,8 +125,8 @@ StepError<3> FindStepError(const Eigen::Matrix3d& J, const Eigen::Matrix3d& J_ha
   return error;
 }
 
-// A v / v = p + q conj(v) / v runs around a circle about p. The largest angle is that of the tangent
-// from zero, half a turn where the circle meets the negative real axis.
+// A v / v = p + q conj(v) / v runs around a circle about p. The largest angle is that of the
+// tangent from zero, half a turn where the circle meets the negative real axis.
 AngleError<2> FindLargestAngle(const Eigen::Matrix2d& J, const Eigen::Matrix2d& J_hat) noexcept {
   AngleError<2> error;
   if (!J.allFinite() || !J_hat.allFinite()) return error;
@@ -141,7 +140,7 @@ AngleError<2> FindLargestAngle(const Eigen::Matrix2d& J, const Eigen::Matrix2d& 
   const double det = map.singular ? 0.0 : map.det * map.det_hat;  // |p|^2 - |q|^2
   const double turn = std::arg(parts.p);
   const double off = det < 0.0 ? kPi : std::atan2(q, std::sqrt(det));  // asin(|q| / |p|)
-  double around;  // arg of q conj(v) / v there
+  double around;                                                       // arg of q conj(v) / v there
   if (std::abs(turn) + off < kPi) {
     error.phi_max_rad = std::abs(turn) + off;
     around = std::copysign(error.phi_max_rad + 0.5 * kPi, turn);

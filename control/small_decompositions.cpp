@@ -22,10 +22,9 @@ Eigen::Vector3d NullVector(const Eigen::Matrix3d& B) {
 
 /// The larger eigenpair of B within the plane normal to the unit vector n.
 Eigenpair LargestAcross(const Eigen::Matrix3d& B, const Eigen::Vector3d& n) {
-  const Eigen::Vector3d e =
-      (std::abs(n[0]) > std::abs(n[1]) ? Eigen::Vector3d(-n[2], 0.0, n[0])
-                                       : Eigen::Vector3d(0.0, n[2], -n[1]))
-          .normalized();
+  const Eigen::Vector3d e = (std::abs(n[0]) > std::abs(n[1]) ? Eigen::Vector3d(-n[2], 0.0, n[0])
+                                                             : Eigen::Vector3d(0.0, n[2], -n[1]))
+                                .normalized();
   const Eigen::Vector3d f = n.cross(e);
   const Eigen::Vector3d Be = B * e, Bf = B * f;
   const double mean = 0.5 * (e.dot(Be) + f.dot(Bf)), half = 0.5 * (e.dot(Be) - f.dot(Bf));

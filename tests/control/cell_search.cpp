@@ -5,7 +5,6 @@
 #include <deque>
 #include <numbers>
 
-
 namespace flextip {
 namespace {
 
@@ -74,8 +73,7 @@ FaceForms MakeForms(const Form& h, const Form& t) {
   FaceForms forms{Symmetric(h.transpose() * t), h.transpose() * h, t.transpose() * t, {}};
   for (int k = 0; k < 3; ++k) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
-    forms.across[k] =
-        Symmetric(h.row(i).transpose() * t.row(j) - h.row(j).transpose() * t.row(i));
+    forms.across[k] = Symmetric(h.row(i).transpose() * t.row(j) - h.row(j).transpose() * t.row(i));
   }
   return forms;
 }
@@ -135,8 +133,7 @@ class Search {
   }
 
   /// Corners are the polynomials' own values.
-  void LookAtCorners(const Cell& cell, const Quadratic& s,
-                     const std::array<Quadratic, 3>& across) {
+  void LookAtCorners(const Cell& cell, const Quadratic& s, const std::array<Quadratic, 3>& across) {
     for (const int i : {0, 2}) {
       for (const int j : {0, 2}) {
         const Real size = std::hypot(across[0][i][j], across[1][i][j], across[2][i][j]);
@@ -149,8 +146,8 @@ class Search {
 
   void Raise(const Cell& cell, Real x, Real y, Real angle) {
     const double size = static_cast<double>(std::max(cell.x1 - cell.x0, cell.y1 - cell.y0));
-    const SphereMaximum<N> top = Refine(pair_, cell.face, static_cast<double>(x),
-                                        static_cast<double>(y), 0.25 * size);
+    const SphereMaximum<N> top =
+        Refine(pair_, cell.face, static_cast<double>(x), static_cast<double>(y), 0.25 * size);
     result_.raised = true;
     result_.angle = std::max(static_cast<double>(angle), top.angle);
     SetLimit();

@@ -15,11 +15,11 @@ struct CellSearchResult {
 };
 
 /// Starts from the angle (0 to pi) of a direction that is known and looks at all others. These are
-/// cut into cells; a cell is dropped where its angles are shown to be less than the largest so far +
-/// tolerance: on it dot product, cross product and squared norms of H w and T w are polynomials, and
-/// a polynomial is positive where its Bernstein coefficients are. The rest are cut on, the largest
-/// first, until none is left. A corner that is larger is refined and raises the limit for all others.
-/// Nothing is known of where maxima are. N = 2 or 3, H and T as in `MotionPair`.
+/// cut into cells; a cell is dropped where its angles are shown to be less than the largest so far
+/// + tolerance: on it dot product, cross product and squared norms of H w and T w are polynomials,
+/// and a polynomial is positive where its Bernstein coefficients are. The rest are cut on, the
+/// largest first, until none is left. A corner that is larger is refined and raises the limit for
+/// all others. Nothing is known of where maxima are. N = 2 or 3, H and T as in `MotionPair`.
 template <int N>
 CellSearchResult SearchCells(const MotionPair<N>& pair, double start_angle, double tolerance);
 
