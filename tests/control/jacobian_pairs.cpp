@@ -104,8 +104,9 @@ MotionPair<N> ForSearch(const JacobianPair<N>& pair) {
   const Long inverse = J_hat.inverse();
   const Square<N> A = (J * inverse).template cast<double>();
   const Eigen::JacobiSVD<Square<N>> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Square<N> VD = svd.matrixV();
-  if constexpr (N == 3) VD.col(0) *= svd.singularValues()[1] / svd.singularValues()[0];
+  Eigen::Matrix<double, N, 1> D = Eigen::Matrix<double, N, 1>::Ones();
+  if constexpr (N == 3) D[0] = svd.singularValues()[1] / svd.singularValues()[0];
+  const Square<N> VD = svd.matrixV() * D.asDiagonal();
   const Long P = (inverse * VD.template cast<long double>())
                      .template cast<double>()
                      .template cast<long double>();
