@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -35,7 +36,8 @@ std::string Complaint(const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
-  const fs::path file = fs::path(testing::TempDir()) / "scenario_test.yaml";
+  const fs::path file =
+      fs::path(testing::TempDir()) / ("scenario_test_" + std::to_string(::getpid()) + ".yaml");
   std::ofstream(file) << text;
   try {
     ReadScenario(file);
@@ -85,7 +87,8 @@ TEST(Scenario, EffectsAreGivenByNameAndParameter) {
       "  self_weight: {mass_per_length_kg_m: 0.03}\n"
       "  em_distortion: {gradient: [1, 2, 3, 4, 5, 6, 7, 8, 9], centre_m: [0.1, 0.2, 0.3]}\n"
       "  hand_eye: {rotation_rad: [0.01, 0, 0]}\n";
-  const fs::path file = fs::path(testing::TempDir()) / "scenario_effects_test.yaml";
+  const fs::path file = fs::path(testing::TempDir()) /
+                        ("scenario_effects_test_" + std::to_string(::getpid()) + ".yaml");
   std::ofstream(file) << text;
   const LoopSetup loop = ReadScenario(file).loop;
   EXPECT_DOUBLE_EQ(loop.plant.effects.stiffness_scale, 0.8);
@@ -114,7 +117,8 @@ TEST(Scenario, SaysWhatIsWrongWithItsEffects) {
 }
 
 TEST(Scenario, NamesAFileOfTheCameraThatIsMissing) {
-  const fs::path file = fs::path(testing::TempDir()) / "scenario_camera_test.yaml";
+  const fs::path file = fs::path(testing::TempDir()) /
+                        ("scenario_camera_test_" + std::to_string(::getpid()) + ".yaml");
   std::ofstream(file) << std::ifstream(kPress).rdbuf();  // its ../cameras is not there
   try {
     ReadScenario(file);
