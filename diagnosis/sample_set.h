@@ -76,7 +76,8 @@ struct SampleSet {
 
 /// Throws InputError, in one line that starts with `name`, where nothing can be judged: no wrist,
 /// too few samples, or no sensor that says more than is needed to know the load. A sensor that
-/// always says the same is left out with a warning.
+/// always says the same, gages whose axes are unknown, and single readings apart from those around
+/// them (outliers.h) are left out with a warning.
 SampleSet MakeSampleSet(const Recording& recording, const std::string& name);
 
 }  // namespace flextip

@@ -30,7 +30,8 @@ class PortMoment : public Effect {
     ReportedParameter rest{"rest_axis", {}, {}};
     for (int i = 0; i < 3; ++i) {
       rest.value.push_back(axis[i]);
-      rest.sd.push_back(std::sqrt(std::max(0.0, across(i, i))));
+      // Without a couple the axis is unknown; no component of a unit vector is off by more than 1.
+      rest.sd.push_back(std::min(1.0, std::sqrt(std::max(0.0, across(i, i)))));
     }
     const double sd = std::sqrt(std::max(0.0, double(axis.transpose() * covariance * axis)));
     return {{"stiffness_Nm_rad", {k}, {sd}}, rest};

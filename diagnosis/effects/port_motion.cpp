@@ -78,21 +78,23 @@ void PortMotion::Apply(const double* theta, const Moment& now, EffectMemory&,
 std::vector<ReportedParameter> PortMotion::Report(const Eigen::VectorXd& theta,
                                                   const Eigen::MatrixXd& covariance) const {
   const Eigen::VectorXd at = Reported(theta, frequency_hz_);
-  // By differences; the phase is taken near the one found, so that it does not jump.
+  // By differences, to one side where nothing breathes, as an amplitude has its minimum there; the
+  // phase is taken near the one found, so that it does not jump.
+  const bool is_still = at.head<3>().isZero(0.0);
   Eigen::MatrixXd J(5, theta.size());
   for (int j = 0; j < theta.size(); ++j) {
     const double h = 1e-3 * std::max(std::sqrt(covariance(j, j)), 1e-9);
     Eigen::VectorXd plus = theta, minus = theta;
     plus[j] += h;
-    minus[j] -= h;
+    if (!is_still) minus[j] -= h;
     Eigen::VectorXd d = Reported(plus, frequency_hz_) - Reported(minus, frequency_hz_);
     d[4] = std::remainder(d[4], kTwoPi);
-    J.col(j) = d / (2 * h);
+    J.col(j) = d / (is_still ? h : 2 * h);
   }
   const Eigen::VectorXd sd = (J * covariance * J.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
   return {{"amplitude_m", {at[0], at[1], at[2]}, {sd[0], sd[1], sd[2]}},
           {"frequency_hz", {at[3]}, {sd[3]}},
-          {"phase_rad", {at[4]}, {sd[4]}},
+          {"phase_rad", {at[4]}, {std::min(sd[4], std::numbers::pi)}},
           AsFitted("overtone_sine_m", kOvertoneSine, theta, covariance),
           AsFitted("overtone_cosine_m", kOvertoneCosine, theta, covariance)};
 }

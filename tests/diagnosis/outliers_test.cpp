@@ -89,8 +89,7 @@ TEST(WithoutOutliers, OfAHealthyRecordingItStaysHealthy) {
                                    testing::HasSubstr("vision0")));
 }
 
-/// Every sensor of one sample says the same wrong thing: no single reading is apart from what the
-/// unknown force could do, but no force does it.
+/// Five readings in a row are off together: too many for a filter that looks at neighbours.
 TEST(FarSamples, AreFoundAndLeftOutWhereTheyAreFew) {
   Recording recording = MakeHidden({.with_load = false}, 31).recording;
   for (auto& em : recording.em0->samples)

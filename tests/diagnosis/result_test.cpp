@@ -79,6 +79,16 @@ TEST_F(ResultTest, JsonHasEveryKeyOfTheInterface) {
                 signature["score"].is_number());
 }
 
+/// Without a couple or a breath their axis and phase are unknown, not off by millions.
+TEST_F(ResultTest, TolerancesOfDirectionsAndPhasesAreNoLargerThanThoseAre) {
+  const auto tolerances = nlohmann::json::parse(DiagnosisJson(*result_)).at("tolerances");
+  for (const double sd : tolerances.at("port_moment").at("rest_axis")) EXPECT_LE(sd, 1.0);
+  const auto& motion = tolerances.at("port_motion");
+  EXPECT_LE(motion.at("phase_rad").get<double>(), 3.1416);
+  // Sine and cosine of 0.1 mm each.
+  for (const double sd_m : motion.at("amplitude_m")) EXPECT_NEAR(sd_m, 1e-4, 0.5e-4);
+}
+
 TEST_F(ResultTest, ProbabilitiesSumToOneButForWhatIsLeftOut) {
   const auto json = nlohmann::json::parse(DiagnosisJson(*result_));
   double written = 0.0, left_out = 0.0, all = 0.0, largest = 0.0;
