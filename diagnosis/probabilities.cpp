@@ -7,6 +7,8 @@
 namespace flextip {
 namespace {
 
+constexpr double kInNoPart = 0.05;  // of the bags together
+
 /// Sums over as many blocks as there are, drawn with replacement.
 NormalSums DrawBag(const LinearProblem& problem, std::mt19937_64& rng) {
   const auto n = problem.blocks.size();
@@ -39,10 +41,8 @@ void FillCredibleSet(double credible, Probabilities& result) {
   }
 }
 
-constexpr double kInNoPart = 0.05;
+}  // namespace
 
-/// The mean of both; but something unknown that shows in the whole recording and in none of its
-/// parts is no more likely than these say.
 std::map<Verdict, double> Agreed(const std::map<Verdict, double>& whole,
                                  const std::map<Verdict, double>& bagged) {
   const Verdict unknown{"unknown"};
@@ -64,8 +64,6 @@ std::map<Verdict, double> Agreed(const std::map<Verdict, double>& whole,
     p = verdict == unknown ? p_unknown : p * (1.0 - p_unknown) / known;
   return agreed;
 }
-
-}  // namespace
 
 Verdict VerdictOf(const Hypothesis& hypothesis, const ParameterLayout& layout) {
   if (hypothesis.unknown) return {"unknown"};

@@ -20,6 +20,12 @@ struct Probabilities {
   std::vector<Verdict> credible_set;
 };
 
+/// The mean of what the whole recording says and what bags of its parts say together, each summing
+/// to one, with every verdict in `whole`. But something unknown that shows in the whole and, to
+/// less than 5 %, in its parts is no more likely than these say; the others share the rest.
+std::map<Verdict, double> Agreed(const std::map<Verdict, double>& whole,
+                                 const std::map<Verdict, double>& bagged);
+
 /// Averages over bags of blocks of time: what hangs on a few seconds of the recording counts less.
 Probabilities MakeProbabilities(const Selection& selection, const ParameterLayout& layout,
                                 const SelectionOptions& selection_options,

@@ -1,0 +1,37 @@
+// How the whole recording and its parts are brought together.
+#include "diagnosis/probabilities.h"
+
+#include <gtest/gtest.h>
+
+namespace flextip {
+namespace {
+
+using Shares = std::map<Verdict, double>;
+const Verdict kNone{"none"}, kUnknown{"unknown"}, kLength{"length"};
+
+void ExpectNear(const Shares& found, const Shares& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (const auto& [verdict, p] : expected) EXPECT_NEAR(found.at(verdict), p, 1e-12) << verdict[0];
+}
+
+TEST(Agreed, IsTheMeanWhereBothSayUnknownOrNeither) {
+  ExpectNear(Agreed({{kNone, 0.0}, {kUnknown, 1.0}}, {{kNone, 0.8}, {kUnknown, 0.2}}),
+             {{kNone, 0.4}, {kUnknown, 0.6}});
+  ExpectNear(
+      Agreed({{kNone, 0.9}, {kLength, 0.1}, {kUnknown, 0.0}}, {{kNone, 0.5}, {kLength, 0.5}}),
+      {{kNone, 0.7}, {kLength, 0.3}, {kUnknown, 0.0}});
+}
+
+TEST(Agreed, UnknownThatNoPartShowsIsWhatThePartsSay) {
+  ExpectNear(Agreed({{kNone, 0.0}, {kLength, 0.0}, {kUnknown, 1.0}},
+                    {{kNone, 0.72}, {kLength, 0.24}, {kUnknown, 0.04}}),
+             {{kNone, 0.72}, {kLength, 0.24}, {kUnknown, 0.04}});
+}
+
+TEST(Agreed, UnknownStaysWhereNothingElseIsPossible) {
+  ExpectNear(Agreed({{kNone, 0.0}, {kUnknown, 1.0}}, {{kUnknown, 1.0}}),
+             {{kNone, 0.0}, {kUnknown, 1.0}});
+}
+
+}  // namespace
+}  // namespace flextip
