@@ -79,11 +79,7 @@ ModelScore ScoreOf(const Sums& all, const Replay& replay) {
     }
   score.tip_prediction_rms_m = all.Tip();
   score.weighted_rms = all.Weighted();
-  const WhitenedRows rows = replay.Whiten();
-  double dof = double(rows.e.size());
-  if (!replay.Set().has_load)
-    for (const auto& of_sample : rows.rows) dof -= std::min<double>(3.0, double(of_sample.size()));
-  score.chi2_per_dof = rows.e.squaredNorm() / std::max(1.0, dof);
+  score.chi2_per_dof = replay.ChiSquaredPerDof();
   return score;
 }
 

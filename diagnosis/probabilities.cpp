@@ -41,6 +41,15 @@ void FillCredibleSet(double credible, Probabilities& result) {
   }
 }
 
+/// Leaves all that is known together the probability `known`, or less.
+void SayUnknown(double known, std::map<Verdict, double>& probability) {
+  double& unknown = probability.at({"unknown"});
+  const double now = 1.0 - unknown;
+  if (now <= known) return;
+  for (auto& [verdict, p] : probability) p *= known / now;
+  unknown = 1.0 - known;
+}
+
 }  // namespace
 
 std::map<Verdict, double> Agreed(const std::map<Verdict, double>& whole,
@@ -100,8 +109,10 @@ Probabilities MakeProbabilities(const Selection& selection, const ParameterLayou
     add(Score(of_bag, layout.EffectCount(), leaders, selection_options, selection.corrections),
         1.0 / options.bags, bagged);
   }
+  std::map<Verdict, double> all = options.bags > 0 ? Agreed(whole, bagged) : whole;
+  if (selection.chi2_per_dof > options.most_chi2_per_dof) SayUnknown(options.inadequate_known, all);
   Probabilities result;
-  for (const auto& [verdict, p] : options.bags > 0 ? Agreed(whole, bagged) : whole) {
+  for (const auto& [verdict, p] : all) {
     result.hypotheses.push_back({verdict, p, evidence[verdict]});
     if (verdict != Verdict{"none"} && verdict != Verdict{"unknown"})
       for (const auto& name : verdict) result.presence[name] += p;

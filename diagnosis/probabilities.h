@@ -11,6 +11,9 @@ struct ProbabilityOptions {
   int leaders = 30;          ///< hypotheses that take part in them
   double temperature = 1.0;  ///< log odds are divided by this; from recordings made for tuning
   double credible = 0.9;
+  /// Chi-squared per degree of freedom of the best that the catalogue has, above which none of it
+  /// is adequate: all of it together is left the probability `inadequate_known`.
+  double most_chi2_per_dof = 2.0, inadequate_known = 0.05;
   std::uint64_t seed = 1;
 };
 

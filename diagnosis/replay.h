@@ -84,6 +84,9 @@ class Replay {
   /// `sensors_used`: rows of absent sensors are left out, besides the absent ones.
   WhitenedRows Whiten(const std::bitset<row::kCount>& rows_used = AllRows()) const;
 
+  /// Squared whitened residual over the rows, less those that an unknown force takes.
+  double ChiSquaredPerDof() const;
+
   /// Per sample: the residual less what an unknown tip force explains, unwhitened; absent rows
   /// zero. With `hidden` rows, the force is found without them: their residual is a prediction
   /// error. `dtheta` moves the parameters, to first order; empty: not.

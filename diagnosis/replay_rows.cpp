@@ -1,4 +1,5 @@
 // What a replay leaves of the measurements, as rows of unit covariance.
+#include <algorithm>
 #include <cmath>
 
 #include "diagnosis/replay.h"
@@ -101,6 +102,14 @@ Eigen::MatrixXd Replay::Derivatives(std::size_t k, const std::vector<int>& rows)
     for (std::size_t i = 0; i < rows.size(); ++i)
       A(Eigen::Index(i), column.parameter) += column.value * ByInput(k, rows[i], column.input);
   return A;
+}
+
+double Replay::ChiSquaredPerDof() const {
+  const WhitenedRows rows = Whiten();
+  double dof = double(rows.e.size());
+  if (!samples_.has_load)
+    for (const auto& of_sample : rows.rows) dof -= std::min<double>(3.0, double(of_sample.size()));
+  return rows.e.squaredNorm() / std::max(1.0, dof);
 }
 
 WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {

@@ -193,6 +193,7 @@ class Search {
     }
     selection_.scored = Score({weighing.problem.total, layout_, weighing.generic_sd},
                               layout_.EffectCount(), all, options_, selection_.corrections);
+    selection_.chi2_per_dof = replay_.ChiSquaredPerDof();
     selection_.converged = best_.distance < kNearRest && !rivals_left_;
     selection_.problem = std::move(weighing.problem);
     selection_.generic_sd = std::move(weighing.generic_sd);

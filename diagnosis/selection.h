@@ -13,6 +13,7 @@ struct Selection {
   bool converged = false;
   int fits = 0;
   int far_samples = 0;                   ///< left out (FarSamples)
+  double chi2_per_dof = 0.0;             ///< of the best that the catalogue has
   std::vector<ScoredHypothesis> scored;  ///< best first
   LinearProblem problem;                 ///< about the best point
   Eigen::VectorXd generic_sd;

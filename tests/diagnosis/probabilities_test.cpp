@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/diagnosis/small_recording.h"
+
 namespace flextip {
 namespace {
 
@@ -31,6 +33,23 @@ TEST(Agreed, UnknownThatNoPartShowsIsWhatThePartsSay) {
 TEST(Agreed, UnknownStaysWhereNothingElseIsPossible) {
   ExpectNear(Agreed({{kNone, 0.0}, {kUnknown, 1.0}}, {{kUnknown, 1.0}}),
              {{kNone, 0.0}, {kUnknown, 1.0}});
+}
+
+TEST(MakeProbabilities, WhereNothingKnownIsAdequateTheAnswerIsUnknown) {
+  const SampleSet samples = SmallSamples(10.0, true, 61, {"tag_offset"});
+  ParameterLayout layout(samples, MakeCatalogue(samples));
+  Replay replay(samples, layout);
+  Selection selection = Select(replay, layout);
+  EXPECT_LT(selection.chi2_per_dof, 1.2);  // the noise counts as its data sheet at least
+  const Probabilities right = MakeProbabilities(selection, layout, {});
+  EXPECT_EQ(right.hypotheses.front().verdict, Verdict{"tag_offset"});
+  selection.chi2_per_dof = 2.5;
+  const Probabilities inadequate = MakeProbabilities(selection, layout, {});
+  EXPECT_EQ(inadequate.hypotheses.front().verdict, kUnknown);
+  EXPECT_NEAR(inadequate.hypotheses.front().probability, 0.95, 1e-12);
+  double sum = 0.0;
+  for (const auto& h : inadequate.hypotheses) sum += h.probability;
+  EXPECT_NEAR(sum, 1.0, 1e-9);
 }
 
 }  // namespace
