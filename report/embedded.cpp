@@ -16,8 +16,10 @@
   extern "C" const char symbol##_end[]
 
 FLEXTIP_EMBED(flextip_plotly_js, FLEXTIP_PLOTLY_JS);
+FLEXTIP_EMBED(flextip_plotly_flat_js, FLEXTIP_PLOTLY_FLAT_JS);
 FLEXTIP_EMBED(flextip_page_css, FLEXTIP_PAGE_CSS);
 FLEXTIP_EMBED(flextip_page_js, FLEXTIP_PAGE_JS);
+FLEXTIP_EMBED(flextip_figures_js, FLEXTIP_FIGURES_JS);
 
 namespace flextip {
 namespace {
@@ -29,7 +31,11 @@ std::string_view Between(const char* begin, const char* end) {
 }  // namespace
 
 std::string_view PlotlyJs() { return Between(flextip_plotly_js_begin, flextip_plotly_js_end); }
+std::string_view PlotlyFlatJs() {
+  return Between(flextip_plotly_flat_js_begin, flextip_plotly_flat_js_end);
+}
 std::string_view PageCss() { return Between(flextip_page_css_begin, flextip_page_css_end); }
 std::string_view PageJs() { return Between(flextip_page_js_begin, flextip_page_js_end); }
+std::string_view FiguresJs() { return Between(flextip_figures_js_begin, flextip_figures_js_end); }
 
 }  // namespace flextip

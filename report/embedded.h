@@ -5,8 +5,12 @@
 
 namespace flextip {
 
-std::string_view PlotlyJs();  ///< the plotting library, of the version in package-lock.json
-std::string_view PageCss();   ///< report/page.css
-std::string_view PageJs();    ///< report/page.js
+// The plotting library, of the version in package-lock.json: lines in the plane and in space, and
+// all that is flat (contours, bars).
+std::string_view PlotlyJs();
+std::string_view PlotlyFlatJs();
+std::string_view PageCss();    ///< report/page.css
+std::string_view PageJs();     ///< report/page.js
+std::string_view FiguresJs();  ///< report/figures.js
 
 }  // namespace flextip

@@ -38,7 +38,15 @@ nlohmann::json TraceJson(const PlotTrace& trace) {
   return json;
 }
 
-/// What page.js draws. A "<" could end the script element that holds it.
+/// A "<" in JSON could end the script element that holds it.
+std::string WithoutTags(std::string text) {
+  for (auto at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    text.replace(at, 1, "\\u003c");
+  }
+  return text;
+}
+
+/// What page.js draws.
 std::string PlotJson(const Plot& plot) {
   nlohmann::json json{{"x_label", plot.x_label},
                       {"y_label", plot.y_label},
@@ -50,11 +58,7 @@ std::string PlotJson(const Plot& plot) {
     assert(trace.z.empty() || trace.z.size() == trace.x.size());
     json["traces"].push_back(TraceJson(trace));
   }
-  std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  for (auto at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
-    text.replace(at, 1, "\\u003c");
-  }
-  return text;
+  return WithoutTags(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 std::string MimeType(const std::string& bytes) {
@@ -161,12 +165,23 @@ void Report::AddTable(const Table& table) {
 }
 
 void Report::AddPlot(const Plot& plot) {
+  assert(!has_figures_);
   has_plots_ = true;
   const bool in_space = !plot.traces.empty() && !plot.traces.front().z.empty();
   body_ += fmt::format(
       "<figure class=\"plot\">\n{}<div class=\"canvas{}\"><script type=\"application/json\">{}"
       "</script></div>\n{}</figure>\n",
       Title(plot.title), in_space ? " space" : "", PlotJson(plot), Caption(plot.caption));
+}
+
+void Report::AddFigure(const std::string& title, const std::string& caption,
+                       const std::string& json) {
+  assert(!has_plots_);
+  has_figures_ = true;
+  body_ += fmt::format(
+      "<figure class=\"plot\">\n{}<div class=\"drawing\"><script type=\"application/json\">{}"
+      "</script></div>\n{}</figure>\n",
+      Title(title), WithoutTags(json), Caption(caption));
 }
 
 void Report::AddPictures(
@@ -191,6 +206,9 @@ std::string Report::Html() const {
   html += "</header>\n<main>\n" + body_ + "</main>\n";
   if (has_plots_)
     html += fmt::format("<script>{}</script>\n<script>\n{}</script>\n", PlotlyJs(), PageJs());
+  if (has_figures_)
+    html +=
+        fmt::format("<script>{}</script>\n<script>\n{}</script>\n", PlotlyFlatJs(), FiguresJs());
   return html + "</body>\n</html>\n";
 }
 

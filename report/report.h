@@ -49,6 +49,8 @@ class Report {
   /// As it stands: for parts that a page draws itself. Its texts must be escaped already.
   void AddHtml(const std::string& html) { body_ += html; }
   void AddPlot(const Plot& plot);
+  /// A figure of figures.json, given as its JSON text. A page has plots or figures, not both.
+  void AddFigure(const std::string& title, const std::string& caption, const std::string& json);
   /// Pictures side by side, each a PNG or JPEG file's bytes with a caption.
   void AddPictures(const std::vector<std::pair<std::string, std::string>>& bytes_and_captions);
 
@@ -59,7 +61,7 @@ class Report {
 
  private:
   std::string title_, subtitle_, body_;
-  bool has_plots_ = false;
+  bool has_plots_ = false, has_figures_ = false;
 };
 
 /// `text` with the characters that HTML takes for its own replaced.

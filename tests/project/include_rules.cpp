@@ -27,12 +27,15 @@ const std::map<std::string, Names>& Arrows() {
       {"simulation", {"core", "recording", "vision"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core"}},
+      {"workspace", {"core", "kinematics", "control", "recording"}},
+      {"reproduction",
+       {"core", "kinematics", "estimation", "control", "simulation", "workspace", "report"}},
       {"apps",
        {"core", "kinematics", "estimation", "control", "vision", "recording", "calibration",
-        "simulation", "diagnosis", "report"}},
+        "simulation", "diagnosis", "report", "workspace", "reproduction"}},
       {"bench",
        {"core", "kinematics", "estimation", "control", "vision", "recording", "calibration",
-        "simulation", "diagnosis", "report"}},
+        "simulation", "diagnosis", "report", "workspace", "reproduction"}},
   };
   return arrows;
 }
@@ -47,7 +50,8 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"apriltag", {"vision", "simulation"}},  // the renderer draws the library's patterns
       {"ceres/", {"estimation", "vision", "calibration", "diagnosis"}},
       {"yaml-cpp/", {"recording", "simulation", "diagnosis", "apps"}},
-      {"tbb/", {"vision", "simulation", "diagnosis", "apps", "bench"}},
+      {"tbb/", {"vision", "simulation", "diagnosis", "workspace", "reproduction", "apps", "bench"}},
+      {"geos", {"reproduction"}},
       {"nlohmann/", {"report", "diagnosis", "apps", "bench"}},
       {"CLI/", {"apps", "bench"}},
   };

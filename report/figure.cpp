@@ -1,0 +1,101 @@
+#include "report/figure.h"
+
+#include <cassert>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+
+namespace flextip {
+namespace {
+
+using Json = nlohmann::json;
+
+/// JSON has no word for a number that is not finite; Plotly draws null as a gap.
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json Numbers(const std::vector<double>& values) {
+  auto list = Json::array();
+  for (const double v : values) list.push_back(Number(v));
+  return list;
+}
+
+const char* Name(FigureTrace::Kind kind) {
+  switch (kind) {
+    case FigureTrace::Kind::kPoints:
+      return "points";
+    case FigureTrace::Kind::kBars:
+      return "bars";
+    case FigureTrace::Kind::kLine:
+      break;
+  }
+  return "line";
+}
+
+Json TraceJson(const FigureTrace& trace) {
+  assert(trace.labels.empty() ? trace.x.size() == trace.y.size()
+                              : trace.labels.size() == trace.y.size());
+  assert(trace.y_error.empty() || trace.y_error.size() == trace.y.size());
+  Json json{{"name", trace.name}, {"kind", Name(trace.kind)}, {"y", Numbers(trace.y)}};
+  if (trace.labels.empty()) {
+    json["x"] = Numbers(trace.x);
+  } else {
+    json["x"] = trace.labels;
+  }
+  if (!trace.y_error.empty()) json["y_error"] = Numbers(trace.y_error);
+  if (!trace.color.empty()) json["color"] = trace.color;
+  if (!trace.symbol.empty()) json["symbol"] = trace.symbol;
+  if (trace.dashed) json["dashed"] = true;
+  return json;
+}
+
+Json FieldJson(const FigureField& field) {
+  const std::size_t columns = field.x.size();
+  assert(field.values.size() == columns * field.y.size());
+  auto rows = Json::array();
+  for (std::size_t r = 0; r < field.y.size(); ++r) {
+    auto row = Json::array();
+    for (std::size_t c = 0; c < columns; ++c) row.push_back(Number(field.values[r * columns + c]));
+    rows.push_back(std::move(row));
+  }
+  return {
+      {"name", field.name},        {"x", Numbers(field.x)},           {"y", Numbers(field.y)},
+      {"values", std::move(rows)}, {"levels", Numbers(field.levels)}, {"low", Number(field.low)},
+      {"high", Number(field.high)}};
+}
+
+Json FigureJson(const Figure& figure) {
+  Json json{{"name", figure.name},       {"title", figure.title},
+            {"caption", figure.caption}, {"x_label", figure.x_label},
+            {"y_label", figure.y_label}, {"log_x", figure.log_x},
+            {"log_y", figure.log_y},     {"equal_axes", figure.equal_axes},
+            {"fields", Json::array()},   {"traces", Json::array()}};
+  for (const auto& field : figure.fields) json["fields"].push_back(FieldJson(field));
+  for (const auto& trace : figure.traces) json["traces"].push_back(TraceJson(trace));
+  return json;
+}
+
+}  // namespace
+
+FigureTrace Segments(const std::vector<double>& x, const std::vector<double>& y,
+                     const std::vector<double>& u, const std::vector<double>& v) {
+  assert(x.size() == y.size() && x.size() == u.size() && x.size() == v.size());
+  constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+  FigureTrace trace;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    trace.x.insert(trace.x.end(), {x[i] - 0.5 * u[i], x[i] + 0.5 * u[i], kGap});
+    trace.y.insert(trace.y.end(), {y[i] - 0.5 * v[i], y[i] + 0.5 * v[i], kGap});
+  }
+  return trace;
+}
+
+void WriteFigures(const std::filesystem::path& file, const std::vector<Figure>& figures) {
+  auto json = Json::array();
+  for (const auto& figure : figures) json.push_back(FigureJson(figure));
+  std::ofstream out(file, std::ios::binary);
+  out << json.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  if (!out.flush()) throw WorkError(file.string() + ": cannot be written");
+}
+
+}  // namespace flextip

@@ -1,0 +1,54 @@
+// Figures as data: a command writes figures.json beside its tables, and its page draws that file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace flextip {
+
+/// One curve, set of points or set of bars. A value that is not finite leaves a gap.
+struct FigureTrace {
+  enum class Kind : std::uint8_t { kLine, kPoints, kBars };
+
+  std::string name = {};  ///< in the legend; empty: not in it
+  Kind kind = Kind::kLine;
+  std::vector<double> x = {}, y = {};
+  std::vector<std::string> labels = {};  ///< in place of `x`: categories
+  std::vector<double> y_error = {};      ///< half lengths of error bars; empty: none
+  std::string color = {};                ///< as in CSS; empty: the page chooses
+  std::string symbol = {};               ///< of points, as Plotly names it ("circle-open", "x")
+  bool dashed = false;
+};
+
+/// A quantity over a grid, as colours with contour lines.
+struct FigureField {
+  std::string name = {};               ///< of the colours' scale, with the unit
+  std::vector<double> x = {}, y = {};  ///< the grid's lines
+  std::vector<double> values = {};     ///< y.size() rows of x.size(); NaN: nothing there
+  std::vector<double> levels = {};     ///< of the contour lines
+  double low = std::numeric_limits<double>::quiet_NaN();  ///< of the colours; NaN: the least value
+  double high = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct Figure {
+  std::string name = {};  ///< "fig-2-4a": what files and links call it
+  std::string title = {}, caption = {};
+  std::string x_label = {}, y_label = {};  ///< with the unit: "depth (mm)"
+  bool log_x = false, log_y = false;
+  bool equal_axes = false;               ///< a length is as long in both directions
+  std::vector<FigureField> fields = {};  ///< none or one
+  std::vector<FigureTrace> traces = {};  ///< on top of the field
+};
+
+/// Short line segments, each through its middle (x, y) along (u, v) with the length of (u, v), as
+/// one trace with gaps: a plot of directions whose sign means nothing.
+FigureTrace Segments(const std::vector<double>& x, const std::vector<double>& y,
+                     const std::vector<double>& u, const std::vector<double>& v);
+
+/// Throws WorkError where the disk refuses.
+void WriteFigures(const std::filesystem::path& file, const std::vector<Figure>& figures);
+
+}  // namespace flextip
