@@ -162,7 +162,7 @@ void Replay::FixNoiseModel() {
   for (std::size_t k = 0; k < replayed_.size(); ++k) {
     if (!replayed_[k].ok) continue;
     const Eigen::Vector3d t = (samples_.p_RP - samples_.samples[k].p_RW).normalized();
-    const Eigen::Vector3d f = replayed_[k].f_tip_N;
+    const Eigen::Vector3d f = replayed_[k].f_tip_N - MeanForce(k);
     across.push_back((f - f.dot(t) * t).norm() / ForceUnit(k) / std::sqrt(2.0));
   }
   if (across.empty()) return;

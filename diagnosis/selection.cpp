@@ -101,9 +101,17 @@ class Search {
     return nullptr;
   }
 
+  /// Of several fits of one hypothesis the best counts.
   void Keep(const HypothesisFit& fit) {
     ++selection_.fits;
-    tried_.push_back(fit);
+    const auto before = std::find_if(tried_.begin(), tried_.end(), [&](const HypothesisFit& f) {
+      return f.hypothesis == fit.hypothesis;
+    });
+    if (before == tried_.end()) {
+      tried_.push_back(fit);
+    } else if (fit.log_posterior > before->log_posterior) {
+      *before = fit;
+    }
     if (fit.log_posterior > best_.log_posterior) best_ = fit;
   }
 
@@ -132,15 +140,26 @@ class Search {
     }
   }
 
-  /// One of a pair may do, with the rest of the world elsewhere than where the pair fits.
+  /// One of a pair may do, with the rest of the world elsewhere than where the pair fits. One that
+  /// was fitted and fell short of its promise may have stopped on its way to where the pair is.
   void FitPartsOfBest() {
     const Hypothesis pair = best_.hypothesis;
     if (pair.effects.size() < 2) return;
     const Place place = best_.place;
-    for (const int effect : pair.effects) {
-      if (Tried({{effect}, false}) != nullptr) continue;
+    GoTo(replay_, layout_, place);
+    const Weighing weighing =
+        Weigh(replay_, ProblemHere(replay_, basis_, options_),
+              KnownHypotheses(layout_.EffectCount(), false), options_, may_miss_);
+    for (const auto& s : weighing.scored) {
+      const Hypothesis& part = s.weighed.hypothesis;
+      if (part.effects.size() != 1 ||
+          std::count(pair.effects.begin(), pair.effects.end(), part.effects[0]) == 0)
+        continue;
+      const HypothesisFit* tried = Tried(part);
+      if (tried != nullptr && tried->log_posterior > s.log_posterior + weighing.log_none - kRival)
+        continue;
       GoTo(replay_, layout_, place);
-      Keep(FitHypothesis(replay_, layout_, {{effect}, false}, options_,
+      Keep(FitHypothesis(replay_, layout_, part, options_,
                          {.basis = basis_,
                           .may_miss = may_miss_,
                           .rounds = kFirstRounds,

@@ -83,6 +83,43 @@ TEST_F(ForceVolumeTest, IsWhatDrawnNoiseLosesToAYieldingTip) {
   EXPECT_NEAR(volume, mean, 5.0 * std::sqrt(variance / kDraws));
 }
 
+/// The first parameter of an effect, of the catalogue or not.
+int FirstOf(const ParameterLayout& layout, const std::string& name) {
+  for (const auto& block : layout.Blocks())
+    if (block.effect->Name() == name) return block.first;
+  ADD_FAILURE() << name;
+  return 0;
+}
+
+// What is known of the mean needs no room along the shaft.
+TEST(ForcePrior, IsNarrowAlongTheShaftUnderAConstantLoad) {
+  HiddenOptions options{.exact = true};
+  options.with_load = false;
+  options.scene = {.motion = MotionKind::kSines, .load = LoadKind::kHungMass, .duration_s = 3.0};
+  const SampleSet samples = MakeSampleSet(MakeHidden(options, 62).recording, "small");
+  ParameterLayout layout(samples, MakeCatalogue(samples));
+  Replay replay(samples, layout);
+  const auto share = [&](const Eigen::VectorXd& theta) {
+    EXPECT_TRUE(replay.Evaluate(theta));
+    replay.FixNoiseModel();
+    Eigen::VectorXd yielding = theta;
+    yielding[layout.Blocks()[layout.Find("tip_compliance")].first] = kCompliance_m_N;
+    EXPECT_TRUE(replay.EvaluateWithForces(yielding));
+    const std::vector<double> shares = replay.Whiten().force_share;
+    return std::accumulate(shares.begin(), shares.end(), 0.0) / double(shares.size());
+  };
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(layout.Size());
+  const double unknown_mean = share(theta);
+  Eigen::Vector3d mean_N = Eigen::Vector3d::Zero();
+  for (const auto& f : replay.Forces()) mean_N += f / double(replay.Forces().size());
+  const Instrument& shaft = samples.instrument;
+  const double unit_N = shaft.bending_stiffness_Nm2 / std::pow(shaft.length_m, 2);
+  theta.segment<3>(FirstOf(layout, "mean_load")) = mean_N / unit_N;
+  const double known_mean = share(theta);
+  // Two rows across the shaft are taken up in any case.
+  EXPECT_LT(known_mean - 2.0, 0.5 * (unknown_mean - 2.0)) << unknown_mean << ' ' << known_mean;
+}
+
 TEST_F(ForceVolumeTest, IsNothingWithoutACompliance) {
   ASSERT_TRUE(replay_.Evaluate(Compliant(0.0)));
   EXPECT_EQ(ForceVolume(replay_), 0.0);
