@@ -78,7 +78,8 @@ class Replay {
 
   /// Sets from where the replay stands, until the next call, what must be the same for all that is
   /// compared. Of an unknown force: how wide its prior along the shaft is, from how far the
-  /// forces across it are from their mean. With a known load: how the noise of load and wrist enters the rows.
+  /// forces across it are from their mean. With a known load: how the noise of load and wrist
+  /// enters the rows.
   void FixNoiseModel();
 
   /// `sensors_used`: rows of absent sensors are left out, besides the absent ones.
