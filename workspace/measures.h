@@ -15,9 +15,9 @@ enum class Measure {
 /// A robot, what its controller believes of it, and the controller's gain.
 template <int N>
 struct MapSetup {
-  PortInstrument<N> truth;
-  std::optional<TipForce<N>> force;
-  ModelError<N> error;
+  PortInstrument<N> truth = {};
+  std::optional<TipForce<N>> force = {};
+  ModelError<N> error = {};
   double gain = 1.0;  ///< k of (2.1)
 };
 
