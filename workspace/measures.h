@@ -34,9 +34,18 @@ struct PointMeasures {
 template <int N>
 PointMeasures<N> MeasureAt(const MapSetup<N>& setup, TrueShaft<N>& shaft, const VectorN<N>& p_tip);
 
-/// How much a motion along `v` (not zero) goes wrong: |G v| / |v|, or the angle between v and A v
-/// (rad; pi where there is no motion).
+/// What can go wrong with a motion in one direction.
+enum class MotionFault {
+  kNorm,   ///< |G v| / |v|: what is left after one step
+  kAngle,  ///< between v and A v, rad; pi where there is no motion
+  /// How far a whole move in small steps strays from its line, over its length: the largest part of
+  /// exp(-A t) v square to v. The direction toward the goal turns as the tip strays, and its error
+  /// with it, so this may be much more than the angle of v itself tells. 10 where it does not end.
+  kStray,
+};
+
+/// Of a motion along v (not zero).
 template <int N>
-double DirectionError(const MatrixN<N>& A, const VectorN<N>& v, Measure measure);
+double DirectionError(const MatrixN<N>& A, const VectorN<N>& v, MotionFault fault);
 
 }  // namespace flextip

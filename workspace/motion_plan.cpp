@@ -47,20 +47,32 @@ double DistanceFrom(const std::vector<VectorN<N>>& path, const VectorN<N>& p) {
   return least;
 }
 
-/// Desired positions one step apart along the path, ending with its end.
+/// Places `move_m` apart along the path, ending with its end.
 template <int N>
-std::vector<VectorN<N>> DesiredPositions(const std::vector<VectorN<N>>& path, double step_m) {
-  std::vector<VectorN<N>> desired;
-  double next = step_m, done = 0.0;
+std::vector<VectorN<N>> Goals(const std::vector<VectorN<N>>& path, double move_m) {
+  std::vector<VectorN<N>> goals;
+  double next = move_m, done = 0.0;
   for (std::size_t i = 1; i < path.size(); ++i) {
     const VectorN<N> piece = path[i] - path[i - 1];
     const double length = piece.norm();
-    for (; next < done + length; next += step_m)
-      desired.push_back(path[i - 1] + (next - done) / length * piece);
+    for (; next < done + length; next += move_m)
+      goals.push_back(path[i - 1] + (next - done) / length * piece);
     done += length;
   }
-  desired.push_back(path.back());
-  return desired;
+  goals.push_back(path.back());
+  return goals;
+}
+
+/// One cycle; empty where it ends outside the workspace.
+template <int N>
+std::optional<TrueState<N>> Step(const MapSetup<N>& setup, TrueShaft<N>& shaft,
+                                 const TrueState<N>& state, const VectorN<N>& goal, double gain) {
+  const auto belief = Believe(setup.truth, setup.error, state.theta);
+  if (!belief) return std::nullopt;
+  const VectorN<N> step = gain * belief->J_hat.inverse() * (goal - state.p_tip);
+  const VectorN<N> theta = state.theta + step;
+  if (!step.allFinite() || !setup.truth.arm.WithinLimits(theta)) return std::nullopt;
+  return shaft.AtJoints(theta);
 }
 
 }  // namespace
@@ -74,7 +86,7 @@ const char* Name(FollowStatus status) {
     case FollowStatus::kLost:
       return "left the workspace";
     case FollowStatus::kNotArrived:
-      return "not arrived";
+      return "a move did not arrive";
   }
   return "?";
 }
@@ -87,7 +99,7 @@ PathCost MotionCost(const WorkspaceMap<N>& map, const PlanOptions& options) {
     VectorN<N> in_space = VectorN<N>::Zero();
     in_space[map.slice.right] = v.x();
     in_space[map.slice.up] = v.y();
-    return 1.0 + options.weight * DirectionError<N>(*A, in_space, options.measure);
+    return 1.0 + options.weight * DirectionError<N>(*A, in_space, options.fault);
   };
 }
 
@@ -107,30 +119,28 @@ Followed<N> FollowPath(const MapSetup<N>& setup, const std::vector<VectorN<N>>& 
   assert(!path.empty());
   Followed<N> followed;
   TrueShaft<N> shaft(setup.truth, setup.force);
-  auto state = shaft.AtTip(path.front());
-  if (!state) return followed;
-  auto desired = DesiredPositions(path, options.step_m);
-  const std::size_t moving = desired.size();
-  desired.insert(desired.end(), std::size_t(options.settle_cycles), path.back());
-  double sum = 0.0;
-  for (std::size_t i = 0; i < desired.size(); ++i) {
-    const auto belief = Believe(setup.truth, setup.error, state->theta);
-    followed.status = FollowStatus::kLost;
-    if (!belief) return followed;
-    const VectorN<N> step = setup.gain * belief->J_hat.inverse() * (desired[i] - state->p_tip);
-    const VectorN<N> theta = state->theta + step;
-    if (!step.allFinite() || !setup.truth.arm.WithinLimits(theta)) return followed;
-    state = shaft.AtJoints(theta);
-    if (!state) return followed;
-    followed.tips.push_back(state->p_tip);
-    const double deviation = DistanceFrom(path, state->p_tip);
-    followed.max_deviation_m = std::max(followed.max_deviation_m, deviation);
-    if (i < moving) sum += deviation;
-    if (i >= moving && (state->p_tip - path.back()).norm() < options.arrived_m) break;
+  const auto start = shaft.AtTip(path.front());
+  if (!start) return followed;
+  TrueState<N> now = *start;
+  double gone = 0.0, sum = 0.0;
+  for (const VectorN<N>& goal : Goals<N>(path, options.move_m)) {
+    int cycles = 0;
+    for (; (goal - now.p_tip).norm() >= options.arrived_m; ++cycles) {
+      followed.status = FollowStatus::kNotArrived;
+      if (cycles == options.cycles_per_move) return followed;
+      const auto next = Step(setup, shaft, now, goal, options.gain);
+      followed.status = FollowStatus::kLost;
+      if (!next) return followed;
+      const double deviation = DistanceFrom(path, next->p_tip);
+      followed.max_deviation_m = std::max(followed.max_deviation_m, deviation);
+      gone += (next->p_tip - now.p_tip).norm();
+      sum += deviation * (next->p_tip - now.p_tip).norm();
+      followed.mean_deviation_m = sum / gone;
+      followed.tips.push_back(next->p_tip);
+      now = *next;
+    }
   }
-  followed.mean_deviation_m = sum / double(moving);
-  const bool arrived = (state->p_tip - path.back()).norm() < options.arrived_m;
-  followed.status = arrived ? FollowStatus::kOk : FollowStatus::kNotArrived;
+  followed.status = FollowStatus::kOk;
   return followed;
 }
 

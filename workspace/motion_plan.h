@@ -12,7 +12,7 @@ namespace flextip {
 /// A metre costs 1 + weight * DirectionError: what matters is the error of the direction
 /// travelled, not the worst of all directions.
 struct PlanOptions {
-  Measure measure = Measure::kAngle;  ///< the angle in rad
+  MotionFault fault = MotionFault::kStray;
   double weight = 1.0;
   double spacing_m = 0.005;
 };
@@ -31,14 +31,16 @@ enum class FollowStatus {
   kOk,
   kStartOutside,  ///< the tip cannot be at the path's beginning
   kLost,          ///< the arm or the shaft came to where it cannot be
-  kNotArrived,    ///< still further than `arrived_m` from the goal
+  kNotArrived,    ///< a move did not end within `arrived_m` of its goal
 };
 const char* Name(FollowStatus status);
 
+/// As in 2.3.2: moves to goals `move_m` apart along the path, each made in small steps.
 struct FollowOptions {
-  double step_m = 0.005;  ///< of the desired position along the path, each cycle
-  int settle_cycles = 500;
-  double arrived_m = 1e-4;
+  double move_m = 0.02;
+  double gain = 0.02;  ///< of the steps, in place of the setup's
+  double arrived_m = 5e-4;
+  int cycles_per_move = 2000;
 };
 
 template <int N>
@@ -46,11 +48,11 @@ struct Followed {
   FollowStatus status = FollowStatus::kStartOutside;
   std::vector<VectorN<N>> tips = {};  ///< after each cycle
   double max_deviation_m = 0.0;       ///< from the path
-  double mean_deviation_m = 0.0;      ///< over the cycles until the desired position is the goal
+  double mean_deviation_m = 0.0;      ///< over the distance that the tip went
 };
 
-/// Quasi-static steps (2.3) along a path in space, with the tip's position known: each cycle the
-/// desired position moves on by a step and the arm by k J_hat^-1 (x_d - x).
+/// Quasi-static steps (2.3) along a path in space, with the tip's position known: each cycle moves
+/// the joints by k J_hat^-1 (x_d - x), and the next goal follows once the last is reached.
 template <int N>
 Followed<N> FollowPath(const MapSetup<N>& setup, const std::vector<VectorN<N>>& path,
                        const FollowOptions& options);

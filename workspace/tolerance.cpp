@@ -8,10 +8,12 @@
 namespace flextip {
 namespace {
 
+/// Points on the part's border are in it, however they are rounded.
 template <int N>
 bool InPart(const ToleranceQuestion<N>& question, const VectorN<N>& p) {
-  return (p.array() >= question.part_min.array()).all() &&
-         (p.array() <= question.part_max.array()).all();
+  constexpr double kRounding_m = 1e-9;
+  return (p.array() >= question.part_min.array() - kRounding_m).all() &&
+         (p.array() <= question.part_max.array() + kRounding_m).all();
 }
 
 /// One question at one map.

@@ -18,8 +18,9 @@ struct TipForce {
 /// The arm at one place, within its limits.
 template <int N>
 struct TrueState {
-  VectorN<N> p_wrist, p_tip, theta;
-  MatrixN<N> J;  ///< d tip / d theta, the tip's force held constant
+  VectorN<N> p_wrist = VectorN<N>::Zero(), p_tip = VectorN<N>::Zero();
+  VectorN<N> theta = VectorN<N>::Zero();
+  MatrixN<N> J = MatrixN<N>::Zero();  ///< d tip / d theta, the tip's force held constant
 };
 
 /// Finds wrists and tips of one instrument. Keeps the last rod as a start for the next: one of these

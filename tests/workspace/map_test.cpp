@@ -51,10 +51,10 @@ void CheckSteps(const MapSetup<N>& setup, unsigned seed) {
       const VectorN<N> theta =
           at.state->theta + setup.gain * belief->J_hat.inverse() * (kShort * v);
       const VectorN<N> moved = (shaft.AtJoints(theta)->p_tip - at.state->p_tip) / kShort;
-      EXPECT_NEAR((v - moved).norm(), DirectionError<N>(*at.A, v, Measure::kNorm),
+      EXPECT_NEAR((v - moved).norm(), DirectionError<N>(*at.A, v, MotionFault::kNorm),
                   1e-3 * (1.0 + at.step.norm) * (1.0 + moved.norm()));
-      largest = std::max(largest, DirectionError<N>(*at.A, v, Measure::kNorm));
-      largest_angle = std::max(largest_angle, DirectionError<N>(*at.A, v, Measure::kAngle));
+      largest = std::max(largest, DirectionError<N>(*at.A, v, MotionFault::kNorm));
+      largest_angle = std::max(largest_angle, DirectionError<N>(*at.A, v, MotionFault::kAngle));
     }
     EXPECT_NEAR(largest, at.step.norm, 1e-9 * (1.0 + at.step.norm));
     EXPECT_NEAR(largest_angle, at.angle.phi_max_rad, 1e-6);

@@ -29,7 +29,7 @@ TEST(PlanMotion, IsStraightWithoutWeightAndLongerButBetterWithIt) {
 
 TEST(MotionCost, IsInfiniteOffTheWorkspaceAndExactOnTheGrid) {
   const auto map = ComputeMap(kSetup, {}, 0.01);
-  const auto cost = MotionCost(map, {.measure = Measure::kNorm, .weight = 2.0});
+  const auto cost = MotionCost(map, {.fault = MotionFault::kNorm, .weight = 2.0});
   EXPECT_FALSE(std::isfinite(cost({0.16, 0.05}, Vector2d::UnitX())));
   EXPECT_FALSE(std::isfinite(cost({5.0, 5.0}, Vector2d::UnitX())));
   for (const auto& at : map.points) {
