@@ -5,17 +5,27 @@
 
 #include "reproduction/chapter.h"
 #include "workspace/map.h"
+#include "workspace/motion_plan.h"
+#include "workspace/tolerance.h"
 
 namespace flextip {
 
-/// Sizes, ||G||, angles, gains and directions of Figs. 2.3 to 2.5.
+/// ||G|| and the angles over the map of Fig. 2.4.
 std::vector<TableRow> StudyMeasures(const WorkspaceMap<2>& map);
-std::vector<TableRow> StudyDirections(const WorkspaceMap<2>& map);
-/// ||G|| over the gain.
+/// ||G|| over the gain, on a grid.
 std::vector<TableRow> StudyGains(double spacing_m);
+/// v_sigma and p_phi of Fig. 2.5.
+std::vector<TableRow> StudyDirections(const WorkspaceMap<2>& map);
 /// The four errors of Fig. 2.6, in the order of FourErrors().
 std::vector<TableRow> StudyFourErrors(const std::vector<WorkspaceMap<2>>& maps);
-/// Which port errors the workspace stands, and which path is worth a detour (2.4).
+
+/// Which port errors parts of the workspace stand (2.4).
 std::vector<TableRow> StudyTolerances(double spacing_m);
+/// A path that is worth its detour (2.4), and what becomes of it and of the direct one.
+struct PathStudy {
+  std::vector<TableRow> rows;
+  Figure figure;
+};
+PathStudy StudyPaths(double spacing_m);
 
 }  // namespace flextip
