@@ -44,14 +44,18 @@ struct Findings {
 template <int N>
 std::string Where(const VectorN<N>& p_m) {
   const VectorN<N> mm = 1000.0 * p_m;
-  if constexpr (N == 2) return fmt::format("z {:.1f} y {:.1f} mm", mm[0], mm[1]);
-  else return fmt::format("x {:.1f} y {:.1f} z {:.1f} mm", mm[0], mm[1], mm[2]);
+  if constexpr (N == 2)
+    return fmt::format("z {:.1f} y {:.1f} mm", mm[0], mm[1]);
+  else
+    return fmt::format("x {:.1f} y {:.1f} z {:.1f} mm", mm[0], mm[1], mm[2]);
 }
 
 template <int N>
 nlohmann::json InSpace(const VectorN<N>& p_m) {
-  if constexpr (N == 2) return {0.0, p_m[1], p_m[0]};
-  else return {p_m[0], p_m[1], p_m[2]};
+  if constexpr (N == 2)
+    return {0.0, p_m[1], p_m[0]};
+  else
+    return {p_m[0], p_m[1], p_m[2]};
 }
 
 /// Shares and largest values of a slice.
@@ -107,13 +111,14 @@ void AnswerTolerance(const MapScenario<N>& scenario, Findings& findings, OutputF
   for (const auto& [slice, geometry] : scenario.slices) {
     const auto map = ComputeMap(scenario.setup, geometry, task.spacing_m);
     const auto answer = FindTolerance(scenario.setup, map, task.question);
-    nlohmann::json entry{{"slice", slice}, {"status", Name(answer.status)}, {"points", answer.points}};
+    nlohmann::json entry{
+        {"slice", slice}, {"status", Name(answer.status)}, {"points", answer.points}};
     if (answer.status == ToleranceStatus::kOk) {
       entry["scale"] = answer.scale;
       entry["first_at_m"] = InSpace<N>(map.points[answer.point].p_tip);
       findings.Add(slice + ": multiple of the bounds that keeps to the limit", answer.scale, "",
-                   fmt::format("first passed at {} by {}",
-                               Where<N>(map.points[answer.point].p_tip), ErrorText<N>(answer.first.error)));
+                   fmt::format("first passed at {} by {}", Where<N>(map.points[answer.point].p_tip),
+                               ErrorText<N>(answer.first.error)));
     } else {
       output.Warn(fmt::format("tolerance, {}: {}", slice, Name(answer.status)));
     }
@@ -168,6 +173,12 @@ void AnswerPlan(const MapScenario<N>& scenario, Findings& findings, OutputFolder
       PlanFigure(scenario.setup, map, direct, planned, by_direct, by_planned));
 }
 
+/// Without any, its maps are empty.
+template <int N>
+bool HasErrors(const MapSetup<N>& setup) {
+  return setup.force || !setup.error.AsVector().isZero(0.0) || setup.gain != 1.0;
+}
+
 /// The maps of all slices, with the worst cases where they are asked for.
 template <int N>
 void ComputeSlices(const MapScenario<N>& scenario, Findings& findings, OutputFolder& output) {
@@ -188,7 +199,8 @@ void ComputeSlices(const MapScenario<N>& scenario, Findings& findings, OutputFol
     }
     Summarise(name, map, findings);
     findings.map_rows += MapTableRows(name, map, worst);
-    auto figures = MapFigures(scenario.setup, name, prefix, map);
+    std::vector<Figure> figures;
+    if (HasErrors(scenario.setup)) figures = MapFigures(scenario.setup, name, prefix, map);
     if (scenario.tolerance) {
       auto more = WorstFigures(scenario.setup, *scenario.tolerance, name, prefix, map, worst);
       std::move(more.begin(), more.end(), std::back_inserter(figures));

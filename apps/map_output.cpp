@@ -64,7 +64,8 @@ std::vector<Eigen::Vector2d> InSlice(const Slice<N>& slice, const std::vector<Ve
 
 template <int N>
 std::string MapTableHeader(bool with_worst) {
-  const std::string joints = N == 2 ? ",joint1 [rad],joint2 [rad]" : ",base [rad],joint1 [rad],joint2 [rad]";
+  const std::string joints =
+      N == 2 ? ",joint1 [rad],joint2 [rad]" : ",base [rad],joint1 [rad],joint2 [rad]";
   return "#slice" + Columns<N>("p_AE", "m") + Columns<N>("p_AW", "m") + joints +
          ",norm_G [],phi_hat_max [deg],phi_max [deg]" + Columns<N>("v_sigma", "") +
          Columns<N>("p_phi", "") + (with_worst ? ",worst_norm_G [],worst_phi_max [deg]\n" : "\n");
@@ -97,7 +98,8 @@ std::vector<Figure> MapFigures(const MapSetup<N>& setup, const std::string& slic
   const std::string in = " (" + slice + ")";
   std::vector<Figure> figures{
       Titled(MapFigure(map, MapQuantity::kNorm), prefix + "norm", "||G||" + in),
-      Titled(MapFigure(map, MapQuantity::kPhiHat), prefix + "bound", "Bound on the largest angle" + in),
+      Titled(MapFigure(map, MapQuantity::kPhiHat), prefix + "bound",
+             "Bound on the largest angle" + in),
       Titled(MapFigure(map, MapQuantity::kPhiMax), prefix + "angle",
              "Largest angle between desired and actual motion" + in),
       Titled(DirectionFigure(map, MapDirection::kVSigma, true, kEvery_m), prefix + "v-sigma",

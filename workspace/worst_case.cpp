@@ -9,6 +9,10 @@
 namespace flextip {
 namespace {
 
+/// A place in the unit box or ball: no more components than there are errors.
+template <int N>
+using Unit = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, ModelError<N>::kCount, 1>;
+
 /// The measure as a function of x in the unit box or ball, one component for each error that is
 /// bounded away from zero.
 template <int N>
@@ -30,13 +34,13 @@ class ErrorSet {
   }
 
   int Size() const { return int(active_.size()); }
-  ModelError<N> Error(const Eigen::VectorXd& x) const {
+  ModelError<N> Error(const Unit<N>& x) const {
     typename ModelError<N>::Vector v = ModelError<N>::Vector::Zero();
     for (int i = 0; i < Size(); ++i) v[active_[i]] = half_[active_[i]] * x[i];
     return ModelError<N>::FromVector(v);
   }
 
-  double Value(const Eigen::VectorXd& x) const {
+  double Value(const Unit<N>& x) const {
     const auto error = ModelError<N>::FromVector(nominal_ + Error(x).AsVector());
     const auto belief = Believe(setup_.truth, error, state_.theta);
     if (!belief || belief->Reaches() != reaches_ || belief->J_hat.determinant() * sign_ <= 0.0)
@@ -50,7 +54,7 @@ class ErrorSet {
   }
 
   /// The nearest point of the set, or one near it.
-  void Confine(Eigen::VectorXd& x) const {
+  void Confine(Unit<N>& x) const {
     if (shape_ == BoundShape::kBox) {
       x = x.cwiseMax(-1.0).cwiseMin(1.0);
     } else if (x.norm() > 1.0) {
@@ -59,16 +63,16 @@ class ErrorSet {
   }
 
   /// Corners, and the middles of faces; on the ball where they point to.
-  std::vector<Eigen::VectorXd> Starts() const {
-    std::vector<Eigen::VectorXd> starts;
+  std::vector<Unit<N>> Starts() const {
+    std::vector<Unit<N>> starts;
     for (unsigned corner = 0; corner < (1U << Size()); ++corner) {
-      Eigen::VectorXd x(Size());
+      Unit<N> x(Size());
       for (int i = 0; i < Size(); ++i) x[i] = (corner >> i) & 1U ? 1.0 : -1.0;
       Confine(x);
       starts.push_back(x);
     }
     for (int i = 0; i < 2 * Size(); ++i)
-      starts.emplace_back((i % 2 ? 1.0 : -1.0) * Eigen::VectorXd::Unit(Size(), i / 2));
+      starts.emplace_back((i % 2 ? 1.0 : -1.0) * Unit<N>::Unit(Size(), i / 2));
     return starts;
   }
 
@@ -83,21 +87,22 @@ class ErrorSet {
   double sign_ = 0.0;
 };
 
+template <int N>
 struct Found {
-  Eigen::VectorXd x;
+  Unit<N> x;
   double value = 0.0;
 };
 
 /// Steps along the axes that help, halved when none does.
 template <int N>
-void Climb(const ErrorSet<N>& set, Found& best) {
+void Climb(const ErrorSet<N>& set, Found<N>& best) {
   constexpr double kFirst = 0.5, kLast = 1e-5;
   for (double step = kFirst; step > kLast; step *= 0.5) {
     for (bool better = true; better;) {
       better = false;
       for (int i = 0; i < 2 * set.Size(); ++i) {
         if (best.value == set.Hopeless()) return;
-        Eigen::VectorXd x = best.x;
+        Unit<N> x = best.x;
         x[i / 2] += i % 2 ? step : -step;
         set.Confine(x);
         const double value = set.Value(x);
@@ -115,15 +120,15 @@ template <int N>
 WorstError<N> FindWorst(const MapSetup<N>& setup, const TrueState<N>& state,
                         const ErrorBounds<N>& bounds, Measure measure, double scale) {
   const ErrorSet<N> set(setup, state, bounds, measure, scale);
-  std::vector<Found> found;
+  std::vector<Found<N>> found;
   for (const auto& x : set.Starts()) found.push_back({.x = x, .value = set.Value(x)});
   constexpr std::size_t kClimbs = 3;
   const std::size_t climbs = std::min(kClimbs, found.size());
   std::partial_sort(found.begin(), found.begin() + std::ptrdiff_t(climbs), found.end(),
-                    [](const Found& a, const Found& b) { return a.value > b.value; });
+                    [](const Found<N>& a, const Found<N>& b) { return a.value > b.value; });
   for (std::size_t i = 0; i < climbs; ++i) Climb(set, found[i]);
-  const Found& best = *std::max_element(
-      found.begin(), found.end(), [](const Found& a, const Found& b) { return a.value < b.value; });
+  const Found<N>& best = *std::max_element(
+      found.begin(), found.end(), [](const Found<N>& a, const Found<N>& b) { return a.value < b.value; });
   return {.value = best.value, .error = set.Error(best.x)};
 }
 

@@ -57,8 +57,7 @@ TEST(Believe, IsTheDerivativeOfTheBelievedTipInSpace) {
       const double l1 = 0.21 + error.links_m[0], l2 = 0.21 + error.links_m[1];
       const double reach = l1 * std::cos(t[1]) + l2 * std::sin(t[1] + t[2]);
       const double height = 0.21 + l1 * std::sin(t[1]) - l2 * std::cos(t[1] + t[2]);
-      const Eigen::Vector3d wrist(-reach * std::sin(t[0]), height,
-                                  -0.21 + reach * std::cos(t[0]));
+      const Eigen::Vector3d wrist(-reach * std::sin(t[0]), height, -0.21 + reach * std::cos(t[0]));
       const Eigen::Vector3d port = truth.p_port + error.port_m;
       return Eigen::Vector3d(wrist + (0.32 + error.shaft_m) * (port - wrist).normalized());
     };

@@ -42,16 +42,15 @@ TEST(PathPlanner, FindsTheCircleOfTheHyperbolicPlane) {
   const auto cost = [&](const Vector2d& p, const Vector2d&) { return 1.0 / height(p); };
   const Vector2d start(-0.6, -0.8), goal(0.6, -0.7);
   const Path path = PlanPath(cost, Problem(start, goal, 0.04));
-  const double exact = std::acosh(1.0 + (goal - start).squaredNorm() /
-                                            (2.0 * height(start) * height(goal)));
+  const double exact =
+      std::acosh(1.0 + (goal - start).squaredNorm() / (2.0 * height(start) * height(goal)));
   EXPECT_NEAR(path.cost, exact, 2e-3 * exact);
   EXPECT_GT(path.cost, exact * (1.0 - 1e-4));  // nothing is cheaper
   // Through both, centre at y = -1.2: its x from equal distances.
   const double x = (goal.squaredNorm() + 2.4 * goal.y() - start.squaredNorm() - 2.4 * start.y()) /
                    (2.0 * (goal.x() - start.x()));
   const Vector2d centre(x, -1.2);
-  for (const auto& p : path.points)
-    EXPECT_NEAR((p - centre).norm(), (start - centre).norm(), 0.02);
+  for (const auto& p : path.points) EXPECT_NEAR((p - centre).norm(), (start - centre).norm(), 0.02);
 }
 
 TEST(PathPlanner, GoesAroundADisc) {

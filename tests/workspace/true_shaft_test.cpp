@@ -23,9 +23,9 @@ void CheckThereAndBack(const std::optional<TipForce<N>>& force, unsigned seed) {
     constexpr double kStep = 1e-5;
     for (int j = 0; j < N; ++j) {
       const VectorN<N> h = kStep * VectorN<N>::Unit(j);
-      const VectorN<N> slope = (shaft.AtJoints(there->theta + h)->p_tip -
-                                shaft.AtJoints(there->theta - h)->p_tip) /
-                               (2.0 * kStep);
+      const VectorN<N> slope =
+          (shaft.AtJoints(there->theta + h)->p_tip - shaft.AtJoints(there->theta - h)->p_tip) /
+          (2.0 * kStep);
       EXPECT_LT((there->J.col(j) - slope).norm(), 1e-6 * (1.0 + slope.norm())) << i;
     }
   }
@@ -37,8 +37,7 @@ TEST(TrueShaft, BentInThePlane) {
   CheckThereAndBack<2>(TipForce<2>{.bending_stiffness_Nm2 = 0.304, .force_N = {0.5, -2.0}}, 3);
 }
 TEST(TrueShaft, BentInSpace) {
-  CheckThereAndBack<3>(TipForce<3>{.bending_stiffness_Nm2 = 0.304, .force_N = {1.0, -2.0, 0.5}},
-                       4);
+  CheckThereAndBack<3>(TipForce<3>{.bending_stiffness_Nm2 = 0.304, .force_N = {1.0, -2.0, 0.5}}, 4);
 }
 
 TEST(TrueShaft, TheTipLiesBeyondThePortOnTheLineFromTheWrist) {
@@ -59,9 +58,9 @@ TEST(TrueShaft, IsNowhereOutsideItsReachAndTheArmsLimits) {
   TrueShaft<2> shaft(instrument, std::nullopt);
   EXPECT_TRUE(shaft.AtTip({0.32, 0.0}));
   EXPECT_FALSE(shaft.AtTip(instrument.p_port));
-  EXPECT_FALSE(shaft.AtTip({0.49, 0.0}));   // further from the port than the shaft is long
-  EXPECT_FALSE(shaft.AtTip({0.16, 0.05}));  // the wrist would be below, past a joint's limit
-  EXPECT_FALSE(shaft.AtJoints({1.1, -0.6}));
+  EXPECT_FALSE(shaft.AtTip({0.49, 0.0}));    // further from the port than the shaft is long
+  EXPECT_FALSE(shaft.AtTip({0.16, 0.05}));   // the wrist would be below, past a joint's limit
+  EXPECT_FALSE(shaft.AtJoints({1.2, 1.0}));  // the wrist is high up, too far from the port
 }
 
 }  // namespace
