@@ -32,6 +32,7 @@ void AddCalibrate(CLI::App& app, AppContext& context);
 void AddDiagnose(CLI::App& app, AppContext& context);
 void AddDetect(CLI::App& app, AppContext& context);
 void AddEstimate(CLI::App& app, AppContext& context);
+void AddMap(CLI::App& app, AppContext& context);
 void AddReproduce(CLI::App& app, AppContext& context);
 void AddShape(CLI::App& app, AppContext& context);
 void AddSimulate(CLI::App& app, AppContext& context);

@@ -32,6 +32,7 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddDetect(app, context);
   AddDiagnose(app, context);
   AddEstimate(app, context);
+  AddMap(app, context);
   AddReproduce(app, context);
   AddShape(app, context);
   AddSimulate(app, context);
