@@ -71,6 +71,12 @@ EstimatorOptions Options(const Ch4Setup& setup) {
   return options;
 }
 
+/// Noise seldom makes the squared residuals of n measurements larger than this.
+bool Believable(const ShaftEstimate& estimate) {
+  const double n = estimate.measurements;
+  return estimate.status == EstimateStatus::kOk && estimate.chi2 < n + 6.0 * std::sqrt(2.0 * n);
+}
+
 ControllerOptions RodOptions() {
   ControllerOptions options;
   options.kind = ControllerKind::kRodTrack;
@@ -103,23 +109,32 @@ struct Ch4Controller::Impl {
   Ch4Setup setup;
   ShaftEstimator estimator;
   TipController rod;
+  std::optional<ShaftModel> model = {};  // the last one that agreed with its measurements
 
-  Ch4Step RodStep(const Measurements& z, const Eigen::Vector3d& p_RE_desired) {
-    const ShaftEstimate estimate = estimator.Update(z);
+  Ch4Step RodStep(const Measurements& z, const Eigen::Vector3d& p_RE_desired,
+                  const std::optional<Eigen::Vector3d>& p_RE) {
+    ShaftEstimate estimate = estimator.Update(z);
+    if (!Believable(estimate)) {  // a start too far off: once more, from the unloaded shaft
+      estimator.Reset();
+      estimate = estimator.Update(z);
+    }
+    if (Believable(estimate)) model = estimate.model;
     ControlInput input;
     input.p_RW = z.p_RW;
-    input.model = estimate.model;
+    input.model = model.value_or(estimate.model);
     input.tip_measured = true;
-    input.p_RE_measured = estimate.status == EstimateStatus::kOk ? estimate.p_RE : z.em->T_RS.p;
+    input.p_RE_measured = Believable(estimate) ? estimate.p_RE : z.em->T_RS.p;
+    if (p_RE) input.p_RE_measured = *p_RE;
     input.p_RE_desired = p_RE_desired;
     const ControlOutput output = rod.Step(input);
     return {output.p_RW_command - z.p_RW, input.p_RE_measured,
             output.status != ControlStatus::kOk};
   }
 
-  Ch4Step PlaneStep(const Measurements& z, const Eigen::Vector3d& p_RE_desired) const {
+  Ch4Step PlaneStep(const Measurements& z, const Eigen::Vector3d& p_RE_desired,
+                    const std::optional<Eigen::Vector3d>& p_RE) const {
     Ch4Step step;
-    step.p_RE_known = z.em->T_RS.p;
+    step.p_RE_known = p_RE.value_or(z.em->T_RS.p);
     std::optional<Eigen::Matrix2d> J;
     if (kind != Ch4Kind::kStraight) {
       const BeamFit fit = FitBeam(z, setup);
@@ -141,9 +156,10 @@ Ch4Controller::Ch4Controller(Ch4Controller&&) noexcept = default;
 Ch4Controller& Ch4Controller::operator=(Ch4Controller&&) noexcept = default;
 Ch4Controller::~Ch4Controller() = default;
 
-Ch4Step Ch4Controller::Step(const Measurements& z, const Eigen::Vector3d& p_RE_desired) {
-  return impl_->kind == Ch4Kind::kRod ? impl_->RodStep(z, p_RE_desired)
-                                      : impl_->PlaneStep(z, p_RE_desired);
+Ch4Step Ch4Controller::Step(const Measurements& z, const Eigen::Vector3d& p_RE_desired,
+                            const std::optional<Eigen::Vector3d>& p_RE) {
+  return impl_->kind == Ch4Kind::kRod ? impl_->RodStep(z, p_RE_desired, p_RE)
+                                      : impl_->PlaneStep(z, p_RE_desired, p_RE);
 }
 
 }  // namespace flextip

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "core/instrument.h"
 #include "estimation/measurements.h"
@@ -46,8 +47,10 @@ class Ch4Controller {
   ~Ch4Controller();
 
   /// From one set of sensor values: `em` on the tip itself, the wrist's orientation, and either the
-  /// shaft's direction at the port (4.2, first method) or `strain` (second method).
-  Ch4Step Step(const Measurements& z, const Eigen::Vector3d& p_RE_desired);
+  /// shaft's direction at the port (4.2, first method) or `strain` (second method). `p_RE`: the tip
+  /// for (5.2), where it is not what these say.
+  Ch4Step Step(const Measurements& z, const Eigen::Vector3d& p_RE_desired,
+               const std::optional<Eigen::Vector3d>& p_RE = {});
 
  private:
   struct Impl;

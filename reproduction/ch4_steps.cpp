@@ -110,11 +110,11 @@ Ch4Run RunCh4Move(const Ch4Move& move, Ch4Plant plant) {
     const double travelled = std::min(run.updates * move.step_m, move.move_m.norm());
     const Measurements z = Ch4Sense(*shape, move.noise, rng);
     // Where the noise is only in the model, the tip's error is the true one.
-    const Eigen::Vector3d blind =
-        move.noise.tip_too ? Eigen::Vector3d::Zero() : Eigen::Vector3d(z.em->T_RS.p - shape->p_RE);
+    const std::optional<Eigen::Vector3d> seen =
+        move.noise.tip_too ? std::nullopt : std::optional(shape->p_RE);
     const Ch4Step step =
-        controller.Step(z, start + travelled * move.move_m.normalized() + blind);
-    const Eigen::Vector3d known = step.p_RE_known - blind;
+        controller.Step(z, start + travelled * move.move_m.normalized(), seen);
+    const Eigen::Vector3d& known = step.p_RE_known;
     run.straight_instead += step.straight_instead;
     run.p_RE_measured.push_back(known);
     run.max_measured_m = std::max(run.max_measured_m, FromPath(known, start, move.move_m));
