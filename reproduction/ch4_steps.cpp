@@ -56,8 +56,9 @@ std::optional<Ch4Shape> Ch4Plant::At(const Eigen::Vector3d& p_RW) {
   if (exact_) {
     const PlantShape shape = exact_->Solve(p_RW);
     if (!shape.IsUsable()) return std::nullopt;
-    return Ch4Shape{p_RW, shape.T_RE().p, shape.Tangent(0.0), shape.t_port,
-                    shape.Tangent(shape.length_m)};
+    const Eigen::Vector3d t_end = shape.Tangent(shape.length_m);
+    return Ch4Shape{p_RW, shape.T_RE().p + overhang_m_ * t_end, shape.Tangent(0.0), shape.t_port,
+                    t_end};
   }
   beam_.p_wrist = p_RW.head<2>();
   const PlaneBeam beam = SolvePlaneBeam(beam_);

@@ -24,17 +24,21 @@ struct Ch4Shape {
 class Ch4Plant {
  public:
   static Ch4Plant Beam(const Instrument& instrument, const Eigen::Vector3d& p_RP, double f_tip_N);
-  static Ch4Plant Exact(const PlantSetup& setup) { return Ch4Plant(setup); }
+  /// `overhang_m`: unloaded shaft beyond where the force acts; its end is the tip.
+  static Ch4Plant Exact(const PlantSetup& setup, double overhang_m = 0.0) {
+    return Ch4Plant(setup, overhang_m);
+  }
 
   /// Empty where there is no equilibrium.
   std::optional<Ch4Shape> At(const Eigen::Vector3d& p_RW);
 
  private:
   explicit Ch4Plant(const PlaneBeamProblem& beam) : beam_(beam) {}
-  explicit Ch4Plant(const PlantSetup& setup) : exact_(setup) {}
+  Ch4Plant(const PlantSetup& setup, double overhang_m) : exact_(setup), overhang_m_(overhang_m) {}
 
   PlaneBeamProblem beam_;
   std::optional<Plant> exact_;
+  double overhang_m_ = 0.0;
 };
 
 /// Of wrist and tip positions (each axis) and of the three angles.
