@@ -1,0 +1,165 @@
+#include "reproduction/ch4_controllers.h"
+
+#include <cmath>
+#include <optional>
+
+#include "control/controller.h"
+#include "estimation/moment_fit.h"
+#include "estimation/shaft_estimator.h"
+#include "estimation/three_slope_fit.h"
+#include "kinematics/plane_beam.h"
+#include "kinematics/straight.h"
+#include "reproduction/ch4_printed_jacobian.h"
+
+namespace flextip {
+namespace {
+
+constexpr double kMaxStep_m = 0.05;
+
+BeamFit FitBeam(const Measurements& z, const Ch4Setup& setup) {
+  const Eigen::Vector3d p_RE = z.em->T_RS.p;
+  const double length = setup.instrument.length_m;
+  if (z.strain) {
+    MomentPair pair;
+    pair.m1_Nm = MomentInR(*z.R_RW, z.strain->moments_Nm[0], z.strain->moments_Nm[1]);
+    pair.m2_Nm = MomentInR(*z.R_RW, z.strain->moments_Nm[2], z.strain->moments_Nm[3]);
+    pair.station1_m = z.strain->station_from_wrist_m[0];
+    pair.station2_m = z.strain->station_from_wrist_m[1];
+    pair.noise_Nm = z.strain->moment_noise_Nm;
+    return FitFromMoments(z.p_RW, p_RE, pair, setup.instrument.bending_stiffness_Nm2, length);
+  }
+  SlopeNoise noise;
+  noise.wrist_rad = z.wrist_orientation_noise_rad;
+  noise.port_rad = z.port_direction_noise_rad;
+  noise.tip_rad = z.em->orientation_noise_rad;
+  noise.chord_rad = std::hypot(z.wrist_position_noise_m, z.em->position_noise_m) / length;
+  return FitFromThreeSlopes(z.p_RW, p_RE, z.R_RW->col(0), *z.port_direction, z.em->T_RS.R.col(0),
+                            length, noise)
+      .beam;
+}
+
+/// The beam's Jacobian in the x-y plane, by the kind's formula.
+Eigen::Matrix2d BeamJacobianOf(Ch4Kind kind, const BeamFit& fit) {
+  if (kind == Ch4Kind::kPortForce || kind == Ch4Kind::kTipForce) {
+    const BeamLoadLaw law =
+        kind == Ch4Kind::kPortForce ? BeamLoadLaw::kPortForce : BeamLoadLaw::kTipForce;
+    return BeamJacobian(fit, law).topLeftCorner<2, 2>();
+  }
+  // The printed form wants y_M on the left of x_M, as in the plane's own frame.
+  const double side = fit.R_RM(2, 2) > 0.0 ? 1.0 : -1.0;
+  const double y_a = side * BeamPortHeight(fit.F_p_over_EI, fit.a, fit.length_m);
+  const double chord = std::atan2(fit.R_RM(1, 0), fit.R_RM(0, 0));  // (3.9)
+  const double line = chord + std::atan(y_a / fit.a);
+  const Eigen::Vector2d to_port =
+      std::hypot(fit.a, y_a) * Eigen::Vector2d(std::cos(line), std::sin(line));  // (3.8)
+  return PrintedPlaneJacobian(fit.a, y_a, fit.length_m,
+                              kind == Ch4Kind::kPrintedWithLine ? line : chord, to_port);
+}
+
+std::optional<Eigen::Matrix2d> StraightJacobian(const Measurements& z, const Ch4Setup& setup) {
+  const StraightShaft shaft = SolveStraight(z.p_RW, setup.p_RP, setup.instrument.length_m);
+  if (!shaft.IsUsable()) return std::nullopt;
+  return shaft.J_tip_wrist.topLeftCorner<2, 2>();
+}
+
+EstimatorOptions Options(const Ch4Setup& setup) {
+  EstimatorOptions options;
+  options.instrument = setup.instrument;
+  options.p_RP = setup.p_RP;
+  options.gravity_m_s2 = setup.gravity_m_s2;
+  options.estimate_tissue = setup.tissue;
+  return options;
+}
+
+/// Noise seldom makes the squared residuals of n measurements larger than this.
+bool Believable(const ShaftEstimate& estimate) {
+  const double n = estimate.measurements;
+  return estimate.status == EstimateStatus::kOk && estimate.chi2 < n + 6.0 * std::sqrt(2.0 * n);
+}
+
+ControllerOptions RodOptions() {
+  ControllerOptions options;
+  options.kind = ControllerKind::kRodTrack;
+  options.max_step_m = kMaxStep_m;
+  return options;
+}
+
+}  // namespace
+
+const char* Name(Ch4Kind kind) {
+  switch (kind) {
+    case Ch4Kind::kStraight:
+      return "straight";
+    case Ch4Kind::kPrinted:
+      return "flexion as printed";
+    case Ch4Kind::kPrintedWithLine:
+      return "flexion as printed, phi repaired";
+    case Ch4Kind::kPortForce:
+      return "flexion corrected, F_p constant";
+    case Ch4Kind::kTipForce:
+      return "flexion corrected, F_t constant";
+    case Ch4Kind::kRod:
+      return "rod";
+  }
+  return "";
+}
+
+struct Ch4Controller::Impl {
+  Ch4Kind kind;
+  Ch4Setup setup;
+  ShaftEstimator estimator;
+  TipController rod;
+  std::optional<ShaftModel> model = {};  // the last one that agreed with its measurements
+
+  Ch4Step RodStep(const Measurements& z, const Eigen::Vector3d& p_RE_desired,
+                  const std::optional<Eigen::Vector3d>& p_RE) {
+    ShaftEstimate estimate = estimator.Update(z);
+    if (!Believable(estimate)) {  // a start too far off: once more, from the unloaded shaft
+      estimator.Reset();
+      estimate = estimator.Update(z);
+    }
+    if (Believable(estimate)) model = estimate.model;
+    ControlInput input;
+    input.p_RW = z.p_RW;
+    input.model = model.value_or(estimate.model);
+    input.tip_measured = true;
+    input.p_RE_measured = Believable(estimate) ? estimate.p_RE : z.em->T_RS.p;
+    if (p_RE) input.p_RE_measured = *p_RE;
+    input.p_RE_desired = p_RE_desired;
+    const ControlOutput output = rod.Step(input);
+    return {output.p_RW_command - z.p_RW, input.p_RE_measured,
+            output.status != ControlStatus::kOk};
+  }
+
+  Ch4Step PlaneStep(const Measurements& z, const Eigen::Vector3d& p_RE_desired,
+                    const std::optional<Eigen::Vector3d>& p_RE) const {
+    Ch4Step step;
+    step.p_RE_known = p_RE.value_or(z.em->T_RS.p);
+    std::optional<Eigen::Matrix2d> J;
+    if (kind != Ch4Kind::kStraight) {
+      const BeamFit fit = FitBeam(z, setup);
+      if (fit.IsUsable()) J = BeamJacobianOf(kind, fit);
+      step.straight_instead = !J;
+    }
+    if (!J) J = StraightJacobian(z, setup);
+    if (!J) return step;
+    const Eigen::Vector2d wrist = J->inverse() * (p_RE_desired - step.p_RE_known).head<2>();
+    const double size = wrist.norm();
+    step.wrist_step.head<2>() = size > kMaxStep_m ? Eigen::Vector2d(kMaxStep_m / size * wrist) : wrist;
+    return step;
+  }
+};
+
+Ch4Controller::Ch4Controller(Ch4Kind kind, const Ch4Setup& setup)
+    : impl_(new Impl{kind, setup, ShaftEstimator(Options(setup)), TipController(RodOptions())}) {}
+Ch4Controller::Ch4Controller(Ch4Controller&&) noexcept = default;
+Ch4Controller& Ch4Controller::operator=(Ch4Controller&&) noexcept = default;
+Ch4Controller::~Ch4Controller() = default;
+
+Ch4Step Ch4Controller::Step(const Measurements& z, const Eigen::Vector3d& p_RE_desired,
+                            const std::optional<Eigen::Vector3d>& p_RE) {
+  return impl_->kind == Ch4Kind::kRod ? impl_->RodStep(z, p_RE_desired, p_RE)
+                                      : impl_->PlaneStep(z, p_RE_desired, p_RE);
+}
+
+}  // namespace flextip
