@@ -3,6 +3,7 @@
 #include <ceres/tiny_solver.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include "estimation/beam_choice.h"
 #include "estimation/rod_fit.h"
@@ -11,6 +12,7 @@ namespace flextip {
 namespace {
 
 constexpr double kObservable = 0.3;       // posterior over prior sd of the force across the shaft
+constexpr double kMisfit = 100.0;         // chi2 a measurement past which another start is tried
 constexpr double kSecant_m = 0.002;       // tip travel between two looks at the tissue
 constexpr double kTissueMemory = 0.9;     // weight of the past against a new secant
 constexpr double kLeastTravel_m = 0.002;  // travel in a direction before it says much of it
@@ -83,6 +85,13 @@ ShaftEstimator::ShaftEstimator(const EstimatorOptions& options) : options_(optio
 
 void ShaftEstimator::Reset() { *this = ShaftEstimator(options_); }
 
+void ShaftEstimator::SetPort(const Eigen::Vector3d& shift_m, const Eigen::Matrix3d& covariance_m2) {
+  const Eigen::LLT<Eigen::Matrix3d> cholesky(covariance_m2);
+  assert(cholesky.info() == Eigen::Success);
+  port_shift_m_ = shift_m;
+  port_whitening_ = cholesky.matrixL().solve(Eigen::Matrix3d::Identity());
+}
+
 ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& change) {
   ShaftEstimate estimate;
   estimate.model = StraightModel(options_, change);
@@ -94,7 +103,9 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
   shaft.rod.rod.q_weight = estimate.model.weight_N_m;
   shaft.rod.effects = change.effects;
   shaft.tip_compliance_m_N = change.tip_compliance_m_N;
-  const RodPrior prior = Prior(options_, z, estimate.model);
+  RodPrior prior = Prior(options_, z, estimate.model);
+  prior.mean.segment<3>(3) += port_shift_m_;
+  prior.port_whitening = port_whitening_;
   RodFit fit(shaft, z, prior, options_.use_positions, solver_);
   RodParameters x = prior.mean;
   x.tail<3>() = last_force_N_ / fit.ForceUnit();
@@ -107,7 +118,7 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
     if (!Fit(first, x, estimate)) x = prior.mean;
     if (!Fit(fit, x, estimate)) x = prior.mean;  // one round more
   }
-  if (!Fit(fit, x, estimate)) {
+  if (!FitFromAnyStart(fit, x, estimate)) {
     estimate.status = EstimateStatus::kNotConverged;
     last_force_N_.setZero();
     return estimate;
@@ -115,6 +126,22 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
   Describe(fit, x, estimate);
   FillModel(fit, x, z, estimate);
   return estimate;
+}
+
+bool ShaftEstimator::FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate) {
+  RodParameters unloaded = x;
+  unloaded.tail<3>().setZero();
+  const bool ok = Fit(fit, x, estimate);
+  if (ok && estimate.chi2 < kMisfit * (1 + estimate.measurements)) return true;
+  // The last force may be far from this one.
+  solver_.Reset();
+  const ShaftEstimate first = estimate;
+  if (Fit(fit, unloaded, estimate) && (!ok || estimate.chi2 < first.chi2)) {
+    x = unloaded;
+    return true;
+  }
+  estimate = first;
+  return ok;
 }
 
 bool ShaftEstimator::Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate) {

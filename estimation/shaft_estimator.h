@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <cstdint>
+#include <optional>
 
 #include "core/instrument.h"
 #include "estimation/measurements.h"
@@ -60,10 +61,15 @@ class ShaftEstimator {
   /// `change`: how the instrument differs from its data at this instant, where a model was found.
   ShaftEstimate Update(const Measurements& measurements, const ShaftChange& change = {});
 
-  /// Forget the past: warm start and tissue.
+  /// What is known of the port from now on, in place of `port_prior_m`: its shift from where it is
+  /// registered, with the covariance of that (positive definite).
+  void SetPort(const Eigen::Vector3d& shift_m, const Eigen::Matrix3d& covariance_m2);
+
+  /// Forget the past: warm start, tissue and what SetPort said.
   void Reset();
 
  private:
+  bool FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   bool Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   void Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
   void FillModel(const RodFit& fit, const RodParameters& x, const Measurements& z,
@@ -73,6 +79,8 @@ class ShaftEstimator {
   EstimatorOptions options_;
   ShaftRod solver_;
   Eigen::Vector3d last_force_N_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d port_shift_m_ = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Matrix3d> port_whitening_;
   bool has_reference_ = false;  // of the tissue's secant
   Eigen::Vector3d reference_tip_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d reference_force_N_ = Eigen::Vector3d::Zero();
