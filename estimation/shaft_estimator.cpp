@@ -11,12 +11,8 @@
 namespace flextip {
 namespace {
 
-constexpr double kObservable = 0.3;       // posterior over prior sd of the force across the shaft
-constexpr double kMisfit = 100.0;         // chi2 a measurement past which another start is tried
-constexpr double kSecant_m = 0.002;       // tip travel between two looks at the tissue
-constexpr double kTissueMemory = 0.9;     // weight of the past against a new secant
-constexpr double kLeastTravel_m = 0.002;  // travel in a direction before it says much of it
-constexpr double kStiffestTissue_N_m = 2000.0;
+constexpr double kObservable = 0.3;  // posterior over prior sd of the force across the shaft
+constexpr double kMisfit = 100.0;    // chi2 a measurement past which another start is tried
 
 bool AllFinite(const Measurements& z) {
   bool ok = z.p_RW.allFinite();
@@ -56,13 +52,6 @@ ShaftModel StraightModel(const EstimatorOptions& options, const ShaftChange& cha
   model.wrist_play_m = change.wrist_play_m;
   model.beam.status = BeamStatus::kStraight;
   return model;
-}
-
-/// Tissue: symmetric, and it only pushes back.
-Eigen::Matrix3d PushingBack(const Eigen::Matrix3d& K) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(0.5 * (K + K.transpose()));
-  const Eigen::Vector3d values = eigen.eigenvalues().cwiseMin(0.0).cwiseMax(-kStiffestTissue_N_m);
-  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 }  // namespace
@@ -193,25 +182,9 @@ void ShaftEstimator::FillModel(const RodFit& fit, const RodParameters& x, const 
   model.force_known = true;
   last_force_N_ = model.f_tip_N;
   model.beam = ChooseBeamFit(z, model.instrument, model, options_.use_positions);
-  if (options_.estimate_tissue) UpdateTissue(estimate);
-  model.tissue_stiffness_N_m = tissue_stiffness_N_m_;
-}
-
-void ShaftEstimator::UpdateTissue(const ShaftEstimate& estimate) {
-  const Eigen::Vector3d dp = estimate.p_RE - reference_tip_;
-  if (has_reference_ && dp.norm() < kSecant_m) return;
-  if (has_reference_) {
-    // Least squares of df = K dp over the secants so far, the old ones fading.
-    const Eigen::Vector3d df = estimate.model.f_tip_N - reference_force_N_;
-    secants_pp_ = kTissueMemory * secants_pp_ + dp * dp.transpose();
-    secants_fp_ = kTissueMemory * secants_fp_ + df * dp.transpose();
-    const Eigen::Matrix3d damped =
-        secants_pp_ + kLeastTravel_m * kLeastTravel_m * Eigen::Matrix3d::Identity();
-    tissue_stiffness_N_m_ = PushingBack(secants_fp_ * damped.inverse());
-  }
-  has_reference_ = true;
-  reference_tip_ = estimate.p_RE;
-  reference_force_N_ = estimate.model.f_tip_N;
+  if (options_.estimate_tissue)
+    tissue_.Add(estimate.p_RE, model.f_tip_N, estimate.covariance.bottomRightCorner<3, 3>());
+  model.tissue_stiffness_N_m = tissue_.Stiffness();
 }
 
 }  // namespace flextip

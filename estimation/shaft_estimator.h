@@ -10,6 +10,7 @@
 #include "estimation/shaft_change.h"
 #include "estimation/shaft_model.h"
 #include "estimation/shaft_rod.h"
+#include "estimation/tissue_secants.h"
 
 namespace flextip {
 
@@ -74,19 +75,13 @@ class ShaftEstimator {
   void Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
   void FillModel(const RodFit& fit, const RodParameters& x, const Measurements& z,
                  ShaftEstimate& estimate);
-  void UpdateTissue(const ShaftEstimate& estimate);
 
   EstimatorOptions options_;
   ShaftRod solver_;
   Eigen::Vector3d last_force_N_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d port_shift_m_ = Eigen::Vector3d::Zero();
   std::optional<Eigen::Matrix3d> port_whitening_;
-  bool has_reference_ = false;  // of the tissue's secant
-  Eigen::Vector3d reference_tip_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d reference_force_N_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d secants_pp_ = Eigen::Matrix3d::Zero();  // sum of dp dp^T
-  Eigen::Matrix3d secants_fp_ = Eigen::Matrix3d::Zero();  // sum of df dp^T
-  Eigen::Matrix3d tissue_stiffness_N_m_ = Eigen::Matrix3d::Zero();
+  TissueSecants tissue_;
 };
 
 }  // namespace flextip
