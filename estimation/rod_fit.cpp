@@ -166,6 +166,10 @@ void RodFit::AddSensors(const ShaftRodState& rod, const RodParameters& x) const 
 void RodFit::AddPrior(const RodParameters& parameters) const {
   residuals_.head<9>() = (parameters - prior_.mean).cwiseQuotient(prior_.sd);
   jacobian_.topRows<9>() = prior_.sd.cwiseInverse().asDiagonal();
+  if (prior_.port_whitening) {
+    residuals_.segment<3>(3) = *prior_.port_whitening * (parameters - prior_.mean).segment<3>(3);
+    jacobian_.block<3, 3>(3, 3) = *prior_.port_whitening;
+  }
   rows_ = 9;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
 
 #include "estimation/measurements.h"
 #include "estimation/shaft_rod.h"
@@ -18,6 +19,8 @@ inline constexpr int kMaxRodResiduals = 32;
 struct RodPrior {
   RodParameters mean = RodParameters::Zero();
   RodParameters sd = RodParameters::Ones();
+  /// W with W^T W the information on the port, in place of its `sd`.
+  std::optional<Eigen::Matrix3d> port_whitening;
 };
 
 /// The cost function of one instant, in the form ceres::TinySolver takes.

@@ -3,6 +3,7 @@
 #include <ceres/tiny_solver.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include "estimation/beam_choice.h"
 #include "estimation/rod_fit.h"
@@ -10,11 +11,8 @@
 namespace flextip {
 namespace {
 
-constexpr double kObservable = 0.3;       // posterior over prior sd of the force across the shaft
-constexpr double kSecant_m = 0.002;       // tip travel between two looks at the tissue
-constexpr double kTissueMemory = 0.9;     // weight of the past against a new secant
-constexpr double kLeastTravel_m = 0.002;  // travel in a direction before it says much of it
-constexpr double kStiffestTissue_N_m = 2000.0;
+constexpr double kObservable = 0.3;  // posterior over prior sd of the force across the shaft
+constexpr double kMisfit = 100.0;    // chi2 a measurement past which another start is tried
 
 bool AllFinite(const Measurements& z) {
   bool ok = z.p_RW.allFinite();
@@ -56,13 +54,6 @@ ShaftModel StraightModel(const EstimatorOptions& options, const ShaftChange& cha
   return model;
 }
 
-/// Tissue: symmetric, and it only pushes back.
-Eigen::Matrix3d PushingBack(const Eigen::Matrix3d& K) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(0.5 * (K + K.transpose()));
-  const Eigen::Vector3d values = eigen.eigenvalues().cwiseMin(0.0).cwiseMax(-kStiffestTissue_N_m);
-  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
-}
-
 }  // namespace
 
 const char* Name(EstimateStatus status) {
@@ -83,6 +74,13 @@ ShaftEstimator::ShaftEstimator(const EstimatorOptions& options) : options_(optio
 
 void ShaftEstimator::Reset() { *this = ShaftEstimator(options_); }
 
+void ShaftEstimator::SetPort(const Eigen::Vector3d& shift_m, const Eigen::Matrix3d& covariance_m2) {
+  const Eigen::LLT<Eigen::Matrix3d> cholesky(covariance_m2);
+  assert(cholesky.info() == Eigen::Success);
+  port_shift_m_ = shift_m;
+  port_whitening_ = cholesky.matrixL().solve(Eigen::Matrix3d::Identity());
+}
+
 ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& change) {
   ShaftEstimate estimate;
   estimate.model = StraightModel(options_, change);
@@ -94,7 +92,9 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
   shaft.rod.rod.q_weight = estimate.model.weight_N_m;
   shaft.rod.effects = change.effects;
   shaft.tip_compliance_m_N = change.tip_compliance_m_N;
-  const RodPrior prior = Prior(options_, z, estimate.model);
+  RodPrior prior = Prior(options_, z, estimate.model);
+  prior.mean.segment<3>(3) += port_shift_m_;
+  prior.port_whitening = port_whitening_;
   RodFit fit(shaft, z, prior, options_.use_positions, solver_);
   RodParameters x = prior.mean;
   x.tail<3>() = last_force_N_ / fit.ForceUnit();
@@ -107,7 +107,7 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
     if (!Fit(first, x, estimate)) x = prior.mean;
     if (!Fit(fit, x, estimate)) x = prior.mean;  // one round more
   }
-  if (!Fit(fit, x, estimate)) {
+  if (!FitFromAnyStart(fit, x, estimate)) {
     estimate.status = EstimateStatus::kNotConverged;
     last_force_N_.setZero();
     return estimate;
@@ -115,6 +115,22 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
   Describe(fit, x, estimate);
   FillModel(fit, x, z, estimate);
   return estimate;
+}
+
+bool ShaftEstimator::FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate) {
+  RodParameters unloaded = x;
+  unloaded.tail<3>().setZero();
+  const bool ok = Fit(fit, x, estimate);
+  if (ok && estimate.chi2 < kMisfit * (1 + estimate.measurements)) return true;
+  // The last force may be far from this one.
+  solver_.Reset();
+  const ShaftEstimate first = estimate;
+  if (Fit(fit, unloaded, estimate) && (!ok || estimate.chi2 < first.chi2)) {
+    x = unloaded;
+    return true;
+  }
+  estimate = first;
+  return ok;
 }
 
 bool ShaftEstimator::Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate) {
@@ -166,25 +182,9 @@ void ShaftEstimator::FillModel(const RodFit& fit, const RodParameters& x, const 
   model.force_known = true;
   last_force_N_ = model.f_tip_N;
   model.beam = ChooseBeamFit(z, model.instrument, model, options_.use_positions);
-  if (options_.estimate_tissue) UpdateTissue(estimate);
-  model.tissue_stiffness_N_m = tissue_stiffness_N_m_;
-}
-
-void ShaftEstimator::UpdateTissue(const ShaftEstimate& estimate) {
-  const Eigen::Vector3d dp = estimate.p_RE - reference_tip_;
-  if (has_reference_ && dp.norm() < kSecant_m) return;
-  if (has_reference_) {
-    // Least squares of df = K dp over the secants so far, the old ones fading.
-    const Eigen::Vector3d df = estimate.model.f_tip_N - reference_force_N_;
-    secants_pp_ = kTissueMemory * secants_pp_ + dp * dp.transpose();
-    secants_fp_ = kTissueMemory * secants_fp_ + df * dp.transpose();
-    const Eigen::Matrix3d damped =
-        secants_pp_ + kLeastTravel_m * kLeastTravel_m * Eigen::Matrix3d::Identity();
-    tissue_stiffness_N_m_ = PushingBack(secants_fp_ * damped.inverse());
-  }
-  has_reference_ = true;
-  reference_tip_ = estimate.p_RE;
-  reference_force_N_ = estimate.model.f_tip_N;
+  if (options_.estimate_tissue)
+    tissue_.Add(estimate.p_RE, model.f_tip_N, estimate.covariance.bottomRightCorner<3, 3>());
+  model.tissue_stiffness_N_m = tissue_.Stiffness();
 }
 
 }  // namespace flextip

@@ -3,12 +3,14 @@
 
 #include <Eigen/Dense>
 #include <cstdint>
+#include <optional>
 
 #include "core/instrument.h"
 #include "estimation/measurements.h"
 #include "estimation/shaft_change.h"
 #include "estimation/shaft_model.h"
 #include "estimation/shaft_rod.h"
+#include "estimation/tissue_secants.h"
 
 namespace flextip {
 
@@ -60,25 +62,26 @@ class ShaftEstimator {
   /// `change`: how the instrument differs from its data at this instant, where a model was found.
   ShaftEstimate Update(const Measurements& measurements, const ShaftChange& change = {});
 
-  /// Forget the past: warm start and tissue.
+  /// What is known of the port from now on, in place of `port_prior_m`: its shift from where it is
+  /// registered, with the covariance of that (positive definite).
+  void SetPort(const Eigen::Vector3d& shift_m, const Eigen::Matrix3d& covariance_m2);
+
+  /// Forget the past: warm start, tissue and what SetPort said.
   void Reset();
 
  private:
+  bool FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   bool Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   void Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
   void FillModel(const RodFit& fit, const RodParameters& x, const Measurements& z,
                  ShaftEstimate& estimate);
-  void UpdateTissue(const ShaftEstimate& estimate);
 
   EstimatorOptions options_;
   ShaftRod solver_;
   Eigen::Vector3d last_force_N_ = Eigen::Vector3d::Zero();
-  bool has_reference_ = false;  // of the tissue's secant
-  Eigen::Vector3d reference_tip_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d reference_force_N_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d secants_pp_ = Eigen::Matrix3d::Zero();  // sum of dp dp^T
-  Eigen::Matrix3d secants_fp_ = Eigen::Matrix3d::Zero();  // sum of df dp^T
-  Eigen::Matrix3d tissue_stiffness_N_m_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d port_shift_m_ = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Matrix3d> port_whitening_;
+  TissueSecants tissue_;
 };
 
 }  // namespace flextip

@@ -1,0 +1,89 @@
+#include "estimation/window_estimator.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/rotation.h"
+
+namespace flextip {
+namespace {
+
+constexpr double kNarrowed = 0.5;  // posterior over prior sd of the port across the shaft
+
+}  // namespace
+
+const char* Name(WindowStatus status) {
+  switch (status) {
+    case WindowStatus::kOk:
+      return "ok";
+    case WindowStatus::kUnobservable:
+      return "unobservable";
+    case WindowStatus::kNotConverged:
+      return "not_converged";
+  }
+  return "";
+}
+
+WindowEstimator::WindowEstimator(const WindowOptions& options)
+    : options_(options),
+      latest_(options.estimator),
+      port_(options.samples, options.estimator.port_prior_m, options.estimator.use_positions) {}
+
+void WindowEstimator::Reset() {
+  latest_.Reset();
+  port_.Reset();
+}
+
+WindowEstimate WindowEstimator::Update(const Measurements& z, const ShaftChange& change) {
+  ++updates_;
+  WindowEstimate estimate;
+  latest_.SetPort(port_.Shift(), port_.Covariance());
+  estimate.shaft = latest_.Update(z, change);
+  const bool carried_on = z.tip && z.tip->status == TipStatus::kPredicted;  // says nothing new
+  const bool fits = estimate.shaft.status == EstimateStatus::kOk ||
+                    estimate.shaft.status == EstimateStatus::kUnobservable;
+  if (fits && !carried_on) Add(z, change, estimate.shaft);
+  const bool refined = port_.Refine();
+  estimate.port_shift_m = port_.Shift();
+  estimate.port_covariance_m2 = port_.Covariance();
+  estimate.samples = port_.Size();
+  estimate.chi2 = port_.Chi2();
+  Describe(estimate);
+  if (!refined) estimate.status = WindowStatus::kNotConverged;
+  return estimate;
+}
+
+void WindowEstimator::Add(const Measurements& z, const ShaftChange& change,
+                          const ShaftEstimate& estimate) {
+  const ShaftModel& model = estimate.model;
+  WindowSample sample;
+  sample.number = updates_;
+  sample.measurements = z;
+  sample.shaft.rod.rod.length_m = model.instrument.length_m;
+  sample.shaft.rod.rod.bending_stiffness_Nm2 = model.instrument.bending_stiffness_Nm2;
+  sample.shaft.rod.rod.q_weight = model.weight_N_m;
+  sample.shaft.rod.effects = change.effects;
+  sample.shaft.tip_compliance_m_N = change.tip_compliance_m_N;
+  const Eigen::Vector3d p_wrist = z.p_RW + model.wrist_shift_m;
+  sample.prior.mean << p_wrist, options_.estimator.p_RP + change.port_shift_m,
+      Eigen::Vector3d::Zero();
+  sample.prior.sd << Eigen::Vector3d::Constant(std::max(z.wrist_position_noise_m, 1e-6)),
+      Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()),
+      Eigen::Vector3d::Constant(options_.estimator.force_prior_units);
+  const double L = model.instrument.length_m;
+  sample.own << p_wrist, model.f_tip_N * (L * L / model.instrument.bending_stiffness_Nm2);
+  port_.Add(sample);
+}
+
+void WindowEstimator::Describe(WindowEstimate& estimate) const {
+  const Eigen::Matrix<double, 3, 2> across = NormalBasis(estimate.shaft.d_RE);
+  const Eigen::Matrix2d covariance = across.transpose() * estimate.port_covariance_m2 * across;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance);
+  estimate.least_known = across * eigen.eigenvectors().col(1);
+  estimate.least_known_sd_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
+  estimate.status = estimate.least_known_sd_m < kNarrowed * options_.estimator.port_prior_m
+                        ? WindowStatus::kOk
+                        : WindowStatus::kUnobservable;
+}
+
+}  // namespace flextip
