@@ -120,7 +120,7 @@ class TrialRun {
         sensors_(MakeSensors(setup, places), setup.noise_seed, Errors()),
         estimator_(MakeEstimator(setup, places)),
         controller_(MakeController(setup)),
-        operator_(MakeTask(places), DrawOperator(setup.operator_seed), setup.operator_seed + 1000),
+        operator_(MakeTask(places), DrawOperator(setup.operator_seed), setup.noise_seed + 1000),
         occlusions_(setup.noise_seed + 7) {
     recording_.instrument = Rod();
     recording_.p_RP = places.p_RP;
