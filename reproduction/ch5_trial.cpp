@@ -8,6 +8,7 @@
 
 #include "control/virtual_fixture.h"
 #include "estimation/shaft_estimator.h"
+#include "estimation/slope_fit.h"
 #include "reproduction/ch5_wrist.h"
 #include "simulation/plant.h"
 #include "simulation/sensors.h"
@@ -59,8 +60,7 @@ EstimatorOptions MakeEstimator(const TrialSetup& setup, const TrialPlaces& place
   options.instrument = Rod();
   options.p_RP = places.p_RP;
   options.gravity_m_s2 = kGravity;
-  options.use_positions = UsesTipMeasurement(setup.kind) ||
-                          (setup.kind == ControllerKind::kFlexCalculate && setup.chord_measured);
+  options.use_positions = UsesTipMeasurement(setup.kind);
   options.estimate_tissue = setup.tissue_response;
   return options;
 }
@@ -83,11 +83,13 @@ OperatorTask MakeTask(const TrialPlaces& places) {
   return task;
 }
 
-bool IsFlex(ControllerKind kind) {
-  return kind == ControllerKind::kFlexCalculate || kind == ControllerKind::kFlexTrack;
+bool IsStraight(ControllerKind kind) {
+  return kind == ControllerKind::kStraightCalculate || kind == ControllerKind::kStraightTrack;
 }
-bool IsRod(ControllerKind kind) {
-  return kind == ControllerKind::kRodCalculate || kind == ControllerKind::kRodTrack;
+/// The thesis's own fit (5.4)-(5.12): from the directions at wrist and tip and the measured chord.
+bool UsesClosedForm(const TrialSetup& setup) {
+  return setup.kind == ControllerKind::kFlexTrack ||
+         (setup.kind == ControllerKind::kFlexCalculate && setup.chord_measured);
 }
 
 /// Now and then something stands before the camera: 5 % of the time, 0.3 s on average.
@@ -226,11 +228,28 @@ class TrialRun {
     const EmSample& em = recording_.em0->samples.back().value;
     z_.em = EmMeasurement{Pose::FromQuaternion(em.q_RS, em.p_RS), kSensorFromTip_m,
                           setup_.em_position_noise_m, setup_.em_orientation_noise_rad};
-    if (IsRod(setup_.kind)) return;
+    if (!UsesClosedForm(setup_)) return;
     z_.tip.emplace();  // the thesis's closed forms take the tip by itself
     z_.tip->status = TipStatus::kOk;
     z_.tip->p_RE = p_RE_em_;
     z_.tip->covariance_m2 = std::pow(setup_.em_position_noise_m, 2) * Eigen::Matrix3d::Identity();
+  }
+
+  /// A port that is far from the registered one is not believed: near-straight shafts put it
+  /// anywhere.
+  BeamFit ClosedForm() const {
+    constexpr double kPortAgreement = 0.05;  // of the length
+    const double length = Rod().length_m;
+    SlopeNoise noise;
+    noise.wrist_rad = z_.wrist_orientation_noise_rad;
+    noise.tip_rad = z_.em ? z_.em->orientation_noise_rad : z_.tip_direction_noise_rad;
+    noise.chord_rad = std::sqrt(z_.tip->covariance_m2.trace() / 3.0) / length;
+    const Eigen::Vector3d t_tip = z_.em ? Eigen::Vector3d(z_.em->T_RS.R.col(0)) : *z_.tip->d_RE;
+    BeamFit fit = FitFromSlopes(z_.p_RW, z_.tip->p_RE, z_.R_RW->col(0), t_tip, length, noise);
+    if (std::abs(fit.a - (places_.p_RP - z_.p_RW).norm()) > kPortAgreement * length) {
+      fit.status = BeamStatus::kStraight;
+    }
+    return fit;
   }
 
   /// The tip as the controller is given it, and how well it is known.
@@ -251,7 +270,9 @@ class TrialRun {
     input.model.instrument = Rod();
     input.model.p_RP = places_.p_RP;
     ShaftEstimate estimate;
-    if ((IsFlex(setup_.kind) || IsRod(setup_.kind)) && !hidden_) {
+    if (!hidden_ && UsesClosedForm(setup_)) {
+      input.model.beam = ClosedForm();
+    } else if (!hidden_ && !IsStraight(setup_.kind)) {
       estimate = estimator_.Update(z_);
       input.model = estimate.model;
     }
@@ -284,6 +305,7 @@ class TrialRun {
     trial_.rms_side_force_N += side * side;
     trial_.max_push_N = std::max(trial_.max_push_N, -shape_.f_tip_N.x());
     trial_.rms_error_m += (p_RE_desired_ - p_RE).squaredNorm() / 3.0;
+    trial_.rms_recorded_error_m += (p_RE_desired_ - p_RE_em_).squaredNorm() / 3.0;
   }
 
   void Finish() {
@@ -291,6 +313,7 @@ class TrialRun {
     trial_.rms_flexion_m = std::sqrt(trial_.rms_flexion_m / count);
     trial_.rms_side_force_N = std::sqrt(trial_.rms_side_force_N / count);
     trial_.rms_error_m = std::sqrt(trial_.rms_error_m / count);
+    trial_.rms_recorded_error_m = std::sqrt(trial_.rms_recorded_error_m / count);
     trial_.cut_part = silicone_.CutPart(places_.outline_radius_m);
     trial_.straight_part /= std::max(1, updates_);
     trial_.no_tip_part /= std::max(1, updates_);

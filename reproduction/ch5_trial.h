@@ -55,7 +55,8 @@ struct Trial {
   double max_side_force_N = 0.0, rms_side_force_N = 0.0;
   double max_push_N = 0.0;      ///< along the axis, by the silicone
   double cut_part = 0.0;        ///< of the outline's inside
-  double rms_error_m = 0.0;     ///< of the true tip from what was asked for (one axis of three)
+  double rms_error_m = 0.0;     ///< of the true tip from what was desired, per axis
+  double rms_recorded_error_m = 0.0;  ///< the same as recorded
   double straight_part = 0.0;   ///< of the updates that fell back on the straight shaft
   double no_tip_part = 0.0;     ///< of the updates without a tip
   bool lost = false;            ///< the simulated shaft found no equilibrium: ended early

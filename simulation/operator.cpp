@@ -8,7 +8,7 @@ namespace flextip {
 namespace {
 
 constexpr double kPressingMemory_s = 2.0;   // of the wandering of the pressing
-constexpr double kTremorDamping = 0.1;      // relative: a band of about 2 Hz
+constexpr double kTremorDamping = 0.05;     // relative: half of the power within 0.5 Hz
 constexpr double kApproach_s = 1.0;
 constexpr double kVisitedStep_m = 0.002;
 constexpr int kCandidates = 12;
