@@ -21,7 +21,8 @@ struct FixtureOutput {
   FixtureStatus status = FixtureStatus::kBadInput;
   Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();  ///< what to give the controller
   double depth_m = 0.0;  ///< of the input in the region; negative: its distance from it
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, out of the region, at the nearest place
+  Eigen::Vector3d normal =
+      Eigen::Vector3d::Zero();  ///< unit, out of the region, at the nearest place
 };
 
 /// Forbidden: everything behind the plane. `normal` (unit) points out of it.
@@ -48,13 +49,14 @@ FixtureOutput Constrain(const ForbiddenSphere& region, const Eigen::Vector3d& p,
 struct GuidanceOutput {
   FixtureStatus status = FixtureStatus::kBadInput;
   Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();
-  Eigen::Vector3d p_path = Eigen::Vector3d::Zero();   ///< nearest place on the path
+  Eigen::Vector3d p_path = Eigen::Vector3d::Zero();    ///< nearest place on the path
   Eigen::Vector3d tangent = Eigen::Vector3d::UnitX();  ///< of the path there, unit
   double s_m = 0.0;                                    ///< along the path, from its beginning
   double distance_m = 0.0;                             ///< of the input from the path
 };
 
-/// A polyline along which motion is free, while across it only a part of a deviation is let through.
+/// A polyline along which motion is free, while across it only a part of a deviation is let
+/// through.
 class PathGuidance {
  public:
   /// `points` (m, in R): two or more, finite, no two following ones the same. `compliance`: the

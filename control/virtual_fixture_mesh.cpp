@@ -11,9 +11,9 @@
 namespace flextip {
 namespace {
 
-constexpr int kLeaf = 4;        // triangles
-constexpr int kDeepest = 64;    // halving leaves no more levels than an int has bits
-constexpr int kMoves = 8;       // to keep a margin in a hollow
+constexpr int kLeaf = 4;      // triangles
+constexpr int kDeepest = 64;  // halving leaves no more levels than an int has bits
+constexpr int kMoves = 8;     // to keep a margin in a hollow
 constexpr double kClear_m = 1e-9;
 
 double AngleAt(const Eigen::Vector3d& corner, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -76,8 +76,8 @@ void ForbiddenMesh::ComputeNormals() {
       corner_normals_[a] += AngleAt(P[a], P[b], P[c]) * face_normals_[i];
       if (!owner.emplace(std::pair(a, b), static_cast<int>(i)).second) {
         throw InputError(fmt::format(
-            "the mesh's edge from corner {} to {} is in two triangles turned against each other",
-            a, b));
+            "the mesh's edge from corner {} to {} is in two triangles turned against each other", a,
+            b));
       }
     }
   }

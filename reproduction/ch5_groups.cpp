@@ -10,6 +10,7 @@
 namespace flextip {
 namespace {
 
+constexpr double kFirmArm_N_m = 1e5;
 constexpr ControllerKind kKinds[kThesisControllers] = {
     ControllerKind::kFlexTrack, ControllerKind::kStraightTrack, ControllerKind::kFlexCalculate,
     ControllerKind::kStraightCalculate};
@@ -56,6 +57,9 @@ void AddOurs(std::vector<StudyGroup>& groups) {
   changed.tissue_response = true;
   changed.margin_sd = 3.0;
   groups.push_back({"Rod-Track with margin", changed});
+  changed.margin_sd = 0.0;
+  changed.level_tip = true;
+  groups.push_back({"Rod-Track levelled", changed});
 }
 
 void AddVision(std::vector<StudyGroup>& groups) {
@@ -76,37 +80,55 @@ void AddVision(std::vector<StudyGroup>& groups) {
   }
 }
 
-void AddVariations(std::vector<StudyGroup>& groups) {
-  for (int i = 0; i < kThesisControllers; ++i) {
-    for (const double scale : {0.5, 1.0, 2.0}) {
-      TrialSetup setup = Setup(kKinds[i]);
-      setup.silicone_scale = scale;
-      groups.push_back(Short(fmt::format("{} silicone x{}", ThesisName(i), scale), setup));
-    }
-    TrialSetup other = Setup(kKinds[i]);
-    if (UsesTipMeasurement(kKinds[i])) {
-      other.arm_stiffness_N_m = 300.0;
-      groups.push_back(Short(fmt::format("{} soft arm", ThesisName(i)), other));
-      other = Setup(kKinds[i]);
-      other.em_position_noise_m /= std::sqrt(3.0);
-      groups.push_back(Short(fmt::format("{} less noise", ThesisName(i)), other));
-    } else {
-      other.em_offset_m = 0.002;
-      groups.push_back(Short(fmt::format("{} EM off", ThesisName(i)), other));
-    }
-  }
+TrialSetup WithWrongData(TrialSetup setup) {
+  setup.stiffness_error = -0.05;
+  setup.length_error_m = 0.0005;
+  setup.port_error_m = 0.001;
+  return setup;
+}
+
+void AddWrongData(std::vector<StudyGroup>& groups) {
   const std::pair<const char*, ControllerKind> kinds[] = {
       {"Flex-Track", ControllerKind::kFlexTrack},
-      {"Rod-Track", ControllerKind::kRodTrack},
-      {"Rod-Calculate", ControllerKind::kRodCalculate}};
+      {"Rod-Calculate", ControllerKind::kRodCalculate},
+      {"Rod-Track", ControllerKind::kRodTrack}};
   for (const auto& [name, kind] : kinds) {
-    TrialSetup wrong = Setup(kind);
-    wrong.stiffness_error = -0.05;
-    wrong.length_error_m = 0.0005;
-    wrong.port_error_m = 0.001;
-    groups.push_back(Short(fmt::format("{} wrong data", name), wrong));
+    groups.push_back(Short(fmt::format("{} wrong data", name), WithWrongData(Setup(kind))));
+  }
+  for (TrialSetup setup :
+       {Setup(ControllerKind::kRodTrack), Vision(ControllerKind::kRodTrack, 30.0)}) {
+    const char* sensor = setup.sense == TipSense::kVision ? " vision 30 Hz" : "";
+    if (setup.sense == TipSense::kVision)
+      groups.push_back(Short("Rod-Track vision 30 Hz wrong data", WithWrongData(setup)));
+    setup.level_tip = true;
+    groups.push_back(
+        Short(fmt::format("Rod-Track levelled{} wrong data", sensor), WithWrongData(setup)));
+  }
+}
+
+void AddVariations(std::vector<StudyGroup>& groups) {
+  for (int i = 0; i < kThesisControllers; ++i) {
+    const auto add = [&](const std::string& change, double TrialSetup::*what, double value) {
+      TrialSetup setup = Setup(kKinds[i]);
+      setup.*what = value;
+      groups.push_back(Short(fmt::format("{} {}", ThesisName(i), change), setup));
+    };
+    for (const double scale : {0.5, 1.0, 2.0, 3.0}) {
+      add(fmt::format("silicone x{}", scale), &TrialSetup::silicone_scale, scale);
+    }
+    if (UsesTipMeasurement(kKinds[i])) {
+      add("soft arm", &TrialSetup::arm_stiffness_N_m, 300.0);
+      add("firm arm", &TrialSetup::arm_stiffness_N_m, kFirmArm_N_m);
+      add("less noise", &TrialSetup::em_position_noise_m, 1.3e-4 / std::sqrt(3.0));
+      add("late", &TrialSetup::em_latency_s, 0.020);
+    } else {
+      add("EM off", &TrialSetup::em_offset_m, 0.002);
+    }
   }
   TrialSetup firm = Setup(ControllerKind::kRodTrack);
+  firm.arm_stiffness_N_m = kFirmArm_N_m;
+  groups.push_back(Short("Rod-Track firm arm", firm));
+  firm = Setup(ControllerKind::kRodTrack);
   firm.silicone_scale = 2.0;
   groups.push_back(Short("Rod-Track silicone x2", firm));
 }
@@ -119,6 +141,9 @@ void AddCurve(std::vector<StudyGroup>& groups) {
                                                         : ControllerKind::kRodTrack);
       setup.tissue_response = name != "Rod-Track without tissue";
       setup.update_rate_hz = rate;
+      setup.em_position_noise_m = 1e-6;  // what the rate does by itself: next to no noise, and an
+      setup.em_orientation_noise_rad = 1e-5;  // arm that gives way to nothing
+      setup.arm_stiffness_N_m = kFirmArm_N_m;
       setup.seconds = 10.0;
       StudyGroup group{CurveGroup(name, rate), setup};
       group.operators = 3;
@@ -160,6 +185,7 @@ std::vector<StudyGroup> StudyGroups(bool quick) {
   }
   AddOurs(groups);
   AddVision(groups);
+  AddWrongData(groups);
   AddVariations(groups);
   AddCurve(groups);
   if (quick) {

@@ -20,6 +20,7 @@ namespace {
 constexpr double kTick_hz = 144.0;         // the plant is solved at least as often
 constexpr double kSensorFromTip_m = 0.02;  // 5.2.6
 constexpr double kEncoderNoise_m = 1e-5;   // Phantom Premium 1.5: 0.03 mm resolution
+constexpr double kLevelling_s = 0.5;       // time constant
 constexpr int kLinks = 50;                 // each side of the port
 
 /// Stainless steel, 600 mm x 2.38 mm.
@@ -174,6 +175,7 @@ class TrialRun {
   SensorEffects Errors() const {
     SensorEffects effects;
     effects.camera_latency_s = setup_.vision_latency_s;
+    effects.em_latency_s = setup_.em_latency_s;
     effects.em_offset_m = setup_.em_offset_m * Eigen::Vector3d::UnitX();
     return effects;
   }
@@ -259,7 +261,11 @@ class TrialRun {
     input.p_RE_measured = setup_.sense == TipSense::kEm ? p_RE_em_ : z_.tip->p_RE;
     tip_variance_m2_ = std::pow(setup_.em_position_noise_m, 2);
     if (setup_.kind != ControllerKind::kRodTrack || estimate.status != EstimateStatus::kOk) return;
-    input.p_RE_measured = estimate.p_RE;
+    if (setup_.level_tip) {
+      const double part = std::min(1.0, 1.0 / (kLevelling_s * setup_.update_rate_hz));
+      level_m_ += part * (input.p_RE_measured - estimate.p_RE - level_m_);
+    }
+    input.p_RE_measured = estimate.p_RE + level_m_;
     tip_variance_m2_ = estimate.p_RE_covariance_m2(0, 0);
   }
 
@@ -336,6 +342,7 @@ class TrialRun {
   TimeNs t_ns_ = kSimulationStart_ns;
   Eigen::Vector3d command_, p_RE_asked_, p_RE_desired_, p_RE_em_, p_RW_then_;
   std::vector<Eigen::Vector3d> p_RW_before_;
+  Eigen::Vector3d level_m_ = Eigen::Vector3d::Zero();
   double tip_variance_m2_ = 0.0;
   bool hidden_ = false;
   int updates_ = 0;

@@ -26,12 +26,15 @@ struct TrialSetup {
   /// tip. False: from the orientations alone.
   bool chord_measured = true;
   bool tissue_response = true;  ///< estimated and used, by the rod
+  /// Lasting differences between the rod's tip and the sensor's are settled in the sensor's favour.
+  bool level_tip = false;
   double margin_sd = 0.0;       ///< the wall is taken this many of the estimate's deviations early
   double silicone_scale = 1.0;  ///< of all its forces
   double arm_stiffness_N_m = 1000.0;  ///< of the PD control
   /// What the instrument is beyond its data: stiffness (relative), length, port, all at once.
   double stiffness_error = 0.0, length_error_m = 0.0, port_error_m = 0.0;
-  double em_offset_m = 0.0;  ///< EM positions are off by this along x
+  double em_offset_m = 0.0;   ///< EM positions are off by this along x
+  double em_latency_s = 0.0;  ///< EM is late by this, the arm's encoders are not
   bool hold_still = false;  ///< no operator: the tip is held in the middle, above the surface
   double seconds = 60.0;
   std::uint64_t operator_seed = 1, noise_seed = 1;

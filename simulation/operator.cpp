@@ -7,8 +7,8 @@
 namespace flextip {
 namespace {
 
-constexpr double kPressingMemory_s = 2.0;   // of the wandering of the pressing
-constexpr double kTremorDamping = 0.05;     // relative: half of the power within 0.5 Hz
+constexpr double kPressingMemory_s = 2.0;  // of the wandering of the pressing
+constexpr double kTremorDamping = 0.05;    // relative: half of the power within 0.5 Hz
 constexpr double kApproach_s = 1.0;
 constexpr double kVisitedStep_m = 0.002;
 constexpr int kCandidates = 12;
@@ -114,8 +114,7 @@ Eigen::Vector3d SimulatedOperator::Step(double dt_s, const Eigen::Vector3d& p_ti
   pressing_ += -forgotten * pressing_ +
                std::sqrt(2.0 * forgotten) * traits_.pressing_change_m * normal_(rng_);
   const double in = MinimumJerk(std::min(1.0, t_s_ / kApproach_s));
-  const double depth =
-      -(1.0 - in) * task_.approach_m + in * (traits_.pressing_m + pressing_);
+  const double depth = -(1.0 - in) * task_.approach_m + in * (traits_.pressing_m + pressing_);
   return At(plan_ + correction_) + depth * task_.inward + Tremor(dt_s);
 }
 

@@ -13,13 +13,13 @@ namespace flextip {
 
 /// What differs from person to person.
 struct OperatorTraits {
-  double speed_m_s = 0.015;         ///< average along the surface
-  double tremor_m = 1.5e-4;         ///< RMS per axis
-  double tremor_hz = 10.0;          ///< 8 to 12
-  double pressing_m = 0.006;        ///< how far past the wall the stylus is pushed, average
-  double pressing_change_m = 0.003; ///< how much that wanders (standard deviation)
-  double delay_s = 0.2;             ///< from monitor to hand
-  double correction_1_s = 2.0;      ///< rate at which a seen offset is taken back
+  double speed_m_s = 0.015;          ///< average along the surface
+  double tremor_m = 1.5e-4;          ///< RMS per axis
+  double tremor_hz = 10.0;           ///< 8 to 12
+  double pressing_m = 0.006;         ///< how far past the wall the stylus is pushed, average
+  double pressing_change_m = 0.003;  ///< how much that wanders (standard deviation)
+  double delay_s = 0.2;              ///< from monitor to hand
+  double correction_1_s = 2.0;       ///< rate at which a seen offset is taken back
 };
 
 /// Traits drawn for one person: normal about the defaults, within what people do.
@@ -27,8 +27,8 @@ OperatorTraits DrawOperator(std::uint64_t seed);
 
 /// Where the task is. Everything in R.
 struct OperatorTask {
-  Eigen::Vector3d p_centre = Eigen::Vector3d::Zero();   ///< of the outline, on the wall
-  Eigen::Vector3d inward = Eigen::Vector3d::UnitX();    ///< unit, into the tissue
+  Eigen::Vector3d p_centre = Eigen::Vector3d::Zero();  ///< of the outline, on the wall
+  Eigen::Vector3d inward = Eigen::Vector3d::UnitX();   ///< unit, into the tissue
   double outline_radius_m = 0.02;
   double approach_m = 0.012;  ///< starts this far outside the wall
   /// Of the camera: two directions along the monitor, unit, in R.

@@ -39,9 +39,9 @@ Ramp RampAt(double depth, double onset) {
 SoftCylinderSetup SiliconeOf(const Silicone& material, double rod_diameter_m, double scale) {
   const double radius = 0.5 * rod_diameter_m;
   const double plane = 1.0 - material.poisson * material.poisson;
-  const double line = material.fracture_energy_J_m2 +
-                      (1.0 + material.friction) * material.tearing_stress_moduli *
-                          material.elastic_modulus_Pa * rod_diameter_m;
+  const double line =
+      material.fracture_energy_J_m2 + (1.0 + material.friction) * material.tearing_stress_moduli *
+                                          material.elastic_modulus_Pa * rod_diameter_m;
   // A cut that is there already saves the fracture energy; the sides still have to be held apart.
   const double reopened = 0.5 * (line - material.fracture_energy_J_m2);
   const double shear = material.elastic_modulus_Pa / (2.0 * (1.0 + material.poisson));
@@ -50,13 +50,11 @@ SoftCylinderSetup SiliconeOf(const Silicone& material, double rod_diameter_m, do
   setup.rod_diameter_m = rod_diameter_m;
   setup.axial_stiffness_N_m = scale * 2.0 * radius * material.elastic_modulus_Pa / plane;
   // A blunt end that punctures: the pressure of tearing on its face, and a crack around it.
-  setup.puncture_N =
-      scale * std::numbers::pi *
-      (radius * radius * (1.0 + material.friction) * material.tearing_stress_moduli *
-           material.elastic_modulus_Pa +
-       2.0 * radius * material.fracture_energy_J_m2);
-  setup.lateral_stiffness_N_m2 =
-      scale * 4.0 * std::numbers::pi * shear / (std::log(kReach) + 0.5);
+  setup.puncture_N = scale * std::numbers::pi *
+                     (radius * radius * (1.0 + material.friction) * material.tearing_stress_moduli *
+                          material.elastic_modulus_Pa +
+                      2.0 * radius * material.fracture_energy_J_m2);
+  setup.lateral_stiffness_N_m2 = scale * 4.0 * std::numbers::pi * shear / (std::log(kReach) + 0.5);
   setup.ploughing_N_m = scale * line;
   setup.ploughing_when_cut_N_m = scale * reopened;
   return setup;
@@ -93,8 +91,7 @@ TipForce SoftCylinder::At(const Eigen::Vector3d& p_tip) const {
   const double axial = setup_.puncture_N;
   const Yielding pushed = YieldingAt(setup_.axial_stiffness_N_m * dent.value / axial);
   force.f_N = axial * pushed.value * n;
-  force.df_dp_N_m =
-      -setup_.axial_stiffness_N_m * pushed.slope * dent.slope * n * n.transpose();
+  force.df_dp_N_m = -setup_.axial_stiffness_N_m * pushed.slope * dent.slope * n * n.transpose();
   // Sideways: stiffness and strength both grow with the depth.
   const Eigen::Vector2d stretch = Across(p_tip) - (inside_ ? anchor_ : Across(p_tip));
   const double size = stretch.norm();
@@ -102,9 +99,8 @@ TipForce SoftCylinder::At(const Eigen::Vector3d& p_tip) const {
   const Yielding dragged = YieldingAt(per_m * size);
   const double secant = size > 0.0 ? dragged.value / size : per_m;
   const Eigen::Vector2d along = size > 0.0 ? Eigen::Vector2d(stretch / size) : stretch;
-  const Eigen::Matrix2d slope =
-      secant * Eigen::Matrix2d::Identity() +
-      (per_m * dragged.slope - secant) * along * along.transpose();
+  const Eigen::Matrix2d slope = secant * Eigen::Matrix2d::Identity() +
+                                (per_m * dragged.slope - secant) * along * along.transpose();
   const Eigen::Vector3d pull = across_ * (-most * secant * stretch);
   force.f_N += ramp.value * pull;
   if (inside_) {
@@ -129,8 +125,8 @@ void SoftCylinder::MoveTo(const Eigen::Vector3d& p_tip) {
     ploughing_N_m_ = setup_.ploughing_N_m;
   }
   // The end: beyond the puncture it has cut; drawn back, the dent is gone.
-  const double dent = (1.0 + kCorner) * setup_.puncture_N / setup_.axial_stiffness_N_m +
-                      0.5 * setup_.onset_m;
+  const double dent =
+      (1.0 + kCorner) * setup_.puncture_N / setup_.axial_stiffness_N_m + 0.5 * setup_.onset_m;
   floor_m_ = std::clamp(floor_m_, depth - dent, depth);
   // Sideways: beyond the tearing force the rest position is dragged along.
   const Eigen::Vector2d stretch = at - anchor_;

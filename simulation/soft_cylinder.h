@@ -16,13 +16,13 @@ struct SoftCylinderSetup {
   Eigen::Vector3d p_surface = Eigen::Vector3d::Zero();  ///< centre of the surface
   Eigen::Vector3d normal = -Eigen::Vector3d::UnitX();   ///< unit, out of the silicone
   double radius_m = 0.045;
-  double axial_stiffness_N_m = 0.0;      ///< indentation by the rod's end
-  double puncture_N = 0.0;               ///< axial force at which the end cuts its way
-  double lateral_stiffness_N_m2 = 0.0;   ///< sideways, per depth
-  double ploughing_N_m = 0.0;            ///< sideways force at which it tears, per depth
-  double ploughing_when_cut_N_m = 0.0;   ///< the same where it was cut before
-  double rod_diameter_m = 0.0;           ///< width of the cut
-  double onset_m = 5e-4;                 ///< depth over which forces set in smoothly
+  double axial_stiffness_N_m = 0.0;     ///< indentation by the rod's end
+  double puncture_N = 0.0;              ///< axial force at which the end cuts its way
+  double lateral_stiffness_N_m2 = 0.0;  ///< sideways, per depth
+  double ploughing_N_m = 0.0;           ///< sideways force at which it tears, per depth
+  double ploughing_when_cut_N_m = 0.0;  ///< the same where it was cut before
+  double rod_diameter_m = 0.0;          ///< width of the cut
+  double onset_m = 5e-4;                ///< depth over which forces set in smoothly
 };
 
 /// What a soft, tacky elastomer does to a blunt rod, from four figures of the material.

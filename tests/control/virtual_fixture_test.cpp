@@ -29,8 +29,8 @@ template <class Shape>
 TriangleMesh Ball(int times, const Shape& shape) {
   const double g = (1.0 + std::sqrt(5.0)) / 2.0;
   TriangleMesh mesh;
-  mesh.points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                 {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+  mesh.points = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                 {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
   mesh.triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
                     {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
                     {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
@@ -92,8 +92,7 @@ double DistanceToTriangle(const Vector3d& a, const Vector3d& b, const Vector3d& 
 double DistanceToMesh(const TriangleMesh& mesh, const Vector3d& p) {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [a, b, c] : mesh.triangles) {
-    least = std::min(
-        least, DistanceToTriangle(mesh.points[a], mesh.points[b], mesh.points[c], p));
+    least = std::min(least, DistanceToTriangle(mesh.points[a], mesh.points[b], mesh.points[c], p));
   }
   return least;
 }
@@ -104,8 +103,8 @@ bool IsInside(const TriangleMesh& mesh, const Vector3d& p) {
   for (const auto& t : mesh.triangles) {
     const Vector3d a = mesh.points[t[0]] - p, b = mesh.points[t[1]] - p, c = mesh.points[t[2]] - p;
     const double x = a.norm(), y = b.norm(), z = c.norm();
-    angle += 2.0 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x +
-                                                     c.dot(a) * y);
+    angle +=
+        2.0 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
   }
   return angle > 2.0 * std::acos(-1.0);
 }
@@ -230,8 +229,8 @@ TEST(VirtualFixture, FineMeshOfASphereTendsToTheSphere) {
     for (int i = 0; i < 500; ++i) {
       Vector3d p = Random(rng, 0.06);
       if (p.norm() < 0.02) continue;  // near the centre the nearest place is any
-      worst[finer] = std::max(worst[finer], std::abs(mesh.Constrain(p).depth_m -
-                                                     Constrain(sphere, p).depth_m));
+      worst[finer] = std::max(worst[finer],
+                              std::abs(mesh.Constrain(p).depth_m - Constrain(sphere, p).depth_m));
     }
   }
   EXPECT_LT(worst[0], 0.05 * 0.02);

@@ -1,5 +1,5 @@
-// Simulated operators: they cover the outline, press past the wall, tremble in their band, put right
-// what they see, and differ.
+// Simulated operators: they cover the outline, press past the wall, tremble in their band, put
+// right what they see, and differ.
 #include "simulation/operator.h"
 
 #include <gtest/gtest.h>
@@ -113,8 +113,9 @@ TEST(Operator, PutsRightWhatItSeesButNotDepth) {
   const auto corrected = Minute(person, [&](const Vector3d& p) -> Vector3d {
     return {0.746, p.y() + along.y(), p.z() + along.z()};
   });
-  const auto reference =
-      Minute(plain, [](const Vector3d& p) -> Vector3d { return {0.746, p.y(), p.z()}; });
+  const auto reference = Minute(plain, [](const Vector3d& p) -> Vector3d {
+    return {0.746, p.y(), p.z()};
+  });
   Vector3d mean = Vector3d::Zero();
   for (std::size_t i = 3000; i < corrected.size(); ++i) {
     mean += (corrected[i] - reference[i]) / static_cast<double>(corrected.size() - 3000);
@@ -124,8 +125,9 @@ TEST(Operator, PutsRightWhatItSeesButNotDepth) {
   EXPECT_NEAR(mean.x(), 0.0, 1e-12);
   // A tip 5 mm too deep looks 5 mm x 0.63 / 0.777 too high.
   SimulatedOperator deceived(Task(), calm, 4);
-  const auto low =
-      Minute(deceived, [](const Vector3d& p) -> Vector3d { return {0.751, p.y(), p.z()}; });
+  const auto low = Minute(deceived, [](const Vector3d& p) -> Vector3d {
+    return {0.751, p.y(), p.z()};
+  });
   double z = 0.0;
   for (std::size_t i = 3000; i < low.size(); ++i) {
     z += (low[i].z() - reference[i].z()) / static_cast<double>(low.size() - 3000);

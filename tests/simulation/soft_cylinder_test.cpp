@@ -51,9 +51,9 @@ TEST(SoftCylinder, DerivativeMatchesDifferences) {
     const TipForce force = silicone.At(p);
     for (int k = 0; k < 3; ++k) {
       const double h = 1e-7;
-      const Vector3d slope =
-          (silicone.At(p + h * Vector3d::Unit(k)).f_N - silicone.At(p - h * Vector3d::Unit(k)).f_N) /
-          (2.0 * h);
+      const Vector3d slope = (silicone.At(p + h * Vector3d::Unit(k)).f_N -
+                              silicone.At(p - h * Vector3d::Unit(k)).f_N) /
+                             (2.0 * h);
       // The law has kinks in its slope: differences there are off by the kink's size times h.
       EXPECT_LT((slope - force.df_dp_N_m.col(k)).norm(), 2e-3) << i << " " << k;
     }
