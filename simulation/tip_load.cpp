@@ -33,6 +33,11 @@ TipForce TissueForce(const Tissue& tissue, const Eigen::Vector3d& p_tip) {
 TipForce TipLoad::At(const Eigen::Vector3d& p_tip) const {
   TipForce force = tissue ? TissueForce(*tissue, p_tip) : TipForce{};
   force.f_N += constant_N;
+  if (other) {
+    const TipForce more = other(p_tip);
+    force.f_N += more.f_N;
+    force.df_dp_N_m += more.df_dp_N_m;
+  }
   return force;
 }
 

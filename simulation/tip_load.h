@@ -1,7 +1,8 @@
-// What pushes on the tip: a constant force, soft tissue with a surface, or both.
+// What pushes on the tip: a constant force, soft tissue with a surface, a law of its own, or all.
 #pragma once
 
 #include <Eigen/Dense>
+#include <functional>
 #include <optional>
 
 namespace flextip {
@@ -29,6 +30,8 @@ struct TipForce {
 struct TipLoad {
   Eigen::Vector3d constant_N = Eigen::Vector3d::Zero();
   std::optional<Tissue> tissue;
+  /// Any other law, continuous in the tip's position (soft_cylinder.h); empty: none.
+  std::function<TipForce(const Eigen::Vector3d& p_tip)> other = {};
 
   TipForce At(const Eigen::Vector3d& p_tip) const;
 };
