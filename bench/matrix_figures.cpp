@@ -156,7 +156,10 @@ class FigureMaker {
 
   void Unknowns() {
     const Group all = Where(records_, IsPart("unknown"));
+    const Group separable = Separable(all);
     Add("answered unknown", "all forms", Share(all, &MatrixRecord::IsRight), all, ">= 0.90");
+    Add("answered unknown, apart from all known", "all forms",
+        Share(separable, &MatrixRecord::IsRight), separable, ">= 0.90");
     for (const std::string& form : OtherForms()) {
       Group group = all;
       std::erase_if(group, [&](const MatrixRecord* r) { return r->form != form; });

@@ -30,7 +30,8 @@ struct MatrixRecord {
   int attempt = 0;           ///< draws that had no equilibrium
   EffectNames label;         ///< right answer, sorted: effects, or none, or unknown
   std::string form;          ///< where unknown: which
-  /// Of a single effect or a pair from its nearest rival (matrix_rival.h).
+  /// Of a single effect or a pair from its nearest rival (matrix_rival.h), of a form outside the
+  /// catalogue from all that is in it (matrix_form.h).
   double separation = 0.0;
   std::string rival;  ///< empty where that was not measured
   std::string error;  ///< a refusal's message; what follows is empty then

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "diagnosis/hypotheses.h"
 #include "diagnosis/probabilities.h"
@@ -14,17 +15,9 @@ constexpr double kWidth = 3.0;  // of a present effect's prior, in typical sizes
 /// Explanations of data without noise.
 class Explanations {
  public:
-  Explanations(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
-               const ParameterLayout& layout, const std::vector<int>& present)
-      : H_(H), layout_(layout) {
-    Eigen::VectorXd truth = Eigen::VectorXd::Zero(theta.size());
-    for (const int b : present) {
-      const auto& block = layout.Blocks()[b];
-      truth.segment(block.first, block.size) = theta.segment(block.first, block.size);
-    }
-    g_ = H_ * truth;
-    c_ = truth.dot(g_);
-  }
+  /// Of the signal z by X^T X, X^T z and z^T z.
+  Explanations(const Eigen::MatrixXd& H, Eigen::VectorXd g, double c, const ParameterLayout& layout)
+      : H_(H), layout_(layout), g_(std::move(g)), c_(c) {}
 
   /// Least |z - X x|^2 + |x / sd|^2 with the blocks of `present` there. One that would have to be
   /// negative and cannot is no help: the rest is left to explain the data.
@@ -59,6 +52,26 @@ class Explanations {
   double c_ = 0.0;
 };
 
+Separation Nearest(const Explanations& explanations, const std::vector<Hypothesis>& rivals,
+                   double of_truth, const ParameterLayout& layout) {
+  Separation nearest{std::numeric_limits<double>::infinity(), {}};
+  std::size_t effects = 0;
+  for (const Hypothesis& rival : rivals) {
+    if (rival.effects.size() > effects && nearest.value < kSeparable) break;
+    effects = rival.effects.size();
+    const double value = explanations.CostOf(rival.effects) - of_truth;
+    if (value < nearest.value) nearest = {value, Joined(VerdictOf(rival, layout))};
+  }
+  return nearest;
+}
+
+std::vector<Hypothesis> SimpleFirst(std::vector<Hypothesis> hypotheses) {
+  std::stable_sort(
+      hypotheses.begin(), hypotheses.end(),
+      [](const Hypothesis& a, const Hypothesis& b) { return a.effects.size() < b.effects.size(); });
+  return hypotheses;
+}
+
 }  // namespace
 
 Eigen::VectorXd WidePrior(const ParameterLayout& layout, const std::vector<int>& present) {
@@ -78,20 +91,21 @@ Separation NearestRival(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
                         const ParameterLayout& layout, const std::vector<int>& present) {
   auto rivals = KnownHypotheses(layout.EffectCount(), present.size() > 1);
   std::erase(rivals, Hypothesis{present, false});
-  std::stable_sort(rivals.begin(), rivals.end(), [](const Hypothesis& a, const Hypothesis& b) {
-    return a.effects.size() < b.effects.size();
-  });
-  const Explanations explanations(H, theta, layout, present);
-  const double of_truth = explanations.CostOf(present);
-  Separation nearest{std::numeric_limits<double>::infinity(), {}};
-  std::size_t effects = 0;
-  for (const Hypothesis& rival : rivals) {
-    if (rival.effects.size() > effects && nearest.value < kSeparable) break;
-    effects = rival.effects.size();
-    const double value = explanations.CostOf(rival.effects) - of_truth;
-    if (value < nearest.value) nearest = {value, Joined(VerdictOf(rival, layout))};
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(theta.size());
+  for (const int b : present) {
+    const auto& block = layout.Blocks()[b];
+    truth.segment(block.first, block.size) = theta.segment(block.first, block.size);
   }
-  return nearest;
+  const Eigen::VectorXd g = H * truth;
+  const Explanations explanations(H, g, truth.dot(g), layout);
+  return Nearest(explanations, SimpleFirst(std::move(rivals)), explanations.CostOf(present),
+                 layout);
+}
+
+Separation NearestKnown(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, double c,
+                        const ParameterLayout& layout) {
+  return Nearest(Explanations(H, g, c, layout),
+                 SimpleFirst(KnownHypotheses(layout.EffectCount(), true)), 0.0, layout);
 }
 
 }  // namespace flextip

@@ -40,4 +40,9 @@ Eigen::MatrixXd WithoutGeneric(const LinearProblem& problem, const Eigen::Vector
 Separation NearestRival(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
                         const ParameterLayout& layout, const std::vector<int>& present);
 
+/// Of a signal z that nothing of the catalogue makes, given by X^T z and z^T z: what the hypothesis
+/// that explains most of it leaves. None, single effects and pairs are rivals.
+Separation NearestKnown(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, double c,
+                        const ParameterLayout& layout);
+
 }  // namespace flextip

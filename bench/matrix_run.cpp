@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "bench/matrix_bound.h"
+#include "bench/matrix_form.h"
 #include "bench/matrix_heldout.h"
 #include "bench/matrix_parameters.h"
 #include "bench/matrix_separable.h"
@@ -150,6 +151,10 @@ MatrixRecord RunMatrixCase(const MatrixCase& one) {
     if (one.part == "singles" || one.part == "pairs") {
       truth.emplace(recording, hidden);
       SetSeparation(*truth, record);
+    } else if (one.part == "unknown") {
+      const Separation separation = MeasureForm(recording, HiddenOptionsOf(one), one.seed);
+      record.separation = separation.value;
+      record.rival = separation.rival;
     }
     record = Judge(recording, hidden, truth, record);
   } catch (const InputError& error) {

@@ -43,6 +43,23 @@ struct Toy {
   }
 };
 
+TEST(MatrixRival, WhatNothingKnownMakesIsLeftWhole) {
+  const Toy toy;
+  const Eigen::MatrixXd X =
+      toy.columns * Eigen::MatrixXd(toy.layout.Tolerances().cwiseInverse().asDiagonal());
+  const Eigen::MatrixXd H = X.transpose() * X;
+  const Separation none = NearestKnown(H, Eigen::Vector4d::Zero(), 50.0, toy.layout);
+  EXPECT_EQ(none.rival, "none");
+  EXPECT_DOUBLE_EQ(none.value, 50.0);
+  // Beside what a latency makes, but for what its prior costs.
+  Eigen::VectorXd latency = Eigen::VectorXd::Zero(4);
+  latency[kEmLatency] = toy.theta[kEmLatency];
+  const Eigen::VectorXd g = H * latency;
+  const Separation some = NearestKnown(H, g, latency.dot(g) + 50.0, toy.layout);
+  EXPECT_EQ(some.rival, "em_latency");
+  EXPECT_NEAR(some.value, 50.0 + toy.CostAlone(kEmLatency, true), 1e-6);
+}
+
 TEST(MatrixRival, APairIsAsFarFromOneOfItAsTheOtherShows) {
   Toy toy;
   toy.columns.col(kLength) *= 0.5;

@@ -1,0 +1,15 @@
+// Whether an effect outside the catalogue could be told at all from what the catalogue holds.
+#pragma once
+
+#include "bench/matrix_rival.h"
+#include "recording/recording.h"
+#include "simulation/hidden_recording.h"
+
+namespace flextip {
+
+/// `with` is the recording made with `options` and `seed`. Its signal is what changes when the same
+/// is made without the effects named there: same scene, tolerances and noise. The rival's name is
+/// empty where that cannot be had (another draw, no equilibrium, other readings left out).
+Separation MeasureForm(const Recording& with, HiddenOptions options, std::uint64_t seed);
+
+}  // namespace flextip
