@@ -287,6 +287,7 @@ Figure CauseFigure(const std::vector<MoveResult>& results) {
                    "left the port is cut off there.";
   figure.x_label = "goal";
   figure.y_label = "distance (mm)";
+  figure.log_y = true;
   for (const auto& [cause, name] : {std::pair{kDynamics, "dynamics alone"}, std::pair{kFriction, "with friction"},
                                     std::pair{kWeight, "with the shaft's weight"}}) {
     FigureTrace bars;

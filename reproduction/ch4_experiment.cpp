@@ -56,13 +56,15 @@ Ch4Move MoveOf(const Reading& reading, Ch4Kind kind, int direction, std::uint64_
 constexpr std::array<Ch4Kind, 5> kTried = {Ch4Kind::kStraight, Ch4Kind::kPrintedWithLine,
                                            Ch4Kind::kPortForce, Ch4Kind::kTipForce, Ch4Kind::kRod};
 
+int Seeds(const ReproduceOptions& options) { return options.quick ? 2 : 40; }
+
 /// The largest deviation of the four moves, seed by seed (mm).
 std::vector<double> Deviations(const Reading& reading, Ch4Kind kind,
                                const ReproduceOptions& options) {
   Ch4Plant plant = MakePlant(reading);
   // Copies start from the equilibrium; with friction each has to begin without a past.
   if (reading.port_friction == 0.0) plant.At(Eigen::Vector3d::Zero());
-  std::vector<double> largest(options.quick ? 4 : 50);
+  std::vector<double> largest(Seeds(options));
   tbb::parallel_for(std::size_t{0}, largest.size(), [&](std::size_t s) {
     for (int direction = 0; direction < 4; ++direction) {
       const Ch4Run run =
@@ -123,7 +125,7 @@ ChapterResult Ch4Experiment(const ReproduceOptions& options, const ChapterProgre
                               published, stat.mean, "mm",
                               fmt::format("0.2 kg and the shaft's weight; sensors' measured noise; mean "
                                           "of {} runs of four moves, sd {:.2f}",
-                                          options.quick ? 4 : 50, stat.sd)});
+                                          Seeds(options), stat.sd)});
       if (r == 0 && kind == Ch4Kind::kPrintedWithLine) {
         chapter.rows.push_back({"4.5 quasi-static, reduction of the largest deviation", 55.0,
                                 100.0 * (1.0 - stat.mean / straight_mm), "%",
