@@ -140,8 +140,7 @@ struct Ch4Controller::Impl {
     if (p_RE) input.p_RE_measured = *p_RE;
     input.p_RE_desired = p_RE_desired;
     const ControlOutput output = rod.Step(input);
-    return {output.p_RW_command - z.p_RW, input.p_RE_measured,
-            output.status != ControlStatus::kOk};
+    return {output.p_RW_command - z.p_RW, input.p_RE_measured, output.status != ControlStatus::kOk};
   }
 
   Ch4Step PlaneStep(Ch4Kind by, const Measurements& z, const Eigen::Vector3d& p_RE_desired,
@@ -158,7 +157,8 @@ struct Ch4Controller::Impl {
     if (!J) return step;
     const Eigen::Vector2d wrist = J->inverse() * (p_RE_desired - step.p_RE_known).head<2>();
     const double size = wrist.norm();
-    step.wrist_step.head<2>() = size > kMaxStep_m ? Eigen::Vector2d(kMaxStep_m / size * wrist) : wrist;
+    step.wrist_step.head<2>() =
+        size > kMaxStep_m ? Eigen::Vector2d(kMaxStep_m / size * wrist) : wrist;
     return step;
   }
 };

@@ -43,8 +43,7 @@ class Draw {
 
 }  // namespace
 
-Ch4Plant Ch4Plant::Beam(const Instrument& instrument, const Eigen::Vector3d& p_RP,
-                        double f_tip_N) {
+Ch4Plant Ch4Plant::Beam(const Instrument& instrument, const Eigen::Vector3d& p_RP, double f_tip_N) {
   PlaneBeamProblem problem;
   problem.p_port = p_RP.head<2>();
   problem.length_m = instrument.length_m;
@@ -113,8 +112,7 @@ Ch4Run RunCh4Move(const Ch4Move& move, Ch4Plant plant) {
     // Where the noise is only in the model, the tip's error is the true one.
     const std::optional<Eigen::Vector3d> seen =
         move.noise.tip_too ? std::nullopt : std::optional(shape->p_RE);
-    const Ch4Step step =
-        controller.Step(z, start + travelled * move.move_m.normalized(), seen);
+    const Ch4Step step = controller.Step(z, start + travelled * move.move_m.normalized(), seen);
     const Eigen::Vector3d& known = step.p_RE_known;
     run.straight_instead += step.straight_instead;
     run.p_RE_measured.push_back(known);

@@ -97,9 +97,8 @@ TEST(TrajectoryPaths, MeasuresOnPathsByHand) {
   EXPECT_NEAR(MovesAway(path, {0.03, 0.0}), 0.002, 1e-15);
   EXPECT_NEAR(LargestHeadingError(path, {0.03, 0.0}, 1e-3), M_PI, 1e-12);
   path.p_tip.resize(3);
-  const double down = std::atan2(0.003, 0.01), aim = std::atan2(0.003, 0.02);
-  EXPECT_NEAR(LargestHeadingError(path, {0.03, 0.0}, 1e-3), down, 1e-12);
-  EXPECT_GT(down, down - aim);
+  // Up by atan 0.3 with the goal ahead, then down by as much with the goal atan 0.15 below.
+  EXPECT_NEAR(LargestHeadingError(path, {0.03, 0.0}, 1e-3), std::atan(0.3), 1e-12);
 }
 
 }  // namespace
