@@ -239,12 +239,14 @@ Figure DepthFigure(const std::vector<Trial>& trials) {
   figure.name = "fig-4-4-time";
   figure.title = "Depth of the tip during a trial";
   figure.caption =
-      "The downward motion slows where the motors' proportional part balances the block; the "
-      "integral does the rest, as 4.5.2 describes.";
+      "One trial each. The way down slows as the block pushes back; the integral brings the rest.";
   figure.x_label = "time (s)";
   figure.y_label = "y (mm)";
   for (const Trial& trial : trials) {
-    if (trial.strain || !trial.expects_tissue) continue;
+    if (trial.strain || !trial.expects_tissue || trial.kind == Ch4Kind::kPrinted ||
+        trial.kind == Ch4Kind::kPortForce) {
+      continue;
+    }
     const PressRun& run = trial.runs.front();
     FigureTrace trace = PathTrace(run.p_RE, run.p_start);
     trace.x = run.t_s;
