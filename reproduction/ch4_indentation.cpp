@@ -120,13 +120,24 @@ double Seconds(const Trial& trial) {
   return Mean(trial, &PressRun::down_s) + Mean(trial, &PressRun::up_s);
 }
 
+double StraightShare(const Trial& trial) {
+  double straight = 0.0, all = 0.0;
+  for (const PressRun& run : trial.runs) {
+    straight += trial.kind == Ch4Kind::kStraight ? 0 : run.straight_instead;
+    all += static_cast<double>(run.p_RE.size());
+  }
+  return straight / all;
+}
+
 void AddTrials(const std::vector<Trial>& trials, std::vector<TableRow>& rows) {
   for (const Trial& trial : trials) {
     const auto unfinished = std::count_if(trial.runs.begin(), trial.runs.end(),
                                           [](const PressRun& run) { return !run.finished; });
-    const std::string note = unfinished > 0 ? fmt::format("{} of {} trials did not finish",
-                                                          unfinished, trial.runs.size())
-                                            : "";
+    std::string note = unfinished > 0 ? fmt::format("{} of {} trials did not finish; ", unfinished,
+                                                    trial.runs.size())
+                                      : "";
+    note += fmt::format("{:.0f} % of the updates by the straight shaft, for want of flexion to fit",
+                        100.0 * StraightShare(trial));
     rows.push_back({"4.4 dynamic, largest deviation, " + trial.name, trial.max_mm,
                     1e3 * Max(trial, &PressRun::max_m), "mm", note});
     rows.push_back({"4.4 dynamic, mean RMS deviation, " + trial.name, trial.rms_mm,

@@ -37,6 +37,7 @@ Ch4Plant MakePlant(PlantCase plant) {
 /// One seed's four moves.
 struct Four {
   double max_mm = 0.0, max_y_mm = 0.0, measured_mm = 0.0, updates = 0.0;
+  int lost = 0;  // moves whose shaft lost its equilibrium
 };
 
 struct Case {
@@ -67,6 +68,7 @@ Four RunFour(const Case& c, const Ch4Plant& plant, std::uint64_t seed) {
     four.measured_mm = std::max(four.measured_mm, 1e3 * run.max_measured_m);
     if (direction >= 2) four.max_y_mm = std::max(four.max_y_mm, 1e3 * run.max_m);
     four.updates += 0.25 * run.updates;
+    four.lost += run.lost;
   }
   return four;
 }
@@ -132,6 +134,9 @@ std::string NoteOf(const Case& c, const MeanSd& stat, std::optional<double> publ
                                      [&](double v) { return v <= *published + 0.05; });
     note += fmt::format("; {} of them at most the thesis's figure", below);
   }
+  int lost = 0;
+  for (const Four& four : c.seeds) lost += four.lost;
+  if (lost > 0) note += fmt::format("; {} moves ended early, without an equilibrium", lost);
   return note;
 }
 

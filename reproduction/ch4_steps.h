@@ -67,9 +67,9 @@ struct Ch4Move {
 
 struct Ch4Run {
   std::vector<Eigen::Vector3d> p_RE, p_RE_measured;  ///< the start and after each update
-  double max_m = 0.0, rms_m = 0.0;                   ///< of the true tip, from the straight path
+  double max_m = 0.0;                                ///< of the true tip, from the straight path
   double max_measured_m = 0.0;                       ///< of the measured tip
-  int updates = 0, straight_instead = 0;
+  int updates = 0;
   bool lost = false;  ///< the shaft lost its equilibrium
 };
 
