@@ -146,8 +146,7 @@ double LargestDistance(const TrajectoryPath& path, const TrajectoryPath& referen
   for (const Eigen::Vector2d& p : path.p_tip) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < reference.p_tip.size(); ++i) {
-      nearest = std::min(nearest,
-                         DistanceToSegment(p, reference.p_tip[i - 1], reference.p_tip[i]));
+      nearest = std::min(nearest, DistanceToSegment(p, reference.p_tip[i - 1], reference.p_tip[i]));
     }
     largest = std::max(largest, nearest);
   }

@@ -43,10 +43,10 @@ struct ArmRig {
   double gain = 1.0;
   /// A time constant kd / kp of 0.3 s and an integral time kp / ki of 50 s: slow and over-damped.
   PidGains pid{5.0, 0.1, 1.5};
-  double link_error = 0.0;             ///< the links are longer than the controller's by this part
-  double encoder_rad = 0.0;            ///< resolution of the joints' angles
-  double rate_hz = 1000.0;             ///< of the PID and of (2.1)
-  int substeps = 20;                   ///< of the integration in a period
+  double link_error = 0.0;   ///< the links are longer than the controller's by this part
+  double encoder_rad = 0.0;  ///< resolution of the joints' angles
+  double rate_hz = 1000.0;   ///< of the PID and of (2.1)
+  int substeps = 20;         ///< of the integration in a period
   double longest_s = 10.0;
 };
 

@@ -20,7 +20,17 @@ constexpr std::array<std::array<int, 2>, kGoals> kWay = {
 constexpr std::array<double, 6> kSweep_N = {0.0, 0.05, 0.1, 0.2, 0.5, 1.0};
 
 /// What acts besides the quasi-static controller, one at a time.
-enum Cause { kDynamics, kFriction, kFrictionAlone, kWeight, kEncoders, kLinks, kAccumulated, kAccumulatedFriction, kCauses };
+enum Cause {
+  kDynamics,
+  kFriction,
+  kFrictionAlone,
+  kWeight,
+  kEncoders,
+  kLinks,
+  kAccumulated,
+  kAccumulatedFriction,
+  kCauses
+};
 
 ArmRig Rig(Cause cause) {
   ArmRig rig;
@@ -77,7 +87,8 @@ struct MoveResult {
 TrajectoryMove Move(int index) {
   TrajectoryMove move;
   move.p_start = {kStart_z[index / kGoals], 0.0};
-  move.p_goal = move.p_start + 0.02 * Eigen::Vector2d(kWay[index % kGoals][0], kWay[index % kGoals][1]);
+  move.p_goal =
+      move.p_start + 0.02 * Eigen::Vector2d(kWay[index % kGoals][0], kWay[index % kGoals][1]);
   return move;
 }
 
@@ -153,14 +164,15 @@ void AddSteps(const std::vector<MoveResult>& results, std::vector<TableRow>& row
   rows.push_back({"2.3.2 moves by quasi-static steps that reach their goal", 24,
                   CountIf(results, [](const MoveResult& r) { return r.quasi_static.reached; })});
   rows.push_back({"2.3.2 moves by steps that move away before they converge", 1,
-                  CountIf(results, [](const MoveResult& r) { return r.away_mm > 0.05; }),
-                  "",
+                  CountIf(results, [](const MoveResult& r) { return r.away_mm > 0.05; }), "",
                   "the thesis names (435, 0); here its two neighbours (435, +-20) do it too"});
   for (int goal : {0, 1, 7}) {
     const MoveResult& r = results[2 * kGoals + goal];
     rows.push_back({fmt::format("2.3.2 way back on the path to ({:.0f}, {:.0f})",
                                 1e3 * r.move.p_goal.x(), 1e3 * r.move.p_goal.y()),
-                    {}, r.away_mm, "mm",
+                    {},
+                    r.away_mm,
+                    "mm",
                     "by how much the distance to the goal grows again; by steps of gain 0.01"});
   }
 }
@@ -170,7 +182,10 @@ void AddDeviations(const std::vector<MoveResult>& results, std::vector<TableRow>
     for (int s = 0; s < 3; ++s) {
       rows.push_back({fmt::format("2.3.2 largest distance from the steps' path, {}, from {}", what,
                                   kStartName[s]),
-                      {}, Largest(results, cause, s * kGoals, (s + 1) * kGoals), "mm", note});
+                      {},
+                      Largest(results, cause, s * kGoals, (s + 1) * kGoals),
+                      "mm",
+                      note});
     }
   };
   add(kDynamics, "inertia and PID", "no friction: slow motion takes the dynamics away");
@@ -191,7 +206,8 @@ int FarFromSteps(const std::vector<MoveResult>& results) {
 double ChangeByLinks(const std::vector<MoveResult>& results) {
   double largest = 0.0;
   for (const MoveResult& r : results) {
-    largest = std::max(largest, LargestDistance(r.by_cause[kLinks].path, r.by_cause[kDynamics].path));
+    largest =
+        std::max(largest, LargestDistance(r.by_cause[kLinks].path, r.by_cause[kDynamics].path));
   }
   return 1e3 * largest;
 }
@@ -207,16 +223,23 @@ int LargerAngles(const std::vector<MoveResult>& results) {
 void AddCauses(const std::vector<MoveResult>& results, std::vector<TableRow>& rows) {
   const auto add = [&](Cause cause, const std::string& what, const std::string& note) {
     const Contrast contrast = OfN(results, cause);
-    rows.push_back({fmt::format("2.4 N, least of the three far paths, {}", what), {},
-                    contrast.least_far_mm, "mm", note});
-    rows.push_back({fmt::format("2.4 N, largest of the five others, {}", what), {},
-                    contrast.largest_other_mm, "mm"});
+    rows.push_back({fmt::format("2.4 N, least of the three far paths, {}", what),
+                    {},
+                    contrast.least_far_mm,
+                    "mm",
+                    note});
+    rows.push_back({fmt::format("2.4 N, largest of the five others, {}", what),
+                    {},
+                    contrast.largest_other_mm,
+                    "mm"});
   };
-  rows.push_back({"2.4 paths from N that do not closely follow the steps'", 3, FarFromSteps(results),
-                  "", "those to (435, 0), (435, 20) and (435, -20), with 0.3 N of friction; counted: "
+  rows.push_back({"2.4 paths from N that do not closely follow the steps'", 3,
+                  FarFromSteps(results), "",
+                  "those to (435, 0), (435, 20) and (435, -20), with 0.3 N of friction; counted: "
                   "further off than every other of the 24"});
   add(kFriction, "friction", "0.3 N with inertia and PID");
-  add(kFrictionAlone, "friction alone", "a fifth of the inertia, no integral: what is left is friction");
+  add(kFrictionAlone, "friction alone",
+      "a fifth of the inertia, no integral: what is left is friction");
   add(kDynamics, "dynamics alone", "inertia and PID without friction");
   add(kWeight, "shaft's weight alone",
       "0.11 N that nothing balances, no friction: picks out the same three, and more sharply");
@@ -224,11 +247,19 @@ void AddCauses(const std::vector<MoveResult>& results, std::vector<TableRow>& ro
   add(kAccumulatedFriction, "friction, goals accumulated",
       "joint goals that add up instead of starting from the measured joints (3.4)");
   add(kAccumulated, "dynamics, goals accumulated", "");
-  rows.push_back({"2.4 change of the recorded paths by links 1 % too long", {}, ChangeByLinks(results), "mm",
-                  "the tip by forward kinematics follows the controller's own geometry: an error of it "
-                  "cannot show in these paths"});
-  rows.push_back({"2.4 paths with a larger angle to the goal than by steps", {}, LargerAngles(results), "",
-                  "\"sometimes greater\" in the thesis; with friction, of 24, up to 5 mm from the goal"});
+  rows.push_back(
+      {"2.4 change of the recorded paths by links 1 % too long",
+       {},
+       ChangeByLinks(results),
+       "mm",
+       "the tip by forward kinematics follows the controller's own geometry: an error of it "
+       "cannot show in these paths"});
+  rows.push_back(
+      {"2.4 paths with a larger angle to the goal than by steps",
+       {},
+       LargerAngles(results),
+       "",
+       "\"sometimes greater\" in the thesis; with friction, of 24, up to 5 mm from the goal"});
 }
 
 FigureTrace Line(const TrajectoryPath& path, const std::string& name, bool dashed) {
@@ -237,7 +268,9 @@ FigureTrace Line(const TrajectoryPath& path, const std::string& name, bool dashe
   trace.dashed = dashed;
   trace.color = dashed ? "#7f7f7f" : "#1f77b4";
   for (const Eigen::Vector2d& p : path.p_tip) {
-    if (!trace.x.empty() && std::hypot(1e3 * p.x() - trace.x.back(), 1e3 * p.y() - trace.y.back()) < 0.05) continue;
+    if (!trace.x.empty() &&
+        std::hypot(1e3 * p.x() - trace.x.back(), 1e3 * p.y() - trace.y.back()) < 0.05)
+      continue;
     trace.x.push_back(1e3 * p.x());
     trace.y.push_back(1e3 * p.y());
   }
@@ -257,17 +290,20 @@ Figure PathFigure(const std::vector<MoveResult>& results, int start) {
   Figure figure;
   figure.name = fmt::format("fig-2-8{}", static_cast<char>('l' + start));
   figure.title = fmt::format("From {} to eight goals (Fig. 2.8)", kStartName[start]);
-  figure.caption = "Dashed: quasi-static steps of gain 0.01. Solid: arm with inertia, 1000 Hz PID and "
-                   "0.3 N of friction at the port.";
+  figure.caption =
+      "Dashed: quasi-static steps of gain 0.01. Solid: arm with inertia, 1000 Hz PID and "
+      "0.3 N of friction at the port.";
   figure.x_label = "z (mm)";
   figure.y_label = "y (mm)";
   figure.equal_axes = true;
-  FigureTrace goals = Points("goals", "#d62728", "circle"), from = Points("start", "#000000", "circle");
+  FigureTrace goals = Points("goals", "#d62728", "circle"),
+              from = Points("start", "#000000", "circle");
   for (int i = start * kGoals; i < (start + 1) * kGoals; ++i) {
     const MoveResult& r = results[i];
     const bool first = i == start * kGoals;
     figure.traces.push_back(Line(r.quasi_static, first ? "quasi-static" : "", true));
-    figure.traces.push_back(Line(r.by_cause[kFriction].path, first ? "arm with friction" : "", false));
+    figure.traces.push_back(
+        Line(r.by_cause[kFriction].path, first ? "arm with friction" : "", false));
     goals.x.push_back(1e3 * r.move.p_goal.x());
     goals.y.push_back(1e3 * r.move.p_goal.y());
     from.x = {1e3 * r.move.p_start.x()};
@@ -282,13 +318,16 @@ Figure CauseFigure(const std::vector<MoveResult>& results) {
   Figure figure;
   figure.name = "fig-2-8-causes";
   figure.title = "What takes the paths from N off the quasi-static ones";
-  figure.caption = "Largest distance from the path by steps, one cause at a time: inertia and PID; 0.3 N of "
-                   "friction besides; the shaft's 0.11 N, unbalanced, without friction. A move whose shaft "
-                   "left the port is cut off there.";
+  figure.caption =
+      "Largest distance from the path by steps, one cause at a time: inertia and PID; 0.3 N of "
+      "friction besides; the shaft's 0.11 N, unbalanced, without friction. A move whose shaft "
+      "left the port is cut off there.";
   figure.x_label = "goal";
   figure.y_label = "distance (mm)";
-  for (const auto& [cause, name] : {std::pair{kDynamics, "dynamics alone"}, std::pair{kFriction, "with friction"},
-                                    std::pair{kWeight, "with the shaft's weight"}}) {
+  figure.log_y = true;
+  for (const auto& [cause, name] :
+       {std::pair{kDynamics, "dynamics alone"}, std::pair{kFriction, "with friction"},
+        std::pair{kWeight, "with the shaft's weight"}}) {
     FigureTrace bars;
     bars.name = name;
     bars.kind = FigureTrace::Kind::kBars;
@@ -311,7 +350,9 @@ Figure SweepFigure(const std::vector<MoveResult>& results) {
   figure.y_label = "largest distance from the path by steps (mm)";
   for (int i = 2 * kGoals; i < kMoves; ++i) {
     FigureTrace line;
-    line.name = fmt::format("({:.0f}, {:.0f})", 1e3 * results[i].move.p_goal.x(), 1e3 * results[i].move.p_goal.y());
+    const bool first = i == 2 * kGoals || i == 2 * kGoals + 2;
+    if (first) line.name = IsFar(i) ? "goals at z = 435" : "the five others";
+    line.color = IsFar(i) ? "#d62728" : "#7f7f7f";
     line.dashed = !IsFar(i);
     line.x.assign(kSweep_N.begin(), kSweep_N.end());
     line.y.assign(results[i].sweep_mm.begin(), results[i].sweep_mm.end());

@@ -74,7 +74,7 @@ EstimatorOptions Options(const Ch4Setup& setup) {
 /// Noise seldom makes the squared residuals of n measurements larger than this.
 bool Believable(const ShaftEstimate& estimate) {
   const double n = estimate.measurements;
-  return estimate.status == EstimateStatus::kOk && estimate.chi2 < n + 6.0 * std::sqrt(2.0 * n);
+  return estimate.status == EstimateStatus::kOk && estimate.chi2 < n + 4.0 * std::sqrt(2.0 * n);
 }
 
 ControllerOptions RodOptions() {
@@ -109,43 +109,56 @@ struct Ch4Controller::Impl {
   Ch4Setup setup;
   ShaftEstimator estimator;
   TipController rod;
-  std::optional<ShaftModel> model = {};  // the last one that agreed with its measurements
+  bool started = false;
+
+  /// The estimator's fit starts from the last one; from the unloaded shaft, or after an outlier, it
+  /// may end far off. Then it is led to the beam's load first.
+  ShaftEstimate FromTheBeam(const Measurements& z) {
+    const BeamFit fit = FitBeam(z, setup);
+    estimator.Reset();
+    if (fit.IsUsable()) {
+      Measurements led = z;
+      led.load = LoadMeasurement{BeamTipLoad(fit) * setup.instrument.bending_stiffness_Nm2, 0.1};
+      estimator.Update(led);
+    }
+    ShaftEstimate estimate = estimator.Update(z);
+    for (int i = 0; i < 4 && !Believable(estimate); ++i) estimate = estimator.Update(z);
+    return estimate;
+  }
 
   Ch4Step RodStep(const Measurements& z, const Eigen::Vector3d& p_RE_desired,
                   const std::optional<Eigen::Vector3d>& p_RE) {
-    ShaftEstimate estimate = estimator.Update(z);
-    if (!Believable(estimate)) {  // a start too far off: once more, from the unloaded shaft
-      estimator.Reset();
-      estimate = estimator.Update(z);
-    }
-    if (Believable(estimate)) model = estimate.model;
+    ShaftEstimate estimate = started ? estimator.Update(z) : FromTheBeam(z);
+    if (!Believable(estimate)) estimate = FromTheBeam(z);
+    started = true;
+    if (!Believable(estimate)) return PlaneStep(Ch4Kind::kTipForce, z, p_RE_desired, p_RE);
     ControlInput input;
     input.p_RW = z.p_RW;
-    input.model = model.value_or(estimate.model);
+    input.model = estimate.model;
     input.tip_measured = true;
-    input.p_RE_measured = Believable(estimate) ? estimate.p_RE : z.em->T_RS.p;
+    input.p_RE_measured = estimate.p_RE;
     if (p_RE) input.p_RE_measured = *p_RE;
     input.p_RE_desired = p_RE_desired;
     const ControlOutput output = rod.Step(input);
-    return {output.p_RW_command - z.p_RW, input.p_RE_measured,
-            output.status != ControlStatus::kOk};
+    return {output.p_RW_command - z.p_RW, input.p_RE_measured, output.status != ControlStatus::kOk};
   }
 
-  Ch4Step PlaneStep(const Measurements& z, const Eigen::Vector3d& p_RE_desired,
+  Ch4Step PlaneStep(Ch4Kind by, const Measurements& z, const Eigen::Vector3d& p_RE_desired,
                     const std::optional<Eigen::Vector3d>& p_RE) const {
     Ch4Step step;
     step.p_RE_known = p_RE.value_or(z.em->T_RS.p);
     std::optional<Eigen::Matrix2d> J;
-    if (kind != Ch4Kind::kStraight) {
+    if (by != Ch4Kind::kStraight) {
       const BeamFit fit = FitBeam(z, setup);
-      if (fit.IsUsable()) J = BeamJacobianOf(kind, fit);
+      if (fit.IsUsable()) J = BeamJacobianOf(by, fit);
       step.straight_instead = !J;
     }
     if (!J) J = StraightJacobian(z, setup);
     if (!J) return step;
     const Eigen::Vector2d wrist = J->inverse() * (p_RE_desired - step.p_RE_known).head<2>();
     const double size = wrist.norm();
-    step.wrist_step.head<2>() = size > kMaxStep_m ? Eigen::Vector2d(kMaxStep_m / size * wrist) : wrist;
+    step.wrist_step.head<2>() =
+        size > kMaxStep_m ? Eigen::Vector2d(kMaxStep_m / size * wrist) : wrist;
     return step;
   }
 };
@@ -159,7 +172,7 @@ Ch4Controller::~Ch4Controller() = default;
 Ch4Step Ch4Controller::Step(const Measurements& z, const Eigen::Vector3d& p_RE_desired,
                             const std::optional<Eigen::Vector3d>& p_RE) {
   return impl_->kind == Ch4Kind::kRod ? impl_->RodStep(z, p_RE_desired, p_RE)
-                                      : impl_->PlaneStep(z, p_RE_desired, p_RE);
+                                      : impl_->PlaneStep(impl_->kind, z, p_RE_desired, p_RE);
 }
 
 }  // namespace flextip

@@ -21,9 +21,9 @@ enum class Ch4Kind : std::uint8_t {
   kTipForce,         ///< the beam's, corrected, F_t constant
   kRod,              ///< exact rod; tip by all sensors together
 };
-inline constexpr std::array<Ch4Kind, 6> kCh4Kinds = {
-    Ch4Kind::kStraight,  Ch4Kind::kPrinted,  Ch4Kind::kPrintedWithLine,
-    Ch4Kind::kPortForce, Ch4Kind::kTipForce, Ch4Kind::kRod};
+inline constexpr std::array<Ch4Kind, 6> kCh4Kinds = {Ch4Kind::kStraight,        Ch4Kind::kPrinted,
+                                                     Ch4Kind::kPrintedWithLine, Ch4Kind::kPortForce,
+                                                     Ch4Kind::kTipForce,        Ch4Kind::kRod};
 const char* Name(Ch4Kind kind);
 
 struct Ch4Setup {
@@ -36,7 +36,7 @@ struct Ch4Setup {
 struct Ch4Step {
   Eigen::Vector3d wrist_step = Eigen::Vector3d::Zero();  ///< (5.1)
   Eigen::Vector3d p_RE_known = Eigen::Vector3d::Zero();  ///< the tip it started from
-  bool straight_instead = false;  ///< no flexion to be seen, or no beam fits
+  bool straight_instead = false;                         ///< no flexion to be seen, or no beam fits
 };
 
 class Ch4Controller {

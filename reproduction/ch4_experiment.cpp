@@ -14,9 +14,9 @@ const Eigen::Vector3d kPort(0.28, 0.0, 0.0), kGravity(0.0, -9.81, 0.0);
 /// How the set-up is read: the mass hangs "next to the tip sensor", 40 mm from the tip.
 struct Reading {
   const char* name;
-  double to_mass_m;       // from the wrist
-  double overhang_m;      // beyond the mass, to what counts as the tip
-  double port_friction;   // coefficient
+  double to_mass_m;      // from the wrist
+  double overhang_m;     // beyond the mass, to what counts as the tip
+  double port_friction;  // coefficient
 };
 constexpr std::array<Reading, 4> kReadings = {{
     {"mass on the tip", 0.6, 0.0, 0.0},
@@ -56,13 +56,15 @@ Ch4Move MoveOf(const Reading& reading, Ch4Kind kind, int direction, std::uint64_
 constexpr std::array<Ch4Kind, 5> kTried = {Ch4Kind::kStraight, Ch4Kind::kPrintedWithLine,
                                            Ch4Kind::kPortForce, Ch4Kind::kTipForce, Ch4Kind::kRod};
 
+int Seeds(const ReproduceOptions& options) { return options.quick ? 2 : 40; }
+
 /// The largest deviation of the four moves, seed by seed (mm).
 std::vector<double> Deviations(const Reading& reading, Ch4Kind kind,
                                const ReproduceOptions& options) {
   Ch4Plant plant = MakePlant(reading);
   // Copies start from the equilibrium; with friction each has to begin without a past.
   if (reading.port_friction == 0.0) plant.At(Eigen::Vector3d::Zero());
-  std::vector<double> largest(options.quick ? 4 : 50);
+  std::vector<double> largest(Seeds(options));
   tbb::parallel_for(std::size_t{0}, largest.size(), [&](std::size_t s) {
     for (int direction = 0; direction < 4; ++direction) {
       const Ch4Run run =
@@ -78,8 +80,9 @@ Figure MoveFigure(char part, int direction, std::uint64_t seed) {
   figure.name = fmt::format("fig-4-3{}", part);
   figure.title = fmt::format("Mass hung on the tip, {} (Fig. 4.3)",
                              direction == 0 ? "away from the port" : "up");
-  figure.caption = "One run with the sensors' measured noise, 0.13 mm and 0.00056 rad. The axes are "
-                   "scaled differently.";
+  figure.caption =
+      "One run with the sensors' measured noise, 0.13 mm and 0.00056 rad. The axes are "
+      "scaled differently.";
   figure.x_label = "x (mm)";
   figure.y_label = "y (mm)";
   const std::array<const char*, 3> colors = {"#d62728", "#1f77b4", "#2ca02c"};
@@ -118,12 +121,13 @@ ChapterResult Ch4Experiment(const ReproduceOptions& options, const ChapterProgre
       if (kind == Ch4Kind::kStraight) published = 1.9;
       if (kind == Ch4Kind::kPrintedWithLine) published = 1.1;
       if (r == 0 && kind == Ch4Kind::kStraight) straight_mm = stat.mean;
-      chapter.rows.push_back({fmt::format("4.4 quasi-static, largest deviation, {}, {}", Name(kind),
-                                          kReadings[r].name),
-                              published, stat.mean, "mm",
-                              fmt::format("0.2 kg and the shaft's weight; sensors' measured noise; mean "
-                                          "of {} runs of four moves, sd {:.2f}",
-                                          options.quick ? 4 : 50, stat.sd)});
+      chapter.rows.push_back(
+          {fmt::format("4.4 quasi-static, largest deviation, {}, {}", Name(kind),
+                       kReadings[r].name),
+           published, stat.mean, "mm",
+           fmt::format("0.2 kg and the shaft's weight; sensors' measured noise; mean "
+                       "of {} runs of four moves, sd {:.2f}",
+                       Seeds(options), stat.sd)});
       if (r == 0 && kind == Ch4Kind::kPrintedWithLine) {
         chapter.rows.push_back({"4.5 quasi-static, reduction of the largest deviation", 55.0,
                                 100.0 * (1.0 - stat.mean / straight_mm), "%",

@@ -55,8 +55,9 @@ class Press {
     shape_ = plant_.Solve(WristAt(state_));
     run_.p_start = shape_.T_RE().p;  // the block is brought up to the tip
     TipLoad load;
-    load.tissue = Tissue{run_.p_start, Eigen::Vector3d::UnitY(), setup.tissue_N_m,
-                         setup.tissue_tangential_N_m, run_.p_start, 1e-3};
+    load.tissue = Tissue{run_.p_start,     Eigen::Vector3d::UnitY(),
+                         setup.tissue_N_m, setup.tissue_tangential_N_m,
+                         run_.p_start,     1e-3};
     plant_.SetLoad(load);
     shape_ = plant_.Solve(WristAt(state_));
     // At rest, the arm carries what the shaft weighs on it.
@@ -111,8 +112,7 @@ class Press {
     run_.p_RE.push_back(p);
     run_.t_s.push_back(t_s_);
     run_.peak_force_N = std::max(run_.peak_force_N, shape_.f_tip_N.norm());
-    const StraightShaft straight =
-        SolveStraight(WristAt(state_), kPort, SteelRod().length_m);
+    const StraightShaft straight = SolveStraight(WristAt(state_), kPort, SteelRod().length_m);
     run_.peak_flexion_m = std::max(run_.peak_flexion_m, (p - straight.p_tip).norm());
   }
 

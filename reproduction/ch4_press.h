@@ -13,9 +13,9 @@ namespace flextip {
 
 struct PressSetup {
   Ch4Kind kind = Ch4Kind::kStraight;
-  bool strain = false;                 ///< the model from moments instead of directions
-  double tissue_N_m = 79.0;            ///< of the block under the tip, normal
-  double tissue_tangential_N_m = 10.0; ///< and along its surface: it is dusted with talcum
+  bool strain = false;                  ///< the model from moments instead of directions
+  double tissue_N_m = 79.0;             ///< of the block under the tip, normal
+  double tissue_tangential_N_m = 10.0;  ///< and along its surface: it is dusted with talcum
   double depth_m = 0.015;
   double port_friction = 0.0;  ///< coefficient, of the block that is the port
   /// A trial takes about 2 s, and the proportional part alone does not reach the goal.

@@ -37,6 +37,7 @@ Ch4Plant MakePlant(PlantCase plant) {
 /// One seed's four moves.
 struct Four {
   double max_mm = 0.0, max_y_mm = 0.0, measured_mm = 0.0, updates = 0.0;
+  int lost = 0;  // moves whose shaft lost its equilibrium
 };
 
 struct Case {
@@ -67,6 +68,7 @@ Four RunFour(const Case& c, const Ch4Plant& plant, std::uint64_t seed) {
     four.measured_mm = std::max(four.measured_mm, 1e3 * run.max_measured_m);
     if (direction >= 2) four.max_y_mm = std::max(four.max_y_mm, 1e3 * run.max_m);
     four.updates += 0.25 * run.updates;
+    four.lost += run.lost;
   }
   return four;
 }
@@ -103,7 +105,7 @@ std::vector<Case> RunCases(const ReproduceOptions& options, const ChapterProgres
   return cases;
 }
 
-std::vector<double> Values(const Case& c, double Four::* member) {
+std::vector<double> Values(const Case& c, double Four::*member) {
   std::vector<double> values;
   for (const Four& four : c.seeds) values.push_back(four.*member);
   return values;
@@ -123,7 +125,7 @@ std::optional<double> Published(Ch4Kind kind, bool along_y) {
 }
 
 std::string NoteOf(const Case& c, const MeanSd& stat, std::optional<double> published,
-                   double Four::* member) {
+                   double Four::*member) {
   if (c.noise == kNoiseFree) return "";
   std::string note = fmt::format("mean of {} seeds, sd {:.2f}", c.seeds.size(), stat.sd);
   if (published) {
@@ -132,19 +134,22 @@ std::string NoteOf(const Case& c, const MeanSd& stat, std::optional<double> publ
                                      [&](double v) { return v <= *published + 0.05; });
     note += fmt::format("; {} of them at most the thesis's figure", below);
   }
+  int lost = 0;
+  for (const Four& four : c.seeds) lost += four.lost;
+  if (lost > 0) note += fmt::format("; {} moves ended early, without an equilibrium", lost);
   return note;
 }
 
 void AddDeviations(const std::vector<Case>& cases, std::vector<TableRow>& rows) {
   for (const bool along_y : {false, true}) {
-    double Four::* const member = along_y ? &Four::max_y_mm : &Four::max_mm;
+    double Four::*const member = along_y ? &Four::max_y_mm : &Four::max_mm;
     for (const Case& c : cases) {
       const MeanSd stat = MeanAndSd(Values(c, member));
       const std::optional<double> published = Published(c.kind, along_y);
-      rows.push_back({fmt::format("4.3.1 largest deviation{}, {}, {}, {}",
-                                  along_y ? " of moves along y" : "", Name(c.kind),
-                                  kPlantNames[c.plant], kNoiseNames[c.noise]),
-                      published, stat.mean, "mm", NoteOf(c, stat, published, member)});
+      rows.push_back(
+          {fmt::format("4.3.1 largest deviation{}, {}, {}, {}", along_y ? " of moves along y" : "",
+                       Name(c.kind), kPlantNames[c.plant], kNoiseNames[c.noise]),
+           published, stat.mean, "mm", NoteOf(c, stat, published, member)});
     }
   }
 }
@@ -156,19 +161,25 @@ void AddReadings(const std::vector<Case>& cases, std::vector<TableRow>& rows) {
                                 Name(kind)),
                     Published(kind, false), MeanAndSd(Values(c, &Four::measured_mm)).mean, "mm",
                     "what the controller believes of the tip, over the same runs"});
-    rows.push_back({fmt::format("4.3.1 updates a move, {}, noise as stated", Name(kind)), {},
-                    MeanAndSd(Values(c, &Four::updates)).mean, "",
-                    "until the tip is known to be 0.5 mm from the goal, at most 20; the thesis states "
-                    "no distance"});
+    rows.push_back(
+        {fmt::format("4.3.1 updates a move, {}, noise as stated", Name(kind)),
+         {},
+         MeanAndSd(Values(c, &Four::updates)).mean,
+         "",
+         "until the tip is known to be 0.5 mm from the goal, at most 20; the thesis states "
+         "no distance"});
   }
   const auto noise_free = [&](Ch4Kind kind) {
     return Find(cases, kExactPlant, kNoiseFree, kind).seeds[0].max_mm;
   };
-  rows.push_back({"4.5 reduction of the largest deviation, flexion as printed, phi repaired", 55.0,
-                  100.0 * (1.0 - noise_free(Ch4Kind::kPrintedWithLine) / noise_free(Ch4Kind::kStraight)),
-                  "%", "exact plant, noise-free"});
-  rows.push_back({"4.5 reduction of the largest deviation, rod", {},
-                  100.0 * (1.0 - noise_free(Ch4Kind::kRod) / noise_free(Ch4Kind::kStraight)), "%",
+  rows.push_back(
+      {"4.5 reduction of the largest deviation, flexion as printed, phi repaired", 55.0,
+       100.0 * (1.0 - noise_free(Ch4Kind::kPrintedWithLine) / noise_free(Ch4Kind::kStraight)), "%",
+       "exact plant, noise-free"});
+  rows.push_back({"4.5 reduction of the largest deviation, rod",
+                  {},
+                  100.0 * (1.0 - noise_free(Ch4Kind::kRod) / noise_free(Ch4Kind::kStraight)),
+                  "%",
                   "exact plant, noise-free"});
 }
 
@@ -198,15 +209,17 @@ void AddGeometry(std::vector<TableRow>& rows) {
 }
 
 constexpr std::array<std::pair<Ch4Kind, const char*>, 3> kDrawn = {
-    {{Ch4Kind::kStraight, "#d62728"}, {Ch4Kind::kPrintedWithLine, "#1f77b4"},
+    {{Ch4Kind::kStraight, "#d62728"},
+     {Ch4Kind::kPrintedWithLine, "#1f77b4"},
      {Ch4Kind::kRod, "#2ca02c"}}};
 
 Figure PathsFigure(std::uint64_t seed) {
   Figure figure;
   figure.name = "fig-4-2";
   figure.title = "Four moves of 10 mm by steps (Fig. 4.2)";
-  figure.caption = "Exact plant, 2 N down on the tip, the port at (-295, 119). The thesis's noise in what "
-                   "the model is fitted to, not in the tip's error.";
+  figure.caption =
+      "Exact plant, 2 N down on the tip, the port at (-295, 119). The thesis's noise in what "
+      "the model is fitted to, not in the tip's error.";
   figure.x_label = "x (mm)";
   figure.y_label = "y (mm)";
   figure.equal_axes = true;
@@ -241,14 +254,14 @@ Figure SeedsFigure(const std::vector<Case>& cases) {
   Figure figure;
   figure.name = "fig-4-2-seeds";
   figure.title = "The largest deviation of four moves over 200 seeds";
-  figure.caption = "Exact plant. Solid: 1.8 mm and 0.0087 rad on every sample. Dashed: 60 samples averaged "
-                   "for an update. Grey: the thesis's figures, flexion 0.8 and straight 1.8 mm.";
+  figure.caption =
+      "Exact plant. Solid: 1.8 mm and 0.0087 rad on every sample. Dashed: 60 samples averaged "
+      "for an update. Grey: the thesis's figures, flexion 0.8 and straight 1.8 mm.";
   figure.x_label = "largest deviation (mm)";
   figure.y_label = "share of the seeds below";
   for (const auto& [kind, color] : kDrawn) {
     for (const NoiseCase noise : {kAsStated, kAveraged}) {
-      FigureTrace trace =
-          Cumulative(Values(Find(cases, kExactPlant, noise, kind), &Four::max_mm));
+      FigureTrace trace = Cumulative(Values(Find(cases, kExactPlant, noise, kind), &Four::max_mm));
       trace.name = fmt::format("{}{}", Name(kind), noise == kAveraged ? ", averaged" : "");
       trace.color = color;
       trace.dashed = noise == kAveraged;

@@ -43,8 +43,7 @@ class Draw {
 
 }  // namespace
 
-Ch4Plant Ch4Plant::Beam(const Instrument& instrument, const Eigen::Vector3d& p_RP,
-                        double f_tip_N) {
+Ch4Plant Ch4Plant::Beam(const Instrument& instrument, const Eigen::Vector3d& p_RP, double f_tip_N) {
   PlaneBeamProblem problem;
   problem.p_port = p_RP.head<2>();
   problem.length_m = instrument.length_m;
@@ -105,7 +104,6 @@ Ch4Run RunCh4Move(const Ch4Move& move, Ch4Plant plant) {
   }
   const Eigen::Vector3d start = shape->p_RE, end = start + move.move_m;
   run.p_RE.push_back(start);
-  double sum2 = 0.0;
   for (bool reached = false; !reached && run.updates < move.most_updates;) {
     ++run.updates;
     const double travelled = std::min(run.updates * move.step_m, move.move_m.norm());
@@ -113,10 +111,8 @@ Ch4Run RunCh4Move(const Ch4Move& move, Ch4Plant plant) {
     // Where the noise is only in the model, the tip's error is the true one.
     const std::optional<Eigen::Vector3d> seen =
         move.noise.tip_too ? std::nullopt : std::optional(shape->p_RE);
-    const Ch4Step step =
-        controller.Step(z, start + travelled * move.move_m.normalized(), seen);
+    const Ch4Step step = controller.Step(z, start + travelled * move.move_m.normalized(), seen);
     const Eigen::Vector3d& known = step.p_RE_known;
-    run.straight_instead += step.straight_instead;
     run.p_RE_measured.push_back(known);
     run.max_measured_m = std::max(run.max_measured_m, FromPath(known, start, move.move_m));
     // The stop comes before the motion: the tip is where it should be.
@@ -128,11 +124,8 @@ Ch4Run RunCh4Move(const Ch4Move& move, Ch4Plant plant) {
       break;
     }
     run.p_RE.push_back(shape->p_RE);
-    const double deviation = FromPath(shape->p_RE, start, move.move_m);
-    run.max_m = std::max(run.max_m, deviation);
-    sum2 += deviation * deviation;
+    run.max_m = std::max(run.max_m, FromPath(shape->p_RE, start, move.move_m));
   }
-  run.rms_m = std::sqrt(sum2 / std::max(1, static_cast<int>(run.p_RE.size()) - 1));
   return run;
 }
 

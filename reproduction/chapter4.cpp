@@ -32,7 +32,6 @@ MeanSd MeanAndSd(const std::vector<double>& values) {
 }
 
 ChapterResult ReproduceChapter4(const ReproduceOptions& options, const ChapterProgress& progress) {
-  if (getenv("ONLY")) return InParts({{Ch4Experiment, 0.2}, {Ch4Indentation, 0.4}}, options, progress);
   return InParts({{Ch4Simulation, 0.5}, {Ch4Experiment, 0.1}, {Ch4Indentation, 0.4}}, options,
                  progress);
 }
