@@ -39,7 +39,8 @@ double ShareOf(const WorkspaceMap<2>& map, Where where, What what) {
 }
 template <class What>
 double ShareOf(const WorkspaceMap<2>& map, What what) {
-  return ShareOf(map, [](const auto&) { return true; }, what);
+  return ShareOf(
+      map, [](const auto&) { return true; }, what);
 }
 /// `value` of every point with both measures that `where` holds for.
 template <class Where, class Value>

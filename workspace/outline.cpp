@@ -74,8 +74,8 @@ WristPositions FindWristPositions(const PlanarInstrument& instrument, double spa
   const int count = int(std::ceil((arm.link1_m + arm.link2_m) / spacing_m));
   for (int r = -count; r <= count; ++r) {
     for (int c = -count; c <= count; ++c) {
-      const Vector2d p = (shoulder / spacing_m).array().round().matrix() * spacing_m +
-                         spacing_m * Vector2d(c, r);
+      const Vector2d p =
+          (shoulder / spacing_m).array().round().matrix() * spacing_m + spacing_m * Vector2d(c, r);
       if (arm.Solve(p).status != ArmStatus::kOk) continue;
       (Beyond(instrument, p) < 0.0 ? found.reaching : found.not_reaching).push_back(p);
     }
