@@ -90,8 +90,10 @@ std::vector<TableRow> StudyTolerances(double spacing_m) {
                                 "The thesis: y errors are less tolerable along y = 0. "));
     rows.push_back(ToleranceRow(map, part, {1.0, 0.0}, "z", ""));
   }
-  for (const Part& part : {middle, all})
-    rows.push_back(ToleranceRow(map, part, {1.0, 1.0}, "any direction", ""));
+  rows.push_back(ToleranceRow(map, middle, {1.0, 1.0}, "any direction", ""));
+  rows.push_back(
+      ToleranceRow(map, all, {1.0, 1.0}, "any direction",
+                   "On a grid of 5 mm: with the tip in the port none is small enough. "));
   return rows;
 }
 

@@ -10,10 +10,10 @@ namespace {
 
 using Point = PointMeasures<2>;
 
-double BetweenWorst_deg(const Point& at) {
+double BetweenWorstDeg(const Point& at) {
   return AngleBetweenLines(at.step.v_sigma, at.angle.p_phi);
 }
-double PhiMax_deg(const Point& at) { return kDegreesPerRad * at.angle.phi_max_rad; }
+double PhiMaxDeg(const Point& at) { return kDegreesPerRad * at.angle.phi_max_rad; }
 bool AtLowerLeft(const Eigen::Vector2d& p) { return p.x() < 0.18 && p.y() < -0.19; }
 bool AroundPort(const Eigen::Vector2d& p) {
   return (p - PlanarInstrument{}.p_port).norm() < 0.11 && p.y() > -0.06;
@@ -132,10 +132,12 @@ OnLine LargestOnLine(const NamedError& error) {
     const Point at = MeasureAt(setup, shaft, Eigen::Vector2d(setup.truth.p_port + r * line));
     if (!at.A) continue;
     largest.norm = std::max(largest.norm, at.step.norm);
-    largest.phi_deg = std::max(largest.phi_deg, PhiMax_deg(at));
+    largest.phi_deg = std::max(largest.phi_deg, PhiMaxDeg(at));
     largest.along_deg = std::max(
         largest.along_deg, kDegreesPerRad * DirectionError<2>(*at.A, line, MotionFault::kAngle));
   }
+  constexpr double kRounding_deg = 1e-9;
+  if (largest.along_deg < kRounding_deg) largest.along_deg = 0.0;
   return largest;
 }
 
@@ -169,34 +171,34 @@ std::vector<TableRow> StudyDirections(const WorkspaceMap<2>& map) {
   const std::vector<TableRow> more{
       {"2.3.1 p_phi to v_sigma, mean over the workspace",
        {},
-       Mean(Collect(map, all, BetweenWorst_deg)),
+       Mean(Collect(map, all, BetweenWorstDeg)),
        "deg",
        "The thesis: similar."},
       {"2.3.1 p_phi to v_sigma, away from edge, port and lower left",
        {},
-       Mean(Collect(map, rest, BetweenWorst_deg)),
+       Mean(Collect(map, rest, BetweenWorstDeg)),
        "deg",
        ""},
       {"2.3.1 p_phi to v_sigma, within 15 mm of the edge",
        {},
-       Mean(Collect(map, edge, BetweenWorst_deg)),
+       Mean(Collect(map, edge, BetweenWorstDeg)),
        "deg",
        "The thesis: differences here"},
       {"2.3.1 p_phi to v_sigma, lower left",
        {},
-       Mean(Collect(map, lower_left, BetweenWorst_deg)),
+       Mean(Collect(map, lower_left, BetweenWorstDeg)),
        "deg",
        "and here."},
       {"2.4 p_phi to v_sigma where another gain lowers ||G|| by more than 0.2",
        {},
        Mean(Collect(
-           map, [](const Point& at) { return GainsUse(at) > 0.2; }, BetweenWorst_deg)),
+           map, [](const Point& at) { return GainsUse(at) > 0.2; }, BetweenWorstDeg)),
        "deg",
        "The thesis: the differences occur where a change of gain helps."},
       {"2.4 p_phi to v_sigma where it lowers it by less than 0.05",
        {},
        Mean(Collect(
-           map, [](const Point& at) { return GainsUse(at) < 0.05; }, BetweenWorst_deg)),
+           map, [](const Point& at) { return GainsUse(at) < 0.05; }, BetweenWorstDeg)),
        "deg",
        ""}};
   rows.insert(rows.end(), more.begin(), more.end());
@@ -204,16 +206,16 @@ std::vector<TableRow> StudyDirections(const WorkspaceMap<2>& map) {
 }
 
 std::vector<TableRow> StudyFourErrors(const std::vector<WorkspaceMap<2>>& maps) {
-  const auto bottom = [](const Point& at) { return Bearing_deg(at) < -60.0; };
+  const auto bottom = [](const Point& at) { return BearingDeg(at) < -60.0; };
   const auto right = [](const Point& at) {
-    return std::abs(Bearing_deg(at)) < 20.0 && at.p_tip.x() > 0.35;
+    return std::abs(BearingDeg(at)) < 20.0 && at.p_tip.x() > 0.35;
   };
   const auto both = [&](std::size_t a, std::size_t b, auto where) {
     return 0.5 *
-           (Mean(Collect(maps[a], where, PhiMax_deg)) + Mean(Collect(maps[b], where, PhiMax_deg)));
+           (Mean(Collect(maps[a], where, PhiMaxDeg)) + Mean(Collect(maps[b], where, PhiMaxDeg)));
   };
   const auto height_mm = [&](std::size_t i) {
-    const auto bad = [](const Point& at) { return PhiMax_deg(at) > 45.0 && at.p_tip.x() > 0.30; };
+    const auto bad = [](const Point& at) { return PhiMaxDeg(at) > 45.0 && at.p_tip.x() > 0.30; };
     return 1000.0 * Mean(Collect(maps[i], bad, [](const Point& at) { return at.p_tip.y(); }));
   };
   double least = 1e9;

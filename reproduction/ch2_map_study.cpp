@@ -12,9 +12,9 @@ namespace {
 using Point = PointMeasures<2>;
 constexpr double kMm = 1000.0;
 
-double PhiMax_deg(const Point& at) { return kDegreesPerRad * at.angle.phi_max_rad; }
-double PhiHat_deg(const Point& at) { return kDegreesPerRad * at.step.phi_hat_max_rad; }
-double WristFromPort_mm(const Point& at) {
+double PhiMaxDeg(const Point& at) { return kDegreesPerRad * at.angle.phi_max_rad; }
+double PhiHatDeg(const Point& at) { return kDegreesPerRad * at.step.phi_hat_max_rad; }
+double WristFromPortMm(const Point& at) {
   return kMm * (at.state->p_wrist - PlanarInstrument{}.p_port).norm();
 }
 bool ErrorsGrow(const Point& at) { return at.step.norm > 1.0; }
@@ -35,8 +35,8 @@ std::optional<Crossings> OuterCrossings(const MapSetup<2>& setup, double bearing
   for (double r = kFrom_m; r < setup.truth.shaft_m && !(norm_m && angle_m); r += kStep_m) {
     const Point at = MeasureAt(setup, shaft, Eigen::Vector2d(setup.truth.p_port + r * ray));
     if (!at.A) continue;
-    if (!norm_m && at.step.norm > 1.0) norm_m = r, phi_deg = PhiMax_deg(at);
-    if (!angle_m && PhiMax_deg(at) > 45.0) angle_m = r;
+    if (!norm_m && at.step.norm > 1.0) norm_m = r, phi_deg = PhiMaxDeg(at);
+    if (!angle_m && PhiMaxDeg(at) > 45.0) angle_m = r;
   }
   if (!norm_m || !angle_m) return std::nullopt;
   return Crossings{*norm_m, *angle_m, phi_deg};
@@ -96,7 +96,7 @@ std::vector<TableRow> StudyStarts() {
                     at.step.norm,
                     "",
                     "2.3.2 puts L, M and N in areas of increasing error."});
-    rows.push_back({std::string("Fig. 2.4 |phi_max| at ") + name, {}, PhiMax_deg(at), "deg", ""});
+    rows.push_back({std::string("Fig. 2.4 |phi_max| at ") + name, {}, PhiMaxDeg(at), "deg", ""});
   }
   return rows;
 }
@@ -105,12 +105,12 @@ std::vector<TableRow> StudyStarts() {
 
 std::vector<TableRow> StudyMeasures(const WorkspaceMap<2>& map) {
   const double cm2 = 1e4 * map.spacing_m * map.spacing_m;
-  const auto far_from_port = [](const Point& at) { return WristFromPort_mm(at) < 100.0; };
-  const auto tip_near_port = [](const Point& at) { return WristFromPort_mm(at) > 260.0; };
+  const auto far_from_port = [](const Point& at) { return WristFromPortMm(at) < 100.0; };
+  const auto tip_near_port = [](const Point& at) { return WristFromPortMm(at) > 260.0; };
   const auto middle = [](const Point& at) {
-    return WristFromPort_mm(at) >= 100.0 && WristFromPort_mm(at) <= 260.0;
+    return WristFromPortMm(at) >= 100.0 && WristFromPortMm(at) <= 260.0;
   };
-  const auto excess = [](const Point& at) { return PhiHat_deg(at) - PhiMax_deg(at); };
+  const auto excess = [](const Point& at) { return PhiHatDeg(at) - PhiMaxDeg(at); };
   const auto all = [](const Point&) { return true; };
   std::vector<TableRow> rows{
       {"2.3.1 area of the tip's workspace", {}, cm2 * double(map.Reached()), "cm2", ""},
@@ -167,7 +167,7 @@ std::vector<TableRow> StudyMeasures(const WorkspaceMap<2>& map) {
        "The thesis: quite large."},
       {"2.3.1 part with |phi_max| <= 90 deg",
        {},
-       100.0 * ShareOf(map, [](const Point& at) { return PhiMax_deg(at) <= 90.0; }),
+       100.0 * ShareOf(map, [](const Point& at) { return PhiMaxDeg(at) <= 90.0; }),
        "%",
        "The thesis: most of the workspace."},
       {"2.3.1 |phi_max|, tip or wrist within 60 mm of the port, median",
@@ -175,9 +175,9 @@ std::vector<TableRow> StudyMeasures(const WorkspaceMap<2>& map) {
        Quantile(Collect(
                     map,
                     [](const Point& at) {
-                      return WristFromPort_mm(at) < 60.0 || WristFromPort_mm(at) > 260.0;
+                      return WristFromPortMm(at) < 60.0 || WristFromPortMm(at) > 260.0;
                     },
-                    PhiMax_deg),
+                    PhiMaxDeg),
                 0.5),
        "deg",
        "The thesis: larger values near the port."},
@@ -186,9 +186,9 @@ std::vector<TableRow> StudyMeasures(const WorkspaceMap<2>& map) {
        Quantile(Collect(
                     map,
                     [](const Point& at) {
-                      return WristFromPort_mm(at) >= 60.0 && WristFromPort_mm(at) <= 260.0;
+                      return WristFromPortMm(at) >= 60.0 && WristFromPortMm(at) <= 260.0;
                     },
-                    PhiMax_deg),
+                    PhiMaxDeg),
                 0.5),
        "deg",
        ""}};

@@ -45,7 +45,7 @@ std::vector<Vector2d> WristOutline(const PlanarArm& arm, double spacing_m) {
   const double reach = arm.link1_m + arm.link2_m;  // no joint moves the wrist by more per radian
   std::vector<Vector2d> outline;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    const Vector2d a = joints[i], b = joints[(i + 1) % joints.size()];
+    const Vector2d &a = joints[i], &b = joints[(i + 1) % joints.size()];
     const int count = std::max(1, int(std::ceil((b - a).norm() * reach / spacing_m)));
     for (int k = 0; k < count; ++k) outline.push_back(arm.Wrist(a + double(k) / count * (b - a)));
   }
