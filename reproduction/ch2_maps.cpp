@@ -32,10 +32,11 @@ std::vector<TableRow> CountWrists(double spacing_m) {
 ChapterResult Ch2Maps(const ReproduceOptions& options, const ChapterProgress& progress) {
   const double spacing_m = options.quick ? 0.01 : 0.0025;
   const double coarse_m = options.quick ? 0.02 : 0.005;
+  const double four_m = options.quick ? 0.02 : 0.004;
   const auto map = ComputeMap(ThesisSetup(kThesisError), {}, spacing_m);
   std::vector<WorkspaceMap<2>> four;
   for (const auto& error : FourErrors())
-    four.push_back(ComputeMap(ThesisSetup(error.port_error_m), {}, coarse_m));
+    four.push_back(ComputeMap(ThesisSetup(error.port_error_m), {}, four_m));
   ChapterResult result;
   result.figures.push_back(DrawWorkspaces());
   Add(result.figures, DrawMeasures(map));
