@@ -76,26 +76,27 @@ std::vector<TableRow> StudyEdge() {
   };
   const auto arc = [&](const Point& at) { return outer(at) && near_wrist(at); };
   const auto sides = [&](const Point& at) { return outer(at) && !near_wrist(at); };
-  return {
-      {"2.3.1 v_sigma to the edge's normal, median, without the lower left and around the port",
-       0.0, MedianOverEdge(edge, outer, off_normal), "deg",
-       "The thesis: approximately perpendicular to the boundary."},
-      {"2.3.1 v_sigma to the edge's normal, left and upper left side, median", 0.0,
-       MedianOverEdge(edge, sides, off_normal), "deg", "So it is here,"},
-      {"2.3.1 v_sigma to the edge's normal, arc at the right and bottom, median", 0.0,
-       MedianOverEdge(edge, arc, off_normal), "deg", "but not here, where the errors are largest:"},
-      {"2.3.1 v_sigma to the believed shaft on that arc, median",
-       {},
-       MedianOverEdge(edge, arc, [](const EdgePoint& point) { return point.along_shaft_deg; }),
-       "deg",
-       "there v_sigma lies along the shaft as the controller believes it; with the wrist near the "
-       "port that is up to 50 degrees from the true one."},
-      {"2.3.1 v_sigma to the edge's normal, lower left, median",
-       {},
-       MedianOverEdge(
-           edge, [](const Point& at) { return AtLowerLeft(at.p_tip); }, off_normal),
-       "deg",
-       "The thesis: not perpendicular here."}};
+  return {{"2.3.1 v_sigma to the edge's normal, median, without the lower left and around the port",
+           0.0, MedianOverEdge(edge, outer, off_normal), "deg",
+           "The thesis: approximately perpendicular to the boundary."},
+          {"2.3.1 v_sigma to the edge's normal, left and upper left side, median", 0.0,
+           MedianOverEdge(edge, sides, off_normal), "deg", "Here it is."},
+          {"2.3.1 v_sigma to the edge's normal, arc at the right and bottom, median", 0.0,
+           MedianOverEdge(edge, arc, off_normal), "deg",
+           "Here, where the errors are largest, it is not."},
+          {"2.3.1 v_sigma to the believed shaft on that arc, median",
+           {},
+           MedianOverEdge(edge, arc, [](const EdgePoint& point) { return point.along_shaft_deg; }),
+           "deg",
+           "Why: a motion along the shaft as the controller believes it swings the true one, and "
+           "with the "
+           "wrist near the port the two are up to 53 degrees apart."},
+          {"2.3.1 v_sigma to the edge's normal, lower left, median",
+           {},
+           MedianOverEdge(
+               edge, [](const Point& at) { return AtLowerLeft(at.p_tip); }, off_normal),
+           "deg",
+           "The thesis: not perpendicular here."}};
 }
 
 /// Whether the tip is within `margin` of the workspace's boundary.

@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 BUILD_PACKAGES=(
   cmake ninja-build g++ libopencv-dev libapriltag-dev libeigen3-dev libceres-dev libcli11-dev
   libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libtbb-dev libgtest-dev libgmock-dev
-  libbenchmark-dev
+  libbenchmark-dev libboost-dev
 )
 # What the tests and checks need beside these; opencv-doc holds real chessboard pictures.
 TEST_PACKAGES=(clang clang-format clang-tidy opencv-doc)
