@@ -58,9 +58,16 @@ nlohmann::json InSpace(const VectorN<N>& p_m) {
     return {p_m[0], p_m[1], p_m[2]};
 }
 
+/// Without any, its maps are empty.
+template <int N>
+bool HasErrors(const MapSetup<N>& setup) {
+  return setup.force || !setup.error.AsVector().isZero(0.0) || setup.gain != 1.0;
+}
+
 /// Shares and largest values of a slice.
 template <int N>
-void Summarise(const std::string& slice, const WorkspaceMap<N>& map, Findings& findings) {
+void Summarise(const MapSetup<N>& setup, const std::string& slice, const WorkspaceMap<N>& map,
+               Findings& findings) {
   double norm = 0.0, angle = 0.0;
   std::size_t grows = 0, turns = 0, without = 0;
   for (const auto& at : map.points) {
@@ -77,32 +84,31 @@ void Summarise(const std::string& slice, const WorkspaceMap<N>& map, Findings& f
   const double reached = double(map.Reached());
   const double area_cm2 = 1e4 * map.spacing_m * map.spacing_m * reached;
   findings.Add(slice + ": area the tip can reach", area_cm2, "cm2");
-  findings.Add(slice + ": part with ||G|| > 1", 100.0 * double(grows) / reached, "%",
-               "a step may leave a longer error than it found");
-  findings.Add(slice + ": part with the largest angle past 90 deg", 100.0 * double(turns) / reached,
-               "%", "no gain converges steadily");
-  findings.Add(slice + ": largest ||G||", norm, "");
-  findings.Add(slice + ": largest angle", kDegrees * angle, "deg");
   findings.summary["slices"].push_back({{"slice", slice},
                                         {"points", map.Reached()},
                                         {"without_measures", without},
                                         {"area_cm2", area_cm2},
                                         {"largest_norm_G", norm},
                                         {"largest_angle_deg", kDegrees * angle}});
+  if (!HasErrors(setup)) return;
+  findings.Add(slice + ": part with ||G|| > 1", 100.0 * double(grows) / reached, "%",
+               "a step may leave a longer error than it found");
+  findings.Add(slice + ": part with the largest angle past 90 deg", 100.0 * double(turns) / reached,
+               "%", "no gain converges steadily");
+  findings.Add(slice + ": largest ||G||", norm, "");
+  findings.Add(slice + ": largest angle", kDegrees * angle, "deg");
 }
 
-/// Names the errors that are bounded, with the sizes that were found.
+/// One row for each error that is bounded, with the size that was found.
 template <int N>
-std::string ErrorText(const ModelError<N>& error) {
-  std::string text;
+void AddErrors(const std::string& slice, const ModelError<N>& error, Findings& findings) {
   const auto v = error.AsVector();
   for (int i = 0; i < ModelError<N>::kCount; ++i) {
     if (v[i] == 0.0) continue;
     const bool is_angle = i >= N + 2 && i < 2 * N + 2;
-    text += fmt::format("{}{} {:.4g} {}", text.empty() ? "" : "; ", ErrorName<N>(i),
-                        (is_angle ? 1.0 : 1000.0) * v[i], is_angle ? "rad" : "mm");
+    findings.Add(fmt::format("{}: {} of the error that passes it first", slice, ErrorName<N>(i)),
+                 (is_angle ? 1.0 : 1000.0) * v[i], is_angle ? "rad" : "mm");
   }
-  return text;
 }
 
 template <int N>
@@ -117,8 +123,8 @@ void AnswerTolerance(const MapScenario<N>& scenario, Findings& findings, OutputF
       entry["scale"] = answer.scale;
       entry["first_at_m"] = InSpace<N>(map.points[answer.point].p_tip);
       findings.Add(slice + ": multiple of the bounds that keeps to the limit", answer.scale, "",
-                   fmt::format("first passed at {} by {}", Where<N>(map.points[answer.point].p_tip),
-                               ErrorText<N>(answer.first.error)));
+                   fmt::format("first passed at {}", Where<N>(map.points[answer.point].p_tip)));
+      AddErrors(slice, answer.first.error, findings);
     } else {
       output.Warn(fmt::format("tolerance, {}: {}", slice, Name(answer.status)));
     }
@@ -169,14 +175,7 @@ void AnswerPlan(const MapScenario<N>& scenario, Findings& findings, OutputFolder
     output.Warn(fmt::format("plan: {}", Name(planned.status)));
     return;
   }
-  findings.figures.push_back(
-      PlanFigure(scenario.setup, map, direct, planned, by_direct, by_planned));
-}
-
-/// Without any, its maps are empty.
-template <int N>
-bool HasErrors(const MapSetup<N>& setup) {
-  return setup.force || !setup.error.AsVector().isZero(0.0) || setup.gain != 1.0;
+  findings.figures.push_back(PlanFigure(map, direct, planned, by_direct, by_planned));
 }
 
 /// The maps of all slices, with the worst cases where they are asked for.
@@ -197,7 +196,7 @@ void ComputeSlices(const MapScenario<N>& scenario, Findings& findings, OutputFol
       worst.norm = WorstOverMap(scenario.setup, map, bounds, Measure::kNorm);
       worst.angle_rad = WorstOverMap(scenario.setup, map, bounds, Measure::kAngle);
     }
-    Summarise(name, map, findings);
+    Summarise(scenario.setup, name, map, findings);
     findings.map_rows += MapTableRows(name, map, worst);
     std::vector<Figure> figures;
     if (HasErrors(scenario.setup)) figures = MapFigures(scenario.setup, name, prefix, map);

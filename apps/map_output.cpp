@@ -131,11 +131,13 @@ std::vector<Figure> WorstFigures(const MapSetup<N>& setup, const ToleranceTask<N
 }
 
 template <int N>
-Figure PlanFigure(const MapSetup<N>& setup, const WorkspaceMap<N>& map, const Path& direct,
-                  const Path& planned, const Followed<N>& by_direct,
-                  const Followed<N>& by_planned) {
-  Figure figure = Titled(MapFigure(map, MapQuantity::kPhiMax), "plan",
-                         "Paths (dashed) and where the tip goes, over the largest angle");
+Figure PlanFigure(const WorkspaceMap<N>& map, const Path& direct, const Path& planned,
+                  const Followed<N>& by_direct, const Followed<N>& by_planned) {
+  constexpr double kMargin_m = 0.04;
+  std::vector<Eigen::Vector2d> places = direct.points;
+  places.insert(places.end(), planned.points.begin(), planned.points.end());
+  Figure figure = Titled(MapFigure(PartAround(map, places, kMargin_m), MapQuantity::kPhiMax),
+                         "plan", "Paths (dashed) and where the tip goes, over the largest angle");
   const auto add = [&](const Path& path, const Followed<N>& followed, const std::string& name,
                        const std::string& color) {
     figure.traces.push_back(TraceInMm(path.points, {.name = name, .color = color, .dashed = true}));
@@ -144,7 +146,6 @@ Figure PlanFigure(const MapSetup<N>& setup, const WorkspaceMap<N>& map, const Pa
   };
   if (direct.status == PathStatus::kOk) add(direct, by_direct, "shortest", "#d55e00");
   if (planned.status == PathStatus::kOk) add(planned, by_planned, "planned", "#009e73");
-  MarkPorts(figure, setup, map.slice);
   return figure;
 }
 
@@ -162,9 +163,9 @@ template std::vector<Figure> WorstFigures(const MapSetup<2>&, const ToleranceTas
 template std::vector<Figure> WorstFigures(const MapSetup<3>&, const ToleranceTask<3>&,
                                           const std::string&, const std::string&,
                                           const WorkspaceMap<3>&, const WorstValues&);
-template Figure PlanFigure(const MapSetup<2>&, const WorkspaceMap<2>&, const Path&, const Path&,
-                           const Followed<2>&, const Followed<2>&);
-template Figure PlanFigure(const MapSetup<3>&, const WorkspaceMap<3>&, const Path&, const Path&,
-                           const Followed<3>&, const Followed<3>&);
+template Figure PlanFigure(const WorkspaceMap<2>&, const Path&, const Path&, const Followed<2>&,
+                           const Followed<2>&);
+template Figure PlanFigure(const WorkspaceMap<3>&, const Path&, const Path&, const Followed<3>&,
+                           const Followed<3>&);
 
 }  // namespace flextip

@@ -32,8 +32,9 @@ template <int N>
 std::vector<Figure> WorstFigures(const MapSetup<N>& setup, const ToleranceTask<N>& task,
                                  const std::string& slice, const std::string& prefix,
                                  const WorkspaceMap<N>& map, const WorstValues& worst);
+/// Around the paths.
 template <int N>
-Figure PlanFigure(const MapSetup<N>& setup, const WorkspaceMap<N>& map, const Path& direct,
-                  const Path& planned, const Followed<N>& by_direct, const Followed<N>& by_planned);
+Figure PlanFigure(const WorkspaceMap<N>& map, const Path& direct, const Path& planned,
+                  const Followed<N>& by_direct, const Followed<N>& by_planned);
 
 }  // namespace flextip

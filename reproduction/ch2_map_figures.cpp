@@ -54,6 +54,7 @@ Figure EmptyFigure(const Slice<N>& slice) {
 
 std::vector<double> InMm(const std::vector<double>& lines) {
   std::vector<double> mm;
+  mm.reserve(lines.size());
   for (const double x : lines) mm.push_back(ToDigits(kMm * x, 8));
   return mm;
 }

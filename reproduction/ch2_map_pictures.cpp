@@ -61,21 +61,18 @@ Figure DrawWorkspaces() {
   figure.y_label = "y (mm)";
   figure.equal_axes = true;
   const auto dots = [](const char* name, const char* color) {
-    return FigureTrace{.name = name,
-                       .kind = FigureTrace::Kind::kPoints,
-                       .color = color,
-                       .symbol = "circle"};
+    return FigureTrace{
+        .name = name, .kind = FigureTrace::Kind::kPoints, .color = color, .symbol = "circle"};
   };
   const auto line = [](const char* name, const char* color) {
     return FigureTrace{.name = name, .color = color};
   };
-  figure.traces = {
-      TraceInMm(wrists.not_reaching, dots("wrist, port out of reach", "#b9c2cc")),
-      TraceInMm(wrists.reaching, dots("wrist, shaft reaches the port", "#009e73")),
-      TraceInMm(tip_points, dots("tip", "#0072b2")),
-      TraceInMm(WristOutline(robot.arm, kOutline_m), line("", "#555f6b")),
-      TraceInMm(TipOutline(robot, kOutline_m), line("", "#0072b2")),
-      TraceInMm(HomePose(robot), line("links and shaft, home position", "#1d2733"))};
+  figure.traces = {TraceInMm(wrists.not_reaching, dots("wrist, port out of reach", "#b9c2cc")),
+                   TraceInMm(wrists.reaching, dots("wrist, shaft reaches the port", "#009e73")),
+                   TraceInMm(tip_points, dots("tip", "#0072b2")),
+                   TraceInMm(WristOutline(robot.arm, kOutline_m), line("", "#555f6b")),
+                   TraceInMm(TipOutline(robot, kOutline_m), line("", "#0072b2")),
+                   TraceInMm(HomePose(robot), line("links and shaft, home position", "#1d2733"))};
   MarkPorts(figure, ThesisSetup({0.0, 0.0}), {});
   return Named(std::move(figure), "fig-2-3", "Fig. 2.3: workspaces of wrist and tip",
                "Where the joint limits let the wrist be, split by whether the shaft reaches the "
@@ -94,7 +91,8 @@ std::vector<Figure> DrawMeasures(const WorkspaceMap<2>& map) {
       {MapQuantity::kPhiHat, "fig-2-4b", "Fig. 2.4b: bound on the largest angle",
        "It jumps from 90 to 180 degrees where ||G|| passes 1, so its line of 135 degrees is the "
        "line ||G|| = 1."},
-      {MapQuantity::kPhiMax, "fig-2-4c", "Fig. 2.4c: largest angle between desired and actual motion",
+      {MapQuantity::kPhiMax, "fig-2-4c",
+       "Fig. 2.4c: largest angle between desired and actual motion",
        "Exact, at each place over all directions of desired motion."}};
   std::vector<Figure> figures;
   for (const Part& part : parts) {
@@ -112,7 +110,8 @@ std::vector<Figure> DrawDirections(const WorkspaceMap<2>& map) {
     const char *name, *title, *caption;
   };
   const Part parts[] = {
-      {MapDirection::kVSigma, false, "fig-2-5a", "Fig. 2.5a: worst direction for the error's length",
+      {MapDirection::kVSigma, false, "fig-2-5a",
+       "Fig. 2.5a: worst direction for the error's length",
        "v_sigma: the desired motion after which the error is longest."},
       {MapDirection::kVSigma, true, "fig-2-5b", "Fig. 2.5b: v_sigma, as long as ||G|| is large",
        "Full length from ||G|| = 2 on."},
@@ -137,12 +136,11 @@ std::vector<Figure> DrawFourErrors(const std::vector<WorkspaceMap<2>>& maps) {
       const NamedError& error = FourErrors()[i];
       const auto quantity = bound ? MapQuantity::kPhiHat : MapQuantity::kPhiMax;
       const std::string letter = bound ? "a" : "b";
-      figures.push_back(Named(
-          MapFigure(maps[i], quantity), "fig-2-6" + letter + error.name,
-          std::string("Fig. 2.6") + letter + error.name + ": " +
-              (bound ? "bound on the largest angle" : "largest angle") + ", port error 10 mm in " +
-              error.in_words,
-          ""));
+      figures.push_back(Named(MapFigure(maps[i], quantity), "fig-2-6" + letter + error.name,
+                              std::string("Fig. 2.6") + letter + error.name + ": " +
+                                  (bound ? "bound on the largest angle" : "largest angle") +
+                                  ", port error 10 mm in " + error.in_words,
+                              ""));
       MarkPorts(figures.back(), ThesisSetup(error.port_error_m), {});
     }
   }

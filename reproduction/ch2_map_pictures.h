@@ -24,9 +24,9 @@ struct NamedError {
 /// Those of Fig. 2.6, in its order.
 const std::vector<NamedError>& FourErrors();
 
-Figure DrawWorkspaces();                                             ///< Fig. 2.3
-std::vector<Figure> DrawMeasures(const WorkspaceMap<2>& map);        ///< Fig. 2.4
-std::vector<Figure> DrawDirections(const WorkspaceMap<2>& map);      ///< Fig. 2.5
+Figure DrawWorkspaces();                                                       ///< Fig. 2.3
+std::vector<Figure> DrawMeasures(const WorkspaceMap<2>& map);                  ///< Fig. 2.4
+std::vector<Figure> DrawDirections(const WorkspaceMap<2>& map);                ///< Fig. 2.5
 std::vector<Figure> DrawFourErrors(const std::vector<WorkspaceMap<2>>& maps);  ///< Fig. 2.6
 
 }  // namespace flextip

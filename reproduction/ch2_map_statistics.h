@@ -39,7 +39,8 @@ double ShareOf(const WorkspaceMap<2>& map, Where where, What what) {
 }
 template <class What>
 double ShareOf(const WorkspaceMap<2>& map, What what) {
-  return ShareOf(map, [](const auto&) { return true; }, what);
+  return ShareOf(
+      map, [](const auto&) { return true; }, what);
 }
 /// `value` of every point with both measures that `where` holds for.
 template <class Where, class Value>
@@ -55,7 +56,7 @@ inline double AngleBetweenLines(const Eigen::Vector2d& a, const Eigen::Vector2d&
   return kDegreesPerRad * std::atan2(std::abs(a.x() * b.y() - a.y() * b.x()), std::abs(a.dot(b)));
 }
 /// Direction from the true port to the tip, above z (deg).
-inline double Bearing_deg(const PointMeasures<2>& at) {
+inline double BearingDeg(const PointMeasures<2>& at) {
   const Eigen::Vector2d from = at.p_tip - PlanarInstrument{}.p_port;
   return kDegreesPerRad * std::atan2(from.y(), from.x());
 }

@@ -1,5 +1,5 @@
-// Maps of the measures over the two-link arm's workspace (2.3.1), what the text says of them, and what
-// 2.4 proposes to do with them.
+// Maps of the measures over the two-link arm's workspace (2.3.1), what the text says of them, and
+// what 2.4 proposes to do with them.
 #include <iterator>
 
 #include "reproduction/ch2_map_pictures.h"
@@ -18,10 +18,13 @@ void Add(std::vector<T>& to, std::vector<T> more) {
 std::vector<TableRow> CountWrists(double spacing_m) {
   const auto wrists = FindWristPositions({}, spacing_m);
   const double cm2 = 1e4 * spacing_m * spacing_m;
-  return {{"Fig. 2.3 area of the wrist's workspace from which the shaft reaches the port", {},
-           cm2 * double(wrists.reaching.size()), "cm2", ""},
-          {"Fig. 2.3 area of the rest of it", {}, cm2 * double(wrists.not_reaching.size()), "cm2",
-           ""}};
+  return {
+      {"Fig. 2.3 area of the wrist's workspace from which the shaft reaches the port",
+       {},
+       cm2 * double(wrists.reaching.size()),
+       "cm2",
+       ""},
+      {"Fig. 2.3 area of the rest of it", {}, cm2 * double(wrists.not_reaching.size()), "cm2", ""}};
 }
 
 }  // namespace
@@ -29,10 +32,11 @@ std::vector<TableRow> CountWrists(double spacing_m) {
 ChapterResult Ch2Maps(const ReproduceOptions& options, const ChapterProgress& progress) {
   const double spacing_m = options.quick ? 0.01 : 0.0025;
   const double coarse_m = options.quick ? 0.02 : 0.005;
+  const double four_m = options.quick ? 0.02 : 0.004;
   const auto map = ComputeMap(ThesisSetup(kThesisError), {}, spacing_m);
   std::vector<WorkspaceMap<2>> four;
   for (const auto& error : FourErrors())
-    four.push_back(ComputeMap(ThesisSetup(error.port_error_m), {}, coarse_m));
+    four.push_back(ComputeMap(ThesisSetup(error.port_error_m), {}, four_m));
   ChapterResult result;
   result.figures.push_back(DrawWorkspaces());
   Add(result.figures, DrawMeasures(map));

@@ -33,27 +33,30 @@ Range UsedRange(std::size_t count, Used used) {
 }
 
 template <int N>
-void Trim(WorkspaceMap<N>& map) {
-  const std::size_t rows_before = map.up_m.size(), columns_before = map.right_m.size();
-  const auto in = [&](std::size_t r, std::size_t c) { return map.At(r, c).state.has_value(); };
-  const Range rows = UsedRange(rows_before, [&](std::size_t r) {
-    for (std::size_t c = 0; c < columns_before; ++c)
-      if (in(r, c)) return true;
-    return false;
-  });
-  const Range columns = UsedRange(columns_before, [&](std::size_t c) {
-    for (std::size_t r = 0; r < rows_before; ++r)
-      if (in(r, c)) return true;
-    return false;
-  });
-  std::vector<PointMeasures<N>> kept;
+WorkspaceMap<N> Cut(const WorkspaceMap<N>& map, const Range& rows, const Range& columns) {
+  WorkspaceMap<N> part{.slice = map.slice, .spacing_m = map.spacing_m};
+  const auto at = [](const auto& list, std::size_t i) { return list.begin() + std::ptrdiff_t(i); };
+  part.up_m.assign(at(map.up_m, rows.first), at(map.up_m, rows.last));
+  part.right_m.assign(at(map.right_m, columns.first), at(map.right_m, columns.last));
   for (std::size_t r = rows.first; r < rows.last; ++r)
-    for (std::size_t c = columns.first; c < columns.last; ++c) kept.push_back(map.At(r, c));
-  map.points = std::move(kept);
-  map.up_m = {map.up_m.begin() + std::ptrdiff_t(rows.first),
-              map.up_m.begin() + std::ptrdiff_t(rows.last)};
-  map.right_m = {map.right_m.begin() + std::ptrdiff_t(columns.first),
-                 map.right_m.begin() + std::ptrdiff_t(columns.last)};
+    for (std::size_t c = columns.first; c < columns.last; ++c) part.points.push_back(map.At(r, c));
+  return part;
+}
+
+template <int N>
+WorkspaceMap<N> Trim(const WorkspaceMap<N>& map) {
+  const auto in = [&](std::size_t r, std::size_t c) { return map.At(r, c).state.has_value(); };
+  const Range rows = UsedRange(map.up_m.size(), [&](std::size_t r) {
+    for (std::size_t c = 0; c < map.right_m.size(); ++c)
+      if (in(r, c)) return true;
+    return false;
+  });
+  const Range columns = UsedRange(map.right_m.size(), [&](std::size_t c) {
+    for (std::size_t r = 0; r < map.up_m.size(); ++r)
+      if (in(r, c)) return true;
+    return false;
+  });
+  return Cut(map, rows, columns);
 }
 
 }  // namespace
@@ -87,8 +90,24 @@ WorkspaceMap<N> ComputeMap(const MapSetup<N>& setup, const Slice<N>& slice, doub
       map.points[r * map.right_m.size() + c] = MeasureAt(setup, shaft, p_tip);
     }
   });
-  Trim(map);
-  return map;
+  return Trim(map);
+}
+
+template <int N>
+WorkspaceMap<N> PartAround(const WorkspaceMap<N>& map, const std::vector<Eigen::Vector2d>& places,
+                           double margin_m) {
+  assert(!places.empty());
+  Eigen::Vector2d low = places.front(), high = places.front();
+  for (const auto& p : places) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const auto within = [&](const std::vector<double>& lines, int axis) {
+    return UsedRange(lines.size(), [&](std::size_t i) {
+      return lines[i] >= low[axis] - margin_m && lines[i] <= high[axis] + margin_m;
+    });
+  };
+  return Cut(map, within(map.up_m, 1), within(map.right_m, 0));
 }
 
 template struct Slice<2>;
@@ -97,5 +116,9 @@ template struct WorkspaceMap<2>;
 template struct WorkspaceMap<3>;
 template WorkspaceMap<2> ComputeMap(const MapSetup<2>&, const Slice<2>&, double);
 template WorkspaceMap<3> ComputeMap(const MapSetup<3>&, const Slice<3>&, double);
+template WorkspaceMap<2> PartAround(const WorkspaceMap<2>&, const std::vector<Eigen::Vector2d>&,
+                                    double);
+template WorkspaceMap<3> PartAround(const WorkspaceMap<3>&, const std::vector<Eigen::Vector2d>&,
+                                    double);
 
 }  // namespace flextip

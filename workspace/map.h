@@ -23,7 +23,7 @@ struct WorkspaceMap {
   Slice<N> slice;
   double spacing_m = 0.0;
   std::vector<double> right_m = {}, up_m = {};  ///< the grid's lines, multiples of the spacing
-  std::vector<PointMeasures<N>> points = {};  ///< up_m.size() rows of right_m.size()
+  std::vector<PointMeasures<N>> points = {};    ///< up_m.size() rows of right_m.size()
 
   const PointMeasures<N>& At(std::size_t row, std::size_t column) const {
     return points[row * right_m.size() + column];
@@ -36,6 +36,11 @@ struct WorkspaceMap {
 /// cores.
 template <int N>
 WorkspaceMap<N> ComputeMap(const MapSetup<N>& setup, const Slice<N>& slice, double spacing_m);
+
+/// The rows and columns of the map within `margin_m` of any of the places.
+template <int N>
+WorkspaceMap<N> PartAround(const WorkspaceMap<N>& map, const std::vector<Eigen::Vector2d>& places,
+                           double margin_m);
 
 extern template struct Slice<2>;
 extern template struct Slice<3>;

@@ -74,8 +74,8 @@ class Reader {
     if (!map.Has(key)) return;
     const auto limits = map.Numbers(key, 2);
     if (!(limits[0] < limits[1]))
-      throw map.Error(key, fmt::format("found [{}, {}], expected the smaller angle first", limits[0],
-                                       limits[1]));
+      throw map.Error(key, fmt::format("found [{}, {}], expected the smaller angle first",
+                                       limits[0], limits[1]));
     low = limits[0];
     high = limits[1];
   }
@@ -137,9 +137,9 @@ class Reader {
   void ReadForce() {
     if (!top_.Has("tip_force")) return;
     const YamlMap map = Section(top_, "tip_force");
-    scenario_.setup.force = TipForce<N>{
-        .bending_stiffness_Nm2 = map.Positive("bending_stiffness_Nm2"),
-        .force_N = Vector(map, "force_N")};
+    scenario_.setup.force =
+        TipForce<N>{.bending_stiffness_Nm2 = map.Positive("bending_stiffness_Nm2"),
+                    .force_N = Vector(map, "force_N")};
   }
 
   void ReadGrid() {
@@ -208,11 +208,12 @@ class Reader {
     const YamlMap map = Section(top_, "plan");
     PlanTask<N> task{.start = Vector(map, "start_m"), .goal = Vector(map, "goal_m")};
     const Slice<N>& slice = scenario_.slices.front().second;
-    for (const auto& [key, p] : {std::pair("start_m", task.start), std::pair("goal_m", task.goal)}) {
+    for (const auto& [key, p] :
+         {std::pair("start_m", task.start), std::pair("goal_m", task.goal)}) {
       const Eigen::Vector2d in_plane = slice.InPlane(p);
       if ((slice.Point(in_plane.x(), in_plane.y()) - p).norm() > 1e-9)
-        throw map.Error(key, fmt::format("is not in the first slice ({})",
-                                         scenario_.slices.front().first));
+        throw map.Error(
+            key, fmt::format("is not in the first slice ({})", scenario_.slices.front().first));
     }
     constexpr const char* kFaults[] = {"norm", "angle", "stray"};
     task.options.fault = MotionFault(OneOf(map, "error", kFaults, "stray"));

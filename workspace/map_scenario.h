@@ -12,7 +12,6 @@
 
 namespace flextip {
 
-
 /// tolerance: worst cases over bounded errors, and what keeps to a limit.
 template <int N>
 struct ToleranceTask {
@@ -38,8 +37,8 @@ struct MapScenario {
 };
 using AnyMapScenario = std::variant<MapScenario<2>, MapScenario<3>>;
 
-/// Throws InputError with file and line for keys that are missing, unknown or of the wrong kind, and
-/// for values that make no sense.
+/// Throws InputError with file and line for keys that are missing, unknown or of the wrong kind,
+/// and for values that make no sense.
 AnyMapScenario ReadMapScenario(const std::filesystem::path& file);
 
 }  // namespace flextip

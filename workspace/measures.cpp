@@ -35,8 +35,7 @@ double Stray(const MatrixN<N>& A, const VectorN<N>& v) {
 }  // namespace
 
 template <int N>
-PointMeasures<N> MeasureAt(const MapSetup<N>& setup, TrueShaft<N>& shaft,
-                           const VectorN<N>& p_tip) {
+PointMeasures<N> MeasureAt(const MapSetup<N>& setup, TrueShaft<N>& shaft, const VectorN<N>& p_tip) {
   PointMeasures<N> at;
   at.p_tip = p_tip;
   at.state = shaft.AtTip(p_tip);

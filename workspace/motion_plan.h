@@ -1,5 +1,5 @@
-// Paths of the tip that trade length against motion errors (thesis 2.4), and what a controller makes
-// of them.
+// Paths of the tip that trade length against motion errors (thesis 2.4), and what a controller
+// makes of them.
 #pragma once
 
 #include <vector>

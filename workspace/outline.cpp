@@ -45,7 +45,7 @@ std::vector<Vector2d> WristOutline(const PlanarArm& arm, double spacing_m) {
   const double reach = arm.link1_m + arm.link2_m;  // no joint moves the wrist by more per radian
   std::vector<Vector2d> outline;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    const Vector2d a = joints[i], b = joints[(i + 1) % joints.size()];
+    const Vector2d &a = joints[i], &b = joints[(i + 1) % joints.size()];
     const int count = std::max(1, int(std::ceil((b - a).norm() * reach / spacing_m)));
     for (int k = 0; k < count; ++k) outline.push_back(arm.Wrist(a + double(k) / count * (b - a)));
   }
@@ -74,8 +74,8 @@ WristPositions FindWristPositions(const PlanarInstrument& instrument, double spa
   const int count = int(std::ceil((arm.link1_m + arm.link2_m) / spacing_m));
   for (int r = -count; r <= count; ++r) {
     for (int c = -count; c <= count; ++c) {
-      const Vector2d p = (shoulder / spacing_m).array().round().matrix() * spacing_m +
-                         spacing_m * Vector2d(c, r);
+      const Vector2d p =
+          (shoulder / spacing_m).array().round().matrix() * spacing_m + spacing_m * Vector2d(c, r);
       if (arm.Solve(p).status != ArmStatus::kOk) continue;
       (Beyond(instrument, p) < 0.0 ? found.reaching : found.not_reaching).push_back(p);
     }

@@ -17,7 +17,8 @@ std::vector<Eigen::Vector2d> TipOutline(const PlanarInstrument& instrument, doub
 /// Wrist positions on a grid, within the joint limits.
 struct WristPositions {
   double spacing_m = 0.0;
-  std::vector<Eigen::Vector2d> reaching = {}, not_reaching = {};  ///< by whether the shaft gets to the port
+  std::vector<Eigen::Vector2d> reaching = {},
+                               not_reaching = {};  ///< by whether the shaft gets to the port
 };
 WristPositions FindWristPositions(const PlanarInstrument& instrument, double spacing_m);
 

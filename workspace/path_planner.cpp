@@ -31,7 +31,8 @@ double SegmentCost(const PathCost& cost, const Vector2d& a, const Vector2d& b, d
   return sum * length / (6.0 * pieces);
 }
 
-/// One of two opposite moves for each direction: (column, row) in grid steps without a common factor.
+/// One of two opposite moves for each direction: (column, row) in grid steps without a common
+/// factor.
 std::vector<std::pair<int, int>> Moves() {
   std::vector<std::pair<int, int>> moves;
   for (int r = -3; r <= 3; ++r)
@@ -43,8 +44,7 @@ std::vector<std::pair<int, int>> Moves() {
 /// A grid over the region with the start on one of its nodes.
 class Grid {
  public:
-  explicit Grid(const PathProblem& problem)
-      : start_(problem.start), spacing_(problem.spacing_m) {
+  explicit Grid(const PathProblem& problem) : start_(problem.start), spacing_(problem.spacing_m) {
     const Vector2d below = (problem.start - problem.low) / spacing_;
     const Vector2d above = (problem.high - problem.start) / spacing_;
     first_column_ = int(std::floor(below.x()));
@@ -158,8 +158,8 @@ void Relax(const PathCost& cost, Points& points, double spacing_m) {
       moved = false;
       for (std::size_t i = 1; i + 1 < points.size(); ++i) {
         double now = around(i, points[i]);
-        for (const Vector2d& way : {Vector2d(step, 0), Vector2d(-step, 0), Vector2d(0, step),
-                                    Vector2d(0, -step)}) {
+        for (const Vector2d& way :
+             {Vector2d(step, 0), Vector2d(-step, 0), Vector2d(0, step), Vector2d(0, -step)}) {
           const double then = around(i, points[i] + way);
           if (!(then < now * (1.0 - 1e-12))) continue;
           now = then;
@@ -216,8 +216,8 @@ Points Resample(const Points& points, double spacing_m) {
 Path PlanPath(const PathCost& cost, const PathProblem& problem) {
   Path path;
   const double spacing = problem.spacing_m;
-  const bool allowed = cost(problem.start, Vector2d::UnitX()) < kInf &&
-                       cost(problem.goal, Vector2d::UnitX()) < kInf;
+  const bool allowed =
+      cost(problem.start, Vector2d::UnitX()) < kInf && cost(problem.goal, Vector2d::UnitX()) < kInf;
   if (!allowed || !Inside(problem, problem.start) || !Inside(problem, problem.goal)) {
     path.status = PathStatus::kStartOrGoalOutside;
     return path;

@@ -35,8 +35,7 @@ double CostAlong(const PathCost& cost, const std::vector<Eigen::Vector2d>& point
                  double spacing_m);
 double LengthOf(const std::vector<Eigen::Vector2d>& points);
 /// The same path with points that are at most `spacing_m` apart.
-std::vector<Eigen::Vector2d> Resample(const std::vector<Eigen::Vector2d>& points,
-                                      double spacing_m);
+std::vector<Eigen::Vector2d> Resample(const std::vector<Eigen::Vector2d>& points, double spacing_m);
 
 /// Dijkstra on a grid with 32 directions, then shortcuts, then every point moved to where the path
 /// is cheapest. The grid chooses among paths around obstacles; the rest makes it smooth. Uses all

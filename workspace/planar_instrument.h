@@ -1,4 +1,5 @@
-// The robot of the thesis's 2.3.1: a planar two-link arm that holds a straight shaft through a port.
+// The robot of the thesis's 2.3.1: a planar two-link arm that holds a straight shaft through a
+// port.
 #pragma once
 
 #include "workspace/port_instrument.h"

@@ -1,6 +1,6 @@
 // An arm that holds a straight shaft through a port: in the plane (thesis 2.3.1) and in space.
-// N = 2: the two-link arm, positions (z, y); N = 3: the three-joint arm, positions (x, y, z); both in
-// the arm's frame A (kinematics/arm.h), in m.
+// N = 2: the two-link arm, positions (z, y); N = 3: the three-joint arm, positions (x, y, z); both
+// in the arm's frame A (kinematics/arm.h), in m.
 #pragma once
 
 #include <Eigen/Dense>
@@ -30,8 +30,8 @@ struct PortInstrument {
   double shaft_m = 0.32;
   VectorN<N> p_port = N == 2 ? 0.16 * VectorN<N>::UnitX() : 0.16 * VectorN<N>::Unit(N - 1);
 
-  /// (3.27): on the line from the wrist through the port, one shaft length on. Empty where the wrist
-  /// is at the port or the shaft does not reach it.
+  /// (3.27): on the line from the wrist through the port, one shaft length on. Empty where the
+  /// wrist is at the port or the shaft does not reach it.
   std::optional<VectorN<N>> Tip(const VectorN<N>& p_wrist) const;
   /// d tip / d wrist; not for a wrist at the port.
   MatrixN<N> TipByWrist(const VectorN<N>& p_wrist) const;

@@ -29,10 +29,10 @@ const char* Name(ToleranceStatus status);
 template <int N>
 struct Tolerance {
   ToleranceStatus status = ToleranceStatus::kEmptyPart;
-  double scale = 0.0;     ///< largest multiple of the bounds that stays below the limit
-  std::size_t point = 0;  ///< of the map, where the limit is passed first
-  WorstError<N> first = {};    ///< what passes it there, at `scale` and a little more
-  std::size_t points = 0;  ///< how many were looked at
+  double scale = 0.0;        ///< largest multiple of the bounds that stays below the limit
+  std::size_t point = 0;     ///< of the map, where the limit is passed first
+  WorstError<N> first = {};  ///< what passes it there, at `scale` and a little more
+  std::size_t points = 0;    ///< how many were looked at
 };
 
 /// By bisection to 1e-4 of the scale; a point that passes at one scale is not looked at again below

@@ -23,8 +23,8 @@ struct TrueState {
   MatrixN<N> J = MatrixN<N>::Zero();  ///< d tip / d theta, the tip's force held constant
 };
 
-/// Finds wrists and tips of one instrument. Keeps the last rod as a start for the next: one of these
-/// a thread, and neighbours one after the other.
+/// Finds wrists and tips of one instrument. Keeps the last rod as a start for the next: one of
+/// these a thread, and neighbours one after the other.
 template <int N>
 class TrueShaft {
  public:

@@ -45,8 +45,7 @@ class ErrorSet {
     const auto belief = Believe(setup_.truth, error, state_.theta);
     if (!belief || belief->Reaches() != reaches_ || belief->J_hat.determinant() * sign_ <= 0.0)
       return Hopeless();  // between it and the setup's own error lies a singular Jacobian
-    if (measure_ == Measure::kNorm)
-      return FindStepError(state_.J, belief->J_hat, setup_.gain).norm;
+    if (measure_ == Measure::kNorm) return FindStepError(state_.J, belief->J_hat, setup_.gain).norm;
     return FindLargestAngle(state_.J, belief->J_hat).phi_max_rad;
   }
   double Hopeless() const {
@@ -127,8 +126,9 @@ WorstError<N> FindWorst(const MapSetup<N>& setup, const TrueState<N>& state,
   std::partial_sort(found.begin(), found.begin() + std::ptrdiff_t(climbs), found.end(),
                     [](const Found<N>& a, const Found<N>& b) { return a.value > b.value; });
   for (std::size_t i = 0; i < climbs; ++i) Climb(set, found[i]);
-  const Found<N>& best = *std::max_element(
-      found.begin(), found.end(), [](const Found<N>& a, const Found<N>& b) { return a.value < b.value; });
+  const Found<N>& best =
+      *std::max_element(found.begin(), found.end(),
+                        [](const Found<N>& a, const Found<N>& b) { return a.value < b.value; });
   return {.value = best.value, .error = set.Error(best.x)};
 }
 

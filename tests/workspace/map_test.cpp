@@ -108,5 +108,18 @@ TEST(Slice, LiesAcrossItsAxis) {
   EXPECT_EQ(slice.InPlane({0.1, 0.2, 0.3}), Eigen::Vector2d(0.1, 0.2));
 }
 
+TEST(Map, PartAroundPlacesIsTheSameMap) {
+  const auto map = ComputeMap(Chapter2(), {}, 0.01);
+  const auto part = PartAround(map, {{0.3, 0.0}, {0.34, -0.1}}, 0.02);
+  ASSERT_EQ(part.right_m.size(), 9U);  // 280 to 360 mm
+  ASSERT_EQ(part.up_m.size(), 15U);    // -120 to 20 mm
+  for (std::size_t r = 0; r < part.up_m.size(); ++r) {
+    for (std::size_t c = 0; c < part.right_m.size(); ++c) {
+      const Eigen::Vector2d p(part.right_m[c], part.up_m[r]);
+      EXPECT_EQ(part.At(r, c).p_tip, p);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace flextip
