@@ -221,7 +221,7 @@ void AddLengthsAndForces(const ReproduceOptions& options, const ChapterProgress&
   for (const double L : {0.25, 0.355, 0.5, 0.7})
     add({L, 3.0}, fmt::format("L = {} m", L), by_length);
   progress(0.8);
-  for (const double F : {1.0, 3.0, 6.0, 12.0})
+  for (const double F : {2.0, 3.0, 6.0, 12.0})
     add({0.355, F}, fmt::format("F_t/EI = {} 1/m²", F), by_force);
   result.figures.push_back(by_length);
   result.figures.push_back(by_force);
