@@ -54,8 +54,8 @@ FigureTrace Trace(const Sweep& sweep, double EstimateErrors::*which, const std::
                   double scale = 1.0) {
   FigureTrace trace{.name = name, .x = sweep.depth};
   for (const auto& errors : sweep.errors) {
-    const double value = errors.worst.*which;
-    trace.y.push_back(std::isfinite(value) ? scale * value : kNaN);
+    const double value = scale * errors.worst.*which;
+    trace.y.push_back(value < kHighest ? value : kNaN);
   }
   return trace;
 }
@@ -109,7 +109,8 @@ std::vector<Figure> NoiseFigures() {
                     "Relative error; it is the same for every Jacobian." + at + kGap,
                     "|error of F_p/EI| / (F_p/EI)"),
           NewFigure("fig-3-8", "Fig. 3.8: error of the port's position under noise",
-                    "Distance of the estimated port from the true one." + at, "port error (mm)")};
+                    "Distance of the estimated port from the true one, up to a metre." + at,
+                    "port error (mm)")};
 }
 
 void AddNoiseRows(FlexionForm form, const Scaling& noise, const Sweep& sweep,
