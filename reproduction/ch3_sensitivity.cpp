@@ -50,6 +50,8 @@ Sweep SweepDepths(FlexionForm form, const BentShaft& shaft, const Scaling& noise
   return sweep;
 }
 
+constexpr double kHighest = 1e3;  // past it a curve says only that the estimate is worthless
+
 FigureTrace Trace(const Sweep& sweep, double EstimateErrors::*which, const std::string& name,
                   double scale = 1.0) {
   FigureTrace trace{.name = name, .x = sweep.depth};
