@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "control/wrist_step.h"
 #include "kinematics/straight.h"
 
 namespace flextip {
@@ -12,10 +13,6 @@ namespace {
 constexpr std::array<const char*, kControllerKinds> kNames = {
     "straight-calculate", "straight-track", "flex-calculate",
     "flex-track",         "rod-calculate",  "rod-track"};
-
-/// The wrist is kept between these distances from the port, as parts of the shaft's length: at
-/// either end the lever degenerates.
-constexpr double kNearest = 0.02, kFarthest = 0.98;
 
 /// What a kinematic model says of the instrument now.
 struct Prediction {
@@ -43,37 +40,12 @@ Prediction PredictFlex(const ControlInput& input, BeamLoadLaw law) {
   return {ControlStatus::kOk, BeamTip(beam, input.p_RW), BeamJacobian(beam, law)};
 }
 
-/// The tissue's stiffness as far as it may be relied on. The loop's gain along a direction is what
-/// the Jacobian assumes over what is there, (1 - c k) / (1 - c k_true) with c the shaft's
-/// compliance: should the tissue let go, it must stay below 2, so 1 - c k is held to `limit`.
-Eigen::Matrix3d TrustedStiffness(const Eigen::Matrix3d& K, const Eigen::Matrix3d& compliance,
-                                 double limit) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(-0.5 * (K + K.transpose()));
-  const Eigen::Matrix3d root = eigen.eigenvectors() *
-                               eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-                               eigen.eigenvectors().transpose();
-  const Eigen::Matrix3d product = root * (0.5 * (compliance + compliance.transpose())) * root;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> gains(product, Eigen::EigenvaluesOnly);
-  const double largest = gains.eigenvalues()[2];
-  const double part = largest > limit - 1.0 ? (limit - 1.0) / largest : 1.0;
-  return -part * root * root;
-}
-
 /// The wrist that moves the tip is the measured one: where the arm yields, the rod's derivative by
 /// it says so; where it has play, the shaft follows the true wrist beside it.
 Prediction PredictRod(const ControlInput& input, const ControllerOptions& options,
                       ShaftRod& solver) {
   const ShaftModel& model = input.model;
-  ShaftProblem problem;
-  problem.rod.rod = {model.instrument.length_m,
-                     model.instrument.bending_stiffness_Nm2,
-                     input.p_RW + model.wrist_shift_m,
-                     model.p_RP,
-                     model.f_tip_N,
-                     model.weight_N_m};
-  problem.rod.effects = model.effects;
-  problem.tip_compliance_m_N = model.tip_compliance_m_N;
-  const ShaftRodState rod = solver.Solve(problem);
+  const ShaftRodState rod = solver.Solve(RodOf(model, input.p_RW));
   if (!rod.IsUsable()) return StraightInstead(input);
   // dp = J dw + C df with df = K dp.
   const Eigen::Matrix3d C = rod.dp_RE.rightCols<3>();
@@ -136,21 +108,6 @@ Eigen::Vector3d LeadByPlay(const Eigen::Vector3d& step, const ShaftModel& model)
   return step + lead;
 }
 
-/// Shortens the step to the bound and so that the wrist keeps its distance from the port.
-Eigen::Vector3d Bound(const Eigen::Vector3d& step, const ControlInput& input,
-                      const ControllerOptions& options, ControlOutput& output) {
-  Eigen::Vector3d bounded = step;
-  const double size = bounded.norm();
-  if (size > options.max_step_m) bounded *= options.max_step_m / size;
-  const double L = input.model.instrument.length_m;
-  const Eigen::Vector3d from_port = input.p_RW + bounded - input.model.p_RP;
-  const double distance = from_port.norm();
-  const double allowed = std::clamp(distance, kNearest * L, kFarthest * L);
-  if (distance > 0.0 && allowed != distance) bounded += (allowed / distance - 1.0) * from_port;
-  output.step_limited = bounded != step;
-  return bounded;
-}
-
 }  // namespace
 
 const char* Name(ControllerKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
@@ -202,7 +159,9 @@ ControlOutput TipController::Step(const ControlInput& input) {
   Eigen::Vector3d step = SolveDamped(dx, options_, output);                            // (5.1)
   if (UsesRod(options_.kind) && input.model.wrist_play_m > 0.0)
     step = LeadByPlay(step, input.model);
-  output.p_RW_command += Bound(step, input, options_, output);
+  const BoundedStep bounded = BoundStep(step, input.p_RW, input.model, options_.max_step_m);
+  output.step_limited = bounded.limited;
+  output.p_RW_command += bounded.step_m;
   return output;
 }
 

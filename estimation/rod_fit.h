@@ -44,6 +44,7 @@ class RodFit {
   int MeasurementCount() const { return rows_ - NUM_PARAMETERS; }
 
   ShaftProblem ProblemAt(const RodParameters& parameters) const;
+  const RodParameters& PriorMean() const { return prior_.mean; }
   double ForceUnit() const { return force_unit_; }
 
  private:

@@ -12,6 +12,7 @@ namespace flextip {
 namespace {
 
 constexpr double kObservable = 0.3;  // posterior over prior sd of the force across the shaft
+constexpr double kDoubtful = 0.005;  // sd of the tip over L past which a load has to stand out
 constexpr double kMisfit = 100.0;    // chi2 a measurement past which another start is tried
 
 bool AllFinite(const Measurements& z) {
@@ -164,20 +165,34 @@ void ShaftEstimator::Describe(const RodFit& fit, const RodParameters& x, ShaftEs
   const Eigen::Matrix3d force = estimate.covariance.bottomRightCorner<3, 3>();
   const Eigen::Vector3d t = rod.t_port;
   const double across = std::sqrt(0.5 * std::max(0.0, force.trace() - t.dot(force * t)));
-  estimate.status = across < kObservable * options_.force_prior_units
-                        ? EstimateStatus::kOk
-                        : EstimateStatus::kUnobservable;
   // From units of EI / L^2 to newton.
   estimate.covariance.rightCols<3>() *= fit.ForceUnit();
   estimate.covariance.bottomRows<3>() *= fit.ForceUnit();
   estimate.p_RE_covariance_m2 = rod.dp_RE * estimate.covariance * rod.dp_RE.transpose();
+  const bool seen = across < kObservable * options_.force_prior_units;
+  estimate.status =
+      seen && StandsOut(fit, rod, estimate) ? EstimateStatus::kOk : EstimateStatus::kUnobservable;
+}
+
+bool ShaftEstimator::StandsOut(const RodFit& fit, const ShaftRodState& rod,
+                               const ShaftEstimate& estimate) {
+  const double variance = estimate.p_RE_covariance_m2.trace();
+  const double L = estimate.model.instrument.length_m;
+  if (variance < kDoubtful * kDoubtful * L * L) return true;
+  ShaftProblem unloaded = fit.ProblemAt(fit.PriorMean());
+  unloaded.rod.rod.f_tip.setZero();
+  const ShaftRodState straight = ShaftRod().Solve(unloaded);
+  // The square of the bend as estimated is that of the true one and the variance: below twice the
+  // variance the unloaded shaft is the better guess.
+  return straight.IsUsable() && (rod.p_RE - straight.p_RE).squaredNorm() > 2.0 * variance;
 }
 
 void ShaftEstimator::FillModel(const RodFit& fit, const RodParameters& x, const Measurements& z,
                                ShaftEstimate& estimate) {
   ShaftModel& model = estimate.model;
-  model.p_RP = x.segment<3>(3);
+  model.p_RP = fit.PriorMean().segment<3>(3);
   if (estimate.status != EstimateStatus::kOk) return;
+  model.p_RP = x.segment<3>(3);
   model.f_tip_N = x.tail<3>() * fit.ForceUnit();
   model.force_known = true;
   last_force_N_ = model.f_tip_N;

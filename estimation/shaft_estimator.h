@@ -28,7 +28,8 @@ struct EstimatorOptions {
 
 enum class EstimateStatus : std::uint8_t {
   kOk,
-  kUnobservable,  ///< the sensors say nothing of the load across the shaft: taken as unloaded
+  kUnobservable,  ///< the sensors say nothing of the load across the shaft, or too little for the
+                  ///< tip to be better known than the unloaded shaft's: taken as unloaded
   kNotConverged,  ///< no rod fits: the straight shaft is handed on
   kBadInput,      ///< a measurement is not finite
 };
@@ -73,6 +74,8 @@ class ShaftEstimator {
   bool FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   bool Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   void Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
+  /// Whether the load bends the shaft by more than is in doubt: the tip is better known with it.
+  static bool StandsOut(const RodFit& fit, const ShaftRodState& rod, const ShaftEstimate& estimate);
   void FillModel(const RodFit& fit, const RodParameters& x, const Measurements& z,
                  ShaftEstimate& estimate);
 

@@ -32,12 +32,22 @@ WindowEstimator::WindowEstimator(const WindowOptions& options)
 void WindowEstimator::Reset() {
   latest_.Reset();
   port_.Reset();
+  status_ = WindowStatus::kUnobservable;
+}
+
+void WindowEstimator::TellLatest() {
+  if (status_ == WindowStatus::kOk) {
+    latest_.SetPort(port_.Shift(), port_.Covariance());
+    return;
+  }
+  const double sd = std::max(options_.estimator.port_prior_m, 1e-6);
+  latest_.SetPort(Eigen::Vector3d::Zero(), sd * sd * Eigen::Matrix3d::Identity());
 }
 
 WindowEstimate WindowEstimator::Update(const Measurements& z, const ShaftChange& change) {
   ++updates_;
   WindowEstimate estimate;
-  latest_.SetPort(port_.Shift(), port_.Covariance());
+  TellLatest();
   estimate.shaft = latest_.Update(z, change);
   const bool carried_on = z.tip && z.tip->status == TipStatus::kPredicted;  // says nothing new
   const bool fits = estimate.shaft.status == EstimateStatus::kOk ||
@@ -50,6 +60,7 @@ WindowEstimate WindowEstimator::Update(const Measurements& z, const ShaftChange&
   estimate.chi2 = port_.Chi2();
   Describe(estimate);
   if (!refined) estimate.status = WindowStatus::kNotConverged;
+  status_ = estimate.status;
   return estimate;
 }
 

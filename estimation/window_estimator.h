@@ -24,7 +24,8 @@ const char* Name(WindowStatus status);
 
 struct WindowEstimate {
   WindowStatus status = WindowStatus::kUnobservable;
-  /// Of the latest sample, its prior of the port being what the samples before it say.
+  /// Of the latest sample, its prior of the port being what the samples before it say, or the
+  /// registration as long as they do not narrow it.
   ShaftEstimate shaft;
   Eigen::Vector3d port_shift_m = Eigen::Vector3d::Zero();  ///< from where it is registered
   Eigen::Matrix3d port_covariance_m2 = Eigen::Matrix3d::Zero();
@@ -53,10 +54,12 @@ class WindowEstimator {
   void Add(const Measurements& measurements, const ShaftChange& change,
            const ShaftEstimate& estimate);
   void Describe(WindowEstimate& estimate) const;
+  void TellLatest();
 
   WindowOptions options_;
   ShaftEstimator latest_;
   WindowPort port_;
+  WindowStatus status_ = WindowStatus::kUnobservable;  // of the last update
   long updates_ = 0;
 };
 

@@ -87,6 +87,7 @@ std::vector<Figure> Figures(const Curves& curves) {
                     "motions diverge. Held F_t and the exact rod are one line.",
                 .x_label = kDepthLabel,
                 .y_label = "metric ||G||",
+                .log_y = true,
                 .traces = {curves.lever[0], curves.lever[1], curves.lever[2], curves.lever_rod}};
   figures[2] = {.name = "fig-3-10",
                 .title = "Beyond the thesis: the beam's Jacobian on the exact rod, without noise",

@@ -29,8 +29,7 @@ const Reading kReadings[] = {
      "As Figs. 3.6 to 3.9 are made. About 30 times the thesis's."},
     {"median, stated noise per axis", 1.0, false,
      "The stated figures are rms, so this is the reading nearest their wording. Ten times the "
-     "thesis's 0.006 and half the length, not 0.05 L: both agree if each of the two numbers lost a "
-     "decimal."},
+     "thesis's 0.006."},
     {"median, stated noise over three axes together", 1.0 / 1.7320508, false,
      "If the rms was that of the position's distance and not of an axis."},
     {"median, a tenth of the stated noise", 0.1, false,
@@ -56,6 +55,18 @@ double BetterFrom(const BentShaft& shaft, FlexionForm form,
     (metric(truth) < straight ? high : low) = middle;
   }
   return high;
+}
+
+/// The insertion depth, over L, at which the straight Jacobian's metric reaches `wanted`.
+double StraightReaches(const BentShaft& shaft, FlexionForm form, double wanted) {
+  double low = 0.0, high = 0.9;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (low + high);
+    const BeamState truth = BeamAtDepth(shaft, middle * shaft.length_m);
+    const double straight = FindStepError(FlexionJacobian(form, truth), LeverJacobian(truth)).norm;
+    (straight < wanted ? low : high) = middle;
+  }
+  return low;
 }
 
 /// How far the noise would have to be scaled for the worst metric at `depth` to be `wanted`.
@@ -102,6 +113,13 @@ void AddLimits(const BentShaft& shaft, std::vector<TableRow>& rows) {
          .thesis = 0.05,
          .flextip = BetterFrom(shaft, form, worst)});
   }
+  rows.push_back({.quantity = "3.5 r / L at which the straight metric, as printed, is 0.006",
+                  .thesis = 0.05,
+                  .flextip = StraightReaches(shaft, FlexionForm::kPrinted, 0.006),
+                  .note =
+                      "So 0.05 L is where the straight curve passes the flexion Jacobian's value "
+                      "at half insertion, as if that held at every depth. It does not: under "
+                      "noise the flexion metric grows without bound toward the port."});
   const BeamState shallow = BeamAtDepth(shaft, 0.05 * L);
   const double straight =
       FindStepError(FlexionJacobian(kForm, shallow), LeverJacobian(shallow)).norm;

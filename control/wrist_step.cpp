@@ -1,0 +1,53 @@
+#include "control/wrist_step.h"
+
+#include <algorithm>
+
+namespace flextip {
+namespace {
+
+constexpr double kNearest = 0.02, kFarthest = 0.98;  // of the wrist from the port, over the length
+
+}  // namespace
+
+ShaftProblem RodOf(const ShaftModel& model, const Eigen::Vector3d& p_RW) {
+  ShaftProblem problem;
+  problem.rod.rod = {model.instrument.length_m,
+                     model.instrument.bending_stiffness_Nm2,
+                     p_RW + model.wrist_shift_m,
+                     model.p_RP,
+                     model.f_tip_N,
+                     model.weight_N_m};
+  problem.rod.effects = model.effects;
+  problem.tip_compliance_m_N = model.tip_compliance_m_N;
+  return problem;
+}
+
+Eigen::Matrix3d TrustedStiffness(const Eigen::Matrix3d& K, const Eigen::Matrix3d& compliance,
+                                 double limit) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(-0.5 * (K + K.transpose()));
+  const Eigen::Matrix3d root = eigen.eigenvectors() *
+                               eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+                               eigen.eigenvectors().transpose();
+  const Eigen::Matrix3d product = root * (0.5 * (compliance + compliance.transpose())) * root;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> gains(product, Eigen::EigenvaluesOnly);
+  const double largest = gains.eigenvalues()[2];
+  const double part = largest > limit - 1.0 ? (limit - 1.0) / largest : 1.0;
+  return -part * root * root;
+}
+
+BoundedStep BoundStep(const Eigen::Vector3d& step, const Eigen::Vector3d& p_RW,
+                      const ShaftModel& model, double max_step_m) {
+  BoundedStep bounded{step, false};
+  const double size = step.norm();
+  if (size > max_step_m) bounded.step_m *= max_step_m / size;
+  const double L = model.instrument.length_m;
+  const Eigen::Vector3d from_port = p_RW + bounded.step_m - model.p_RP;
+  const double distance = from_port.norm();
+  const double allowed = std::clamp(distance, kNearest * L, kFarthest * L);
+  if (distance > 0.0 && allowed != distance)
+    bounded.step_m += (allowed / distance - 1.0) * from_port;
+  bounded.limited = bounded.step_m != step;
+  return bounded;
+}
+
+}  // namespace flextip
