@@ -60,6 +60,21 @@ Figure Bars(const std::vector<GroupResult>& results, Value value, const ThesisNu
   return figure;
 }
 
+FigureTrace FirmerDepths(const std::vector<GroupResult>& results) {
+  FigureTrace trace{.name = "here, silicone twice as strong",
+                    .kind = FigureTrace::Kind::kBars,
+                    .color = "#a8c8ea"};
+  for (const char* name : {"Flex-Track", "Straight-Track", "Flex-Calculate", "Straight-Calculate",
+                           "Rod-Track"}) {
+    const MeanSd of = Find(results, std::string(name) + " silicone x2")
+                          .Of([](const OperatorResult& o) { return 1e3 * o.recorded.max_depth_m; });
+    trace.labels.emplace_back(name);
+    trace.y.push_back(of.mean);
+    trace.y_error.push_back(of.StandardError());
+  }
+  return trace;
+}
+
 /// The operator whose depths are nearest the middle of all, over the four controllers.
 int MedianOperator(const std::vector<GroupResult>& results) {
   const int count = static_cast<int>(results.front().operators.size());
@@ -198,7 +213,10 @@ std::vector<Figure> StudyFigures(const std::vector<GroupResult>& results) {
       results, [](const OperatorResult& o) { return 1e3 * o.recorded.max_depth_m; }, kThesisDepth);
   depth.name = "fig-5-8";
   depth.title = "Depth of maximum incursions";
-  depth.caption = "Mean over the operators with one standard error, as the EM sensor recorded it.";
+  depth.caption =
+      "Mean over the operators with one standard error, as the EM sensor recorded it. Light blue: five "
+      "operators, 20 s.";
+  depth.traces.insert(depth.traces.begin() + 2, FirmerDepths(results));
   depth.y_label = "maximum depth (mm)";
   Figure area = Bars(
       results, [](const OperatorResult& o) { return 1e6 * o.recorded.outline_area_m2; },

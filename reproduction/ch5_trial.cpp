@@ -21,7 +21,6 @@ constexpr double kTick_hz = 144.0;         // the plant is solved at least as of
 constexpr double kSensorFromTip_m = 0.02;  // 5.2.6
 constexpr double kEncoderNoise_m = 1e-5;   // Phantom Premium 1.5: 0.03 mm resolution
 constexpr double kLevelling_s = 0.5;       // time constant
-constexpr int kLinks = 50;                 // each side of the port
 
 /// Stainless steel, 600 mm x 2.38 mm.
 Instrument Rod() { return {0.6, 0.00238, 0.304, 0.0351}; }
@@ -119,7 +118,7 @@ class TrialRun {
         places_(places),
         tick_hz_(TickRate(setup)),
         silicone_(MakeSilicone()),
-        plant_(MakePlant(), {kLinks, kLinks}),
+        plant_(MakePlant(), {setup.links, setup.links}),
         sensors_(MakeSensors(setup, places), setup.noise_seed, Errors()),
         estimator_(MakeEstimator(setup, places)),
         controller_(MakeController(setup)),

@@ -37,6 +37,7 @@ struct TrialSetup {
   double em_latency_s = 0.0;  ///< EM is late by this, the arm's encoders are not
   bool hold_still = false;  ///< no operator: the tip is held in the middle, above the surface
   double seconds = 60.0;
+  int links = 50;  ///< of the plant, on each side of the port
   std::uint64_t operator_seed = 1, noise_seed = 1;
 };
 
