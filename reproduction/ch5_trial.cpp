@@ -2,86 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <memory>
 #include <optional>
 
 #include "control/virtual_fixture.h"
-#include "estimation/shaft_estimator.h"
 #include "estimation/slope_fit.h"
+#include "reproduction/ch5_setup.h"
 #include "reproduction/ch5_wrist.h"
 #include "simulation/plant.h"
-#include "simulation/sensors.h"
 #include "simulation/soft_cylinder.h"
 
 namespace flextip {
 namespace {
 
-constexpr double kTick_hz = 144.0;         // the plant is solved at least as often
-constexpr double kSensorFromTip_m = 0.02;  // 5.2.6
-constexpr double kEncoderNoise_m = 1e-5;   // Phantom Premium 1.5: 0.03 mm resolution
 constexpr double kLevelling_s = 0.5;       // time constant
-
-/// Stainless steel, 600 mm x 2.38 mm.
-Instrument Rod() { return {0.6, 0.00238, 0.304, 0.0351}; }
-const Eigen::Vector3d kGravity(0.0, 0.0, -9.81);
-
-double TickRate(const TrialSetup& setup) {
-  return setup.update_rate_hz * std::ceil(kTick_hz / setup.update_rate_hz - 1e-9);
-}
-
-/// The camera of 5.2.6 stands 360 mm behind and 890 mm above the robot and looks at the dish.
-Eigen::Vector3d LineOfSight(const TrialPlaces& places) {
-  return Eigen::Vector3d(places.surface_x_m + 0.36, 0.0, -0.89).normalized();
-}
-
-SensorSetup MakeSensors(const TrialSetup& setup, const TrialPlaces& places) {
-  SensorSetup sensors;
-  const double rate = TickRate(setup);
-  sensors.wrist.emplace();
-  sensors.wrist->rate_hz = rate;
-  sensors.wrist->position_noise_m = kEncoderNoise_m;
-  sensors.wrist->orientation_noise_rad = setup.em_orientation_noise_rad;
-  sensors.em0.emplace();
-  sensors.em0->rate_hz = rate;
-  sensors.em0->distance_from_tip_m = kSensorFromTip_m;
-  sensors.em0->position_noise_m = setup.em_position_noise_m;
-  sensors.em0->orientation_noise_rad = setup.em_orientation_noise_rad;
-  if (setup.sense == TipSense::kVision) {
-    sensors.tip.emplace();
-    sensors.tip->rate_hz = setup.update_rate_hz;
-    sensors.tip->line_of_sight = LineOfSight(places);
-  }
-  return sensors;
-}
-
-EstimatorOptions MakeEstimator(const TrialSetup& setup, const TrialPlaces& places) {
-  EstimatorOptions options;
-  options.instrument = Rod();
-  options.p_RP = places.p_RP;
-  options.gravity_m_s2 = kGravity;
-  options.use_positions = UsesTipMeasurement(setup.kind);
-  options.estimate_tissue = setup.tissue_response;
-  return options;
-}
-
-ControllerOptions MakeController(const TrialSetup& setup) {
-  ControllerOptions options;
-  options.kind = setup.kind;
-  options.beam_load_law = BeamLoadLaw::kPortForce;  // as the thesis assumes
-  return options;
-}
-
-OperatorTask MakeTask(const TrialPlaces& places) {
-  const Eigen::Vector3d sight = LineOfSight(places);
-  OperatorTask task;
-  task.p_centre = {places.WallX(), 0.0, 0.0};
-  task.outline_radius_m = places.outline_radius_m;
-  task.right = Eigen::Vector3d::UnitY();
-  task.up = task.right.cross(sight).normalized();
-  if (task.up.z() < 0.0) task.up = -task.up;
-  return task;
-}
 
 bool IsStraight(ControllerKind kind) {
   return kind == ControllerKind::kStraightCalculate || kind == ControllerKind::kStraightTrack;
@@ -91,25 +25,6 @@ bool UsesClosedForm(const TrialSetup& setup) {
   return setup.kind == ControllerKind::kFlexTrack ||
          (setup.kind == ControllerKind::kFlexCalculate && setup.chord_measured);
 }
-
-/// Now and then something stands before the camera: 5 % of the time, 0.3 s on average.
-class Occlusions {
- public:
-  explicit Occlusions(std::uint64_t seed) : rng_(seed) {}
-  bool Step(double dt_s) {
-    left_s_ -= dt_s;
-    if (left_s_ <= 0.0) {
-      hidden_ = !hidden_;
-      left_s_ = std::exponential_distribution<double>(hidden_ ? 1.0 / 0.3 : 1.0 / 5.7)(rng_);
-    }
-    return hidden_;
-  }
-
- private:
-  std::mt19937_64 rng_;
-  bool hidden_ = true;  // the first draw turns it
-  double left_s_ = 0.0;
-};
 
 class TrialRun {
  public:
