@@ -64,10 +64,12 @@ FigureTrace FirmerDepths(const std::vector<GroupResult>& results) {
   FigureTrace trace{.name = "here, silicone twice as strong",
                     .kind = FigureTrace::Kind::kBars,
                     .color = "#a8c8ea"};
-  for (const char* name : {"Flex-Track", "Straight-Track", "Flex-Calculate", "Straight-Calculate",
-                           "Rod-Track"}) {
-    const MeanSd of = Find(results, std::string(name) + " silicone x2")
-                          .Of([](const OperatorResult& o) { return 1e3 * o.recorded.max_depth_m; });
+  for (const char* name :
+       {"Flex-Track", "Straight-Track", "Flex-Calculate", "Straight-Calculate", "Rod-Track"}) {
+    const MeanSd of =
+        Find(results, std::string(name) + " silicone x2").Of([](const OperatorResult& o) {
+          return 1e3 * o.recorded.max_depth_m;
+        });
     trace.labels.emplace_back(name);
     trace.y.push_back(of.mean);
     trace.y_error.push_back(of.StandardError());
@@ -127,7 +129,8 @@ Figure TimeAtDepth(const std::vector<GroupResult>& results) {
   figure.name = "fig-5-7";
   figure.title = "Time spent at each depth";
   figure.caption =
-      "Average over the operators, in steps of 0.1 mm, as the EM sensor recorded it. Right of zero is "
+      "Average over the operators, in steps of 0.1 mm, as the EM sensor recorded it. Right of zero "
+      "is "
       "forbidden.";
   figure.x_label = "depth beyond the wall (mm)";
   figure.y_label = "time (s per 0.1 mm)";
@@ -156,16 +159,15 @@ Figure Sensing(const std::vector<GroupResult>& results) {
   figure.name = "fig-5-sensing";
   figure.title = "EM at 144 Hz against vision";
   figure.caption =
-      "Deepest place of the true tip beyond the wall, mean over the operators with standard error; below "
+      "Deepest place of the true tip beyond the wall, mean over the operators with standard error; "
+      "below "
       "zero it never went in. Vision is 30 ms (60 Hz) or 50 ms (30 Hz) late and hidden 5 % of the "
       "time.";
   figure.y_label = "deepest true place (mm)";
-  const std::pair<const char*, const char*> sensors[] = {{"EM 144 Hz", ""},
-                                                         {"vision 60 Hz", " vision 60 Hz"},
-                                                         {"vision 30 Hz", " vision 30 Hz"}};
+  const std::pair<const char*, const char*> sensors[] = {
+      {"EM 144 Hz", ""}, {"vision 60 Hz", " vision 60 Hz"}, {"vision 30 Hz", " vision 30 Hz"}};
   for (const char* kind : {"Straight-Track", "Flex-Track", "Rod-Track"}) {
-    FigureTrace trace{
-        .name = kind, .kind = FigureTrace::Kind::kBars, .color = ColorOf(kind)};
+    FigureTrace trace{.name = kind, .kind = FigureTrace::Kind::kBars, .color = ColorOf(kind)};
     for (const auto& [label, suffix] : sensors) {
       const MeanSd of = Find(results, std::string(kind) + suffix).Of([](const OperatorResult& o) {
         return 1e3 * o.worst_m;
@@ -184,8 +186,10 @@ Figure Rates(const std::vector<GroupResult>& results) {
   figure.name = "fig-5-rates";
   figure.title = "Incursion against the update rate";
   figure.caption =
-      "Deepest place of the true tip beyond the wall by the rate of sensor and controller alone: next to "
-      "no noise, an arm that does not give way. Mean of three operators over 10 s with standard error; "
+      "Deepest place of the true tip beyond the wall by the rate of sensor and controller alone: "
+      "next to "
+      "no noise, an arm that does not give way. Mean of three operators over 10 s with standard "
+      "error; "
       "below zero it never went in.";
   figure.x_label = "update rate (Hz)";
   figure.y_label = "deepest true place (mm)";
@@ -214,7 +218,8 @@ std::vector<Figure> StudyFigures(const std::vector<GroupResult>& results) {
   depth.name = "fig-5-8";
   depth.title = "Depth of maximum incursions";
   depth.caption =
-      "Mean over the operators with one standard error, as the EM sensor recorded it. Light blue: five "
+      "Mean over the operators with one standard error, as the EM sensor recorded it. Light blue: "
+      "five "
       "operators, 20 s.";
   depth.traces.insert(depth.traces.begin() + 2, FirmerDepths(results));
   depth.y_label = "maximum depth (mm)";
@@ -224,11 +229,12 @@ std::vector<Figure> StudyFigures(const std::vector<GroupResult>& results) {
   area.name = "fig-5-9";
   area.title = "Area of the outlines in the forbidden region";
   area.caption =
-      "Union of the trajectories on two orthogonal planes, summed; mean over the operators with one "
+      "Union of the trajectories on two orthogonal planes, summed; mean over the operators with "
+      "one "
       "standard error.";
   area.y_label = "area (mm^2)";
-  return {Trajectories(results), TimeAtDepth(results), depth, area, Sensing(results),
-          Rates(results)};
+  return {Trajectories(results), TimeAtDepth(results), depth, area,
+          Sensing(results),      Rates(results)};
 }
 
 }  // namespace flextip

@@ -12,8 +12,8 @@ ChapterResult Ch5Operators(const ReproduceOptions& options, const ChapterProgres
   const auto results = RunStudy(StudyGroups(options.quick), options.seed, progress);
   ChapterResult chapter;
   chapter.rows.push_back(HoldRow(options));
-  for (const auto& rows : {ThesisRows(results), ReductionRows(results), OursRows(results),
-                           VariationRows(results)}) {
+  for (const auto& rows :
+       {ThesisRows(results), ReductionRows(results), OursRows(results), VariationRows(results)}) {
     std::copy(rows.begin(), rows.end(), std::back_inserter(chapter.rows));
   }
   chapter.figures = StudyFigures(results);

@@ -31,13 +31,18 @@ const Measure kMeasures[] = {
 
 const char* NoteOf(int condition) {
   constexpr const char* kNotes[kThesisControllers] = {
-      "As the EM sensor recorded it, as in the thesis. Most of it is the sensor's own noise: see the true "
+      "As the EM sensor recorded it, as in the thesis. Most of it is the sensor's own noise: see "
+      "the true "
       "tip's rows.",
-      "Little worse than Flex-Track at the flexion of ours (15 mm); at silicone three times as strong it is: "
+      "Little worse than Flex-Track at the flexion of ours (15 mm); at silicone three times as "
+      "strong it is: "
       "see the rows \"5.3 if\".",
-      "The chord's direction is measured, (5.4) and (5.13), so an exact registration leaves only the beam's "
-      "length. What EM is off along the shaft adds to it as it is: see \"5.3 if the EM field is 2 mm off\".",
-      "Grows with the square of the flexion: at forces twice as high it comes near the thesis's. See \"5.3 if "
+      "The chord's direction is measured, (5.4) and (5.13), so an exact registration leaves only "
+      "the beam's "
+      "length. What EM is off along the shaft adds to it as it is: see \"5.3 if the EM field is 2 "
+      "mm off\".",
+      "Grows with the square of the flexion: at forces twice as high it comes near the thesis's. "
+      "See \"5.3 if "
       "the silicone is\"."};
   return kNotes[condition];
 }
@@ -59,10 +64,11 @@ void AddMeasure(const Measure& measure, const std::vector<GroupResult>& results,
     ours.push_back(value);
     theirs.push_back({thesis.mean, thesis.sd, 10});
   }
-  rows.push_back(Row(fmt::format("5.3 {}, largest p of the six differences", measure.name),
-                     measure.thesis_p, LargestP(ours), "",
-                     "Student's t-test, two-sided, independent samples, one variance. Ours: the three that "
-                     "know the tip's position are at the sensor's noise and differ little."));
+  rows.push_back(
+      Row(fmt::format("5.3 {}, largest p of the six differences", measure.name), measure.thesis_p,
+          LargestP(ours), "",
+          "Student's t-test, two-sided, independent samples, one variance. Ours: the three that "
+          "know the tip's position are at the sensor's noise and differ little."));
   rows.push_back(Row(fmt::format("5.3 {}, largest p from the thesis's own figures", measure.name),
                      measure.thesis_p, LargestP(theirs), "",
                      "The same test on the printed means and deviations: this is the test that "
@@ -95,16 +101,22 @@ void AddPhysics(const std::vector<GroupResult>& results, std::vector<TableRow>& 
       rows.push_back(
           Row(fmt::format("5.3 {}, {}", what, ThesisName(i)), {}, group.Of(value).mean, unit));
     };
-    add("flexion at the tip, RMS", [](const OperatorResult& o) { return 1e3 * o.rms_flexion_m; },
+    add(
+        "flexion at the tip, RMS", [](const OperatorResult& o) { return 1e3 * o.rms_flexion_m; },
         "mm");
-    add("flexion at the tip, largest",
+    add(
+        "flexion at the tip, largest",
         [](const OperatorResult& o) { return 1e3 * o.max_flexion_m; }, "mm");
-    add("side force at the tip, RMS", [](const OperatorResult& o) { return o.rms_side_force_N; },
+    add(
+        "side force at the tip, RMS", [](const OperatorResult& o) { return o.rms_side_force_N; },
         "N");
-    add("side force at the tip, largest",
+    add(
+        "side force at the tip, largest",
         [](const OperatorResult& o) { return o.max_side_force_N; }, "N");
-    add("push along the shaft, largest", [](const OperatorResult& o) { return o.max_push_N; }, "N");
-    add("part of the outline's silicone cut",
+    add(
+        "push along the shaft, largest", [](const OperatorResult& o) { return o.max_push_N; }, "N");
+    add(
+        "part of the outline's silicone cut",
         [](const OperatorResult& o) { return 100.0 * o.cut_part; }, "%");
   }
 }
@@ -154,9 +166,10 @@ std::vector<TableRow> ReductionRows(const std::vector<GroupResult>& results) {
                          100.0 * (1.0 - part), "%", "Against Straight-Calculate."));
     }
   }
-  rows.push_back(Row("6.2 reduction of maximum depth by tip tracking, with flexion kinematics", 70,
-                     100.0 * (1.0 - mean(0, kMeasures[1]) / mean(2, kMeasures[1])), "%",
-                     "Ours has little left to reduce: Flex-Calculate is as exact as its registration."));
+  rows.push_back(
+      Row("6.2 reduction of maximum depth by tip tracking, with flexion kinematics", 70,
+          100.0 * (1.0 - mean(0, kMeasures[1]) / mean(2, kMeasures[1])), "%",
+          "Ours has little left to reduce: Flex-Calculate is as exact as its registration."));
   rows.push_back(Row("6.2 reduction of time inside by tip tracking, straight kinematics", 50,
                      100.0 * (1.0 - mean(1, kMeasures[0]) / mean(3, kMeasures[0])), "%"));
   rows.push_back(Row("6.2 reduction of outline area by tip tracking, straight kinematics", 75,
@@ -201,10 +214,11 @@ std::vector<TableRow> OursRows(const std::vector<GroupResult>& results) {
   AddTruth(results, "Rod-Track silicone x2", rows, "Five operators, 20 s.");
   for (const auto& name : CurveControllers()) {
     for (const double rate : CurveRates()) {
-      rows.push_back(Row(fmt::format("5.4 deepest place of the true tip at {:.0f} Hz, {}", rate, name),
-                         {}, Find(results, CurveGroup(name, rate)).Of(Worst()).mean, "mm",
-                         "Without noise, firm arm; three operators, 10 s. The thesis expects zero from "
-                         "much faster updates or a modelled response."));
+      rows.push_back(
+          Row(fmt::format("5.4 deepest place of the true tip at {:.0f} Hz, {}", rate, name), {},
+              Find(results, CurveGroup(name, rate)).Of(Worst()).mean, "mm",
+              "Without noise, firm arm; three operators, 10 s. The thesis expects zero from "
+              "much faster updates or a modelled response."));
     }
   }
   return rows;
@@ -231,10 +245,11 @@ TableRow HoldRow(const ReproduceOptions& options) {
   setup.seconds = options.quick ? 3.0 : 20.0;
   setup.noise_seed = options.seed;
   const Trial trial = RunTrial(setup);
-  return Row("5.2.6 RMS tip error when holding still, tip tracking", 0.16,
-             1e3 * trial.rms_recorded_error_m, "mm",
-             fmt::format("Per axis, as recorded. The true tip's is {:.3f} mm: the arm smooths the noise.",
-                         1e3 * trial.rms_error_m));
+  return Row(
+      "5.2.6 RMS tip error when holding still, tip tracking", 0.16,
+      1e3 * trial.rms_recorded_error_m, "mm",
+      fmt::format("Per axis, as recorded. The true tip's is {:.3f} mm: the arm smooths the noise.",
+                  1e3 * trial.rms_error_m));
 }
 
 }  // namespace flextip

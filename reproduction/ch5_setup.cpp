@@ -5,7 +5,7 @@
 namespace flextip {
 namespace {
 
-constexpr double kTick_hz = 144.0;         // the plant is solved at least as often
+constexpr double kTick_hz = 144.0;  // the plant is solved at least as often
 
 /// The camera of 5.2.6 stands 360 mm behind and 890 mm above the robot and looks at the dish.
 Eigen::Vector3d LineOfSight(const TrialPlaces& places) {

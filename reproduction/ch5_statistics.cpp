@@ -33,10 +33,9 @@ class Geos {
     GEOSContextHandle_t geos = context_.get();
     const auto destroy = [geos](GEOSGeometry* geometry) { GEOSGeom_destroy_r(geos, geometry); };
     using Geometry = std::unique_ptr<GEOSGeometry, decltype(destroy)>;
-    const Geometry all(
-        GEOSGeom_createCollection_r(geos, GEOS_MULTIPOLYGON, polygons.data(),
-                                    static_cast<unsigned>(polygons.size())),
-        destroy);
+    const Geometry all(GEOSGeom_createCollection_r(geos, GEOS_MULTIPOLYGON, polygons.data(),
+                                                   static_cast<unsigned>(polygons.size())),
+                       destroy);
     const Geometry together(all ? GEOSUnaryUnion_r(geos, all.get()) : nullptr, destroy);
     double area = 0.0;
     if (!together || GEOSArea_r(geos, together.get(), &area) != 1) {
@@ -63,7 +62,7 @@ double SweptArea(const std::vector<Eigen::Vector3d>& tips, double wall_x_m) {
 
 double OutlineArea(const std::vector<Eigen::Vector3d>& tips, double wall_x_m, int along) {
   assert(along == 1 || along == 2);
-  constexpr double kUnit = 1e-3;     // the library's tolerances suit numbers of the order of one
+  constexpr double kUnit = 1e-3;  // the library's tolerances suit numbers of the order of one
   constexpr double kNarrowest = 1e-7;
   const Geos geos;
   std::vector<GEOSGeometry*> polygons;
@@ -111,8 +110,7 @@ MeanSd MeanSdOf(const std::vector<double>& values) {
 double StudentP(const MeanSd& a, const MeanSd& b) {
   assert(a.count > 1 && b.count > 1);
   const double freedom = a.count + b.count - 2;
-  const double pooled =
-      ((a.count - 1) * a.sd * a.sd + (b.count - 1) * b.sd * b.sd) / freedom;
+  const double pooled = ((a.count - 1) * a.sd * a.sd + (b.count - 1) * b.sd * b.sd) / freedom;
   const double error = std::sqrt(pooled * (1.0 / a.count + 1.0 / b.count));
   const double difference = std::abs(a.mean - b.mean);
   if (error == 0.0) return difference == 0.0 ? 1.0 : 0.0;

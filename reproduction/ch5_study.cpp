@@ -18,7 +18,8 @@ OperatorResult RunOne(const StudyGroup& group, int number, std::uint64_t seed) {
   result.recorded = MeasureIncursion(trial.recorded, places.WallX(), group.outline);
   result.truth = MeasureIncursion(trial.tips, places.WallX(), group.outline);
   result.worst_m = -places.wall_depth_m;
-  for (const auto& p : trial.tips) result.worst_m = std::max(result.worst_m, p.x() - places.WallX());
+  for (const auto& p : trial.tips)
+    result.worst_m = std::max(result.worst_m, p.x() - places.WallX());
   result.max_flexion_m = trial.max_flexion_m;
   result.rms_flexion_m = trial.rms_flexion_m;
   result.rms_side_force_N = trial.rms_side_force_N;

@@ -1,4 +1,5 @@
-// What 5.3 of the thesis prints, in the order of ThesisName (ch5_groups.h). Private to reproduction.
+// What 5.3 of the thesis prints, in the order of ThesisName (ch5_groups.h). Private to
+// reproduction.
 #pragma once
 
 namespace flextip {

@@ -15,7 +15,7 @@
 namespace flextip {
 namespace {
 
-constexpr double kLevelling_s = 0.5;       // time constant
+constexpr double kLevelling_s = 0.5;  // time constant
 
 bool IsStraight(ControllerKind kind) {
   return kind == ControllerKind::kStraightCalculate || kind == ControllerKind::kStraightTrack;
@@ -48,7 +48,8 @@ class TrialRun {
     const double start_x = places_.surface_x_m - 0.006 - Rod().length_m;
     Eigen::Vector3d p_RW(start_x, 0.0, 0.0);
     shape_ = plant_.Solve(p_RW);
-    wrist_.emplace(p_RW, -shape_.f_wrist_N, ServoWristSetup{.stiffness_N_m = setup_.arm_stiffness_N_m});
+    wrist_.emplace(p_RW, -shape_.f_wrist_N,
+                   ServoWristSetup{.stiffness_N_m = setup_.arm_stiffness_N_m});
     command_ = p_RW;
     const int ticks = static_cast<int>(setup_.seconds * tick_hz_);
     const int per_update = static_cast<int>(std::lround(tick_hz_ / setup_.update_rate_hz));
@@ -96,7 +97,8 @@ class TrialRun {
 
   void Move() {
     wrist_->Move(command_, -shape_.f_wrist_N, 1.0 / tick_hz_);
-    const PlantShape next = plant_.Solve(wrist_->Position(), 1e-9 * static_cast<double>(t_ns_ - kSimulationStart_ns));
+    const PlantShape next =
+        plant_.Solve(wrist_->Position(), 1e-9 * static_cast<double>(t_ns_ - kSimulationStart_ns));
     trial_.lost = !next.IsUsable();
     if (trial_.lost) return;
     shape_ = next;
@@ -120,7 +122,8 @@ class TrialRun {
     p_RW_before_.push_back(wrist_->Position());
   }
 
-  /// What the sensors say of one instant: with EM of now, with a camera of when the frame was taken.
+  /// What the sensors say of one instant: with EM of now, with a camera of when the frame was
+  /// taken.
   void Gather() {
     const auto& wrists = recording_.wrist0->samples;
     std::size_t age = 0;

@@ -35,7 +35,7 @@ struct TrialSetup {
   double stiffness_error = 0.0, length_error_m = 0.0, port_error_m = 0.0;
   double em_offset_m = 0.0;   ///< EM positions are off by this along x
   double em_latency_s = 0.0;  ///< EM is late by this, the arm's encoders are not
-  bool hold_still = false;  ///< no operator: the tip is held in the middle, above the surface
+  bool hold_still = false;    ///< no operator: the tip is held in the middle, above the surface
   double seconds = 60.0;
   int links = 50;  ///< of the plant, on each side of the port
   std::uint64_t operator_seed = 1, noise_seed = 1;
@@ -57,13 +57,13 @@ struct Trial {
   double max_flexion_m = 0.0;             ///< of the tip from the straight line through the port
   double rms_flexion_m = 0.0;
   double max_side_force_N = 0.0, rms_side_force_N = 0.0;
-  double max_push_N = 0.0;      ///< along the axis, by the silicone
-  double cut_part = 0.0;        ///< of the outline's inside
-  double rms_error_m = 0.0;     ///< of the true tip from what was desired, per axis
+  double max_push_N = 0.0;            ///< along the axis, by the silicone
+  double cut_part = 0.0;              ///< of the outline's inside
+  double rms_error_m = 0.0;           ///< of the true tip from what was desired, per axis
   double rms_recorded_error_m = 0.0;  ///< the same as recorded
-  double straight_part = 0.0;   ///< of the updates that fell back on the straight shaft
-  double no_tip_part = 0.0;     ///< of the updates without a tip
-  bool lost = false;            ///< the simulated shaft found no equilibrium: ended early
+  double straight_part = 0.0;         ///< of the updates that fell back on the straight shaft
+  double no_tip_part = 0.0;           ///< of the updates without a tip
+  bool lost = false;                  ///< the simulated shaft found no equilibrium: ended early
 };
 
 Trial RunTrial(const TrialSetup& setup, const TrialPlaces& places = {});

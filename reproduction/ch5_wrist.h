@@ -8,8 +8,8 @@
 
 namespace flextip {
 
-/// A desktop robot as its data sheet has it (Phantom Premium 1.5: apparent inertia under 75 g), with
-/// the rod; gains that its servo keeps stable. Gravity is compensated.
+/// A desktop robot as its data sheet has it (Phantom Premium 1.5: apparent inertia under 75 g),
+/// with the rod; gains that its servo keeps stable. Gravity is compensated.
 struct ServoWristSetup {
   double mass_kg = 0.1;
   double stiffness_N_m = 1000.0;

@@ -27,7 +27,7 @@ struct ChapterResult {
 };
 
 struct ReproduceOptions {
-  bool quick = false;      ///< coarse grids and few repetitions, for tests; numbers are not the same
+  bool quick = false;  ///< coarse grids and few repetitions, for tests; numbers are not the same
   std::uint64_t seed = 1;  ///< of every random draw
 };
 
