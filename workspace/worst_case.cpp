@@ -95,9 +95,11 @@ struct Found {
 /// Steps along the axes that help, halved when none does.
 template <int N>
 void Climb(const ErrorSet<N>& set, Found<N>& best) {
-  constexpr double kFirst = 0.5, kLast = 1e-5;
+  constexpr double kFirst = 0.5, kLast = 1e-5, kWorthwhile = 1e-9;
+  constexpr int kSweeps = 20;  // a step; along a curved bound gains go on for ever
   for (double step = kFirst; step > kLast; step *= 0.5) {
-    for (bool better = true; better;) {
+    bool better = true;
+    for (int sweep = 0; better && sweep < kSweeps; ++sweep) {
       better = false;
       for (int i = 0; i < 2 * set.Size(); ++i) {
         if (best.value == set.Hopeless()) return;
@@ -105,7 +107,7 @@ void Climb(const ErrorSet<N>& set, Found<N>& best) {
         x[i / 2] += i % 2 ? step : -step;
         set.Confine(x);
         const double value = set.Value(x);
-        if (!(value > best.value + 1e-12 * std::abs(best.value))) continue;
+        if (!(value > best.value * (1.0 + kWorthwhile))) continue;
         best = {.x = x, .value = value};
         better = true;
       }
