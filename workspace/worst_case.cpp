@@ -96,10 +96,12 @@ struct Found {
 template <int N>
 void Climb(const ErrorSet<N>& set, Found<N>& best) {
   constexpr double kFirst = 0.5, kLast = 1e-5, kWorthwhile = 1e-9;
-  constexpr int kSweeps = 20;  // a step; along a curved bound gains go on for ever
+  // A step's: along a curved bound gains go on for ever.
+  constexpr int kFew = 4, kSweepsOfFew = 20, kSweepsOfMany = 6;
+  const int sweeps = set.Size() <= kFew ? kSweepsOfFew : kSweepsOfMany;
   for (double step = kFirst; step > kLast; step *= 0.5) {
     bool better = true;
-    for (int sweep = 0; better && sweep < kSweeps; ++sweep) {
+    for (int sweep = 0; better && sweep < sweeps; ++sweep) {
       better = false;
       for (int i = 0; i < 2 * set.Size(); ++i) {
         if (best.value == set.Hopeless()) return;
