@@ -95,9 +95,13 @@ struct Found {
 /// Steps along the axes that help, halved when none does.
 template <int N>
 void Climb(const ErrorSet<N>& set, Found<N>& best) {
-  constexpr double kFirst = 0.5, kLast = 1e-5;
+  constexpr double kFirst = 0.5, kLast = 1e-5, kWorthwhile = 1e-9;
+  // A step's: along a curved bound gains go on for ever.
+  constexpr int kFew = 4, kSweepsOfFew = 20, kSweepsOfMany = 6;
+  const int sweeps = set.Size() <= kFew ? kSweepsOfFew : kSweepsOfMany;
   for (double step = kFirst; step > kLast; step *= 0.5) {
-    for (bool better = true; better;) {
+    bool better = true;
+    for (int sweep = 0; better && sweep < sweeps; ++sweep) {
       better = false;
       for (int i = 0; i < 2 * set.Size(); ++i) {
         if (best.value == set.Hopeless()) return;
@@ -105,7 +109,7 @@ void Climb(const ErrorSet<N>& set, Found<N>& best) {
         x[i / 2] += i % 2 ? step : -step;
         set.Confine(x);
         const double value = set.Value(x);
-        if (!(value > best.value + 1e-12 * std::abs(best.value))) continue;
+        if (!(value > best.value * (1.0 + kWorthwhile))) continue;
         best = {.x = x, .value = value};
         better = true;
       }
