@@ -123,7 +123,9 @@ bool ShaftEstimator::FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimat
   unloaded.tail<3>().setZero();
   const bool ok = Fit(fit, x, estimate);
   if (ok && estimate.chi2 < kMisfit * (1 + estimate.measurements)) return true;
-  // The last force may be far from this one.
+  // The last force may be far from this one. With effects a fit that is not at the bottom yet goes
+  // on from here with the next sample.
+  if (last_force_N_.isZero(0.0) || (ok && !IsPlain(estimate.model.effects))) return ok;
   solver_.Reset();
   const ShaftEstimate first = estimate;
   if (Fit(fit, unloaded, estimate) && (!ok || estimate.chi2 < first.chi2)) {
@@ -197,8 +199,12 @@ void ShaftEstimator::FillModel(const RodFit& fit, const RodParameters& x, const 
   model.force_known = true;
   last_force_N_ = model.f_tip_N;
   model.beam = ChooseBeamFit(z, model.instrument, model, options_.use_positions);
-  if (options_.estimate_tissue)
-    tissue_.Add(estimate.p_RE, model.f_tip_N, estimate.covariance.bottomRightCorner<3, 3>());
+  if (options_.estimate_tissue) {
+    // A fit that misses by more than its noise knows its force by so much less.
+    const double misfit = std::max(1.0, estimate.chi2 / std::max(1, estimate.measurements));
+    tissue_.Add(estimate.p_RE, model.f_tip_N,
+                misfit * estimate.covariance.bottomRightCorner<3, 3>());
+  }
   model.tissue_stiffness_N_m = tissue_.Stiffness();
 }
 

@@ -35,7 +35,10 @@ void TissueSecants::Add(const Eigen::Vector3d& p_RE, const Eigen::Vector3d& f_ti
     const Eigen::Matrix3d weight = covariance.inverse();
     information_ = kMemory * information_ + by_K.transpose() * weight * by_K;
     weighted_ = kMemory * weighted_ + by_K.transpose() * weight * (f_tip_N - f_reference_N_);
-    const Matrix6d with_prior = information_ + Matrix6d::Identity() / (kPrior_N_m * kPrior_N_m);
+    Vector6d prior;  // the same for every set of axes: each entry off the diagonal is there twice
+    prior << 1.0, 1.0, 1.0, 2.0, 2.0, 2.0;
+    Matrix6d with_prior = information_;
+    with_prior.diagonal() += prior / (kPrior_N_m * kPrior_N_m);
     const Vector6d k = with_prior.ldlt().solve(weighted_);
     Eigen::Matrix3d K;
     K << k[0], k[5], k[4], k[5], k[1], k[3], k[4], k[3], k[2];
