@@ -52,6 +52,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"yaml-cpp/", {"recording", "simulation", "diagnosis", "apps"}},
       {"tbb/", {"vision", "simulation", "diagnosis", "workspace", "reproduction", "apps", "bench"}},
       {"geos", {"reproduction"}},
+      {"boost/", {"workspace", "reproduction"}},
       {"nlohmann/", {"report", "diagnosis", "apps", "bench"}},
       {"CLI/", {"apps", "bench"}},
   };
