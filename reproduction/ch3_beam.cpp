@@ -4,6 +4,7 @@
 
 #include "kinematics/plane_beam.h"
 #include "kinematics/straight.h"
+#include "reproduction/printed_jacobian.h"
 
 namespace flextip {
 namespace {
@@ -12,23 +13,11 @@ Eigen::Vector2d Turned(double angle, double x, double y) {
   return Eigen::Rotation2Dd(angle) * Eigen::Vector2d(x, y);
 }
 
-/// (3.15)-(3.26) as printed, but for the angle: phi there is that of the line from wrist to port
-/// (docs/errata.md).
+/// With phi as the angle of the line from wrist to port (docs/errata.md).
 Eigen::Matrix2d PrintedJacobian(const BeamState& state) {
-  const double L = state.length_m, a = state.a, y_a = BeamPortHeight(state.F, a, L);
-  const double gamma = std::atan(y_a / a), phi = state.phi + gamma;
-  const Eigen::Vector2d d = Turned(state.phi, a, y_a);
-  const double temp1 = 3.0 * L * y_a;
-  const double temp2 = (2.0 * a - L) * temp1;
-  const double temp3 = (3.0 * L * a + temp2 * y_a) * (a * a + y_a * y_a);
-  const double L_meas2 = d.squaredNorm();
-  const double s = std::sin(gamma - phi), c = std::cos(gamma - phi);
-  Eigen::Matrix2d J;
-  J << 1.0 + L * s * (d.y() / L_meas2 + d.x() * (temp2 - temp1) / temp3),
-      L * s * (-d.x() / L_meas2 + d.y() * (temp2 - temp1) / temp3),
-      -L * c * (-d.y() / L_meas2 + d.x() * (temp1 - temp2) / temp3),
-      1.0 - L * c * (d.x() / L_meas2 + d.y() * (temp1 - temp2) / temp3);
-  return J;
+  const double y_a = BeamPortHeight(state.F, state.a, state.length_m);
+  return PrintedPlaneJacobian(state.a, y_a, state.length_m, state.phi + std::atan(y_a / state.a),
+                              Turned(state.phi, state.a, y_a));
 }
 
 StraightShaft Lever(const BeamState& state) {

@@ -9,7 +9,7 @@
 #include "estimation/three_slope_fit.h"
 #include "kinematics/plane_beam.h"
 #include "kinematics/straight.h"
-#include "reproduction/ch4_printed_jacobian.h"
+#include "reproduction/printed_jacobian.h"
 
 namespace flextip {
 namespace {

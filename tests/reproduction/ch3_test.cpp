@@ -4,12 +4,12 @@
 #include <random>
 #include <set>
 
-#include "../kinematics/printed_jacobian.h"
 #include "control/motion_error.h"
 #include "kinematics/plane_beam.h"
 #include "reproduction/ch3_noise.h"
 #include "reproduction/ch3_rod.h"
 #include "reproduction/chapter.h"
+#include "tests/kinematics/printed_jacobian.h"
 
 namespace flextip {
 namespace {

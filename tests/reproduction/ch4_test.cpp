@@ -7,7 +7,7 @@
 
 #include "reproduction/ch4_parts.h"
 #include "reproduction/ch4_press.h"
-#include "reproduction/ch4_printed_jacobian.h"
+#include "reproduction/printed_jacobian.h"
 #include "simulation/scenario.h"
 
 namespace flextip {

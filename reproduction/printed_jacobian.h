@@ -1,5 +1,5 @@
 // The Jacobian of the bent shaft as chapter 3 prints it, mistakes and all (docs/errata.md): what
-// chapter 4's flexion controller used. Private to reproduction.
+// chapters 3 and 4 used. Private to reproduction.
 #pragma once
 
 #include <Eigen/Dense>

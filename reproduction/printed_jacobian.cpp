@@ -1,4 +1,4 @@
-#include "reproduction/ch4_printed_jacobian.h"
+#include "reproduction/printed_jacobian.h"
 
 #include <cmath>
 
