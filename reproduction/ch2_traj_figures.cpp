@@ -111,6 +111,7 @@ Figure SweepFigure(const std::vector<MoveResult>& results) {
 
 std::vector<Figure> TrajectoryFigures(const std::vector<MoveResult>& results, bool quick) {
   std::vector<Figure> figures;
+  figures.reserve(5);
   for (int start = 0; start < 3; ++start) figures.push_back(PathFigure(results, start));
   if (quick) return figures;
   figures.push_back(CauseFigure(results));
