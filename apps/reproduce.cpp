@@ -1,6 +1,7 @@
 // flextip reproduce: the thesis's simulations and experiments, its numbers beside this program's.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -77,8 +78,11 @@ void RunReproduce(const Options& options, const AppContext& context) {
   nlohmann::json chapters = nlohmann::json::array();
   for (const auto& chapter : kChapters) {
     if (options.chapters != "all" && options.chapters != chapter.name) continue;
+    const auto start = std::chrono::steady_clock::now();
     ChapterResult result = RunChapter(chapter, options.work, context.quiet);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     chapters.push_back({{"chapter", chapter.name},
+                        {"seconds", seconds.count()},
                         {"numbers", result.rows.size()},
                         {"figures", result.figures.size()}});
     std::move(result.rows.begin(), result.rows.end(), std::back_inserter(all.rows));

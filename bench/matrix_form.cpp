@@ -6,10 +6,12 @@
 
 namespace flextip {
 
-Separation MeasureForm(const Recording& with, HiddenOptions options, std::uint64_t seed) {
+Separation MeasureForm(const Recording& with, int attempt, HiddenOptions options,
+                       std::uint64_t seed) {
   const Separation none{0.0, ""};
   options.effects.clear();
   const HiddenRecording without = MakeHidden(options, seed);
+  if (without.attempt != attempt) return none;
   const SampleSet samples = MakeSampleSet(without.recording, "without");
   const SampleSet changed = MakeSampleSet(with, "with");
   if (samples.samples.size() != changed.samples.size()) return none;

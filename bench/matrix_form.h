@@ -7,9 +7,11 @@
 
 namespace flextip {
 
-/// `with` is the recording made with `options` and `seed`. Its signal is what changes when the same
-/// is made without the effects named there: same scene, tolerances and noise. The rival's name is
-/// empty where that cannot be had (another draw, no equilibrium, other readings left out).
-Separation MeasureForm(const Recording& with, HiddenOptions options, std::uint64_t seed);
+/// `with` is the recording made with `options` and `seed` at the draw `attempt`. Its signal is what
+/// changes when the same is made without the effects named there: same scene, tolerances and noise.
+/// The rival's name is empty where that cannot be had (another draw, no equilibrium, other readings
+/// left out).
+Separation MeasureForm(const Recording& with, int attempt, HiddenOptions options,
+                       std::uint64_t seed);
 
 }  // namespace flextip

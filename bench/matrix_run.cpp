@@ -152,7 +152,8 @@ MatrixRecord RunMatrixCase(const MatrixCase& one) {
       truth.emplace(recording, hidden);
       SetSeparation(*truth, record);
     } else if (one.part == "unknown") {
-      const Separation separation = MeasureForm(recording, HiddenOptionsOf(one), one.seed);
+      const Separation separation =
+          MeasureForm(recording, hidden.attempt, HiddenOptionsOf(one), one.seed);
       record.separation = separation.value;
       record.rival = separation.rival;
     }

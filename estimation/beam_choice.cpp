@@ -30,14 +30,8 @@ BeamFit FromSlopes(const Measurements& z, double length_m) {
 }
 
 BeamFit FromMoments(const Measurements& z, const Instrument& instrument) {
-  MomentPair pair;
-  pair.m1_Nm = MomentInR(*z.R_RW, z.strain->moments_Nm[0], z.strain->moments_Nm[1]);
-  pair.m2_Nm = MomentInR(*z.R_RW, z.strain->moments_Nm[2], z.strain->moments_Nm[3]);
-  pair.station1_m = z.strain->station_from_wrist_m[0];
-  pair.station2_m = z.strain->station_from_wrist_m[1];
-  pair.noise_Nm = z.strain->moment_noise_Nm;
-  return FitFromMoments(z.p_RW, z.tip->p_RE, pair, instrument.bending_stiffness_Nm2,
-                        instrument.length_m);
+  return FitFromMoments(z.p_RW, z.tip->p_RE, MomentsInR(*z.strain, *z.R_RW),
+                        instrument.bending_stiffness_Nm2, instrument.length_m);
 }
 
 /// Near-straight shafts and biased tips make the closed forms put the port anywhere. Unlike the

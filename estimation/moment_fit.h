@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 
+#include "estimation/measurements.h"
 #include "estimation/slope_fit.h"
 #include "kinematics/beam.h"
 
@@ -22,6 +23,13 @@ struct MomentPair {
 /// turns the section about the moment's own axis.
 inline Eigen::Vector3d MomentInR(const Eigen::Matrix3d& R_RW, double m_y, double m_z) noexcept {
   return R_RW.col(1) * m_y + R_RW.col(2) * m_z;
+}
+
+/// The gages' moments in R, as MomentInR has them.
+inline MomentPair MomentsInR(const StrainMeasurement& strain, const Eigen::Matrix3d& R_RW) {
+  const Eigen::Vector4d& m = strain.moments_Nm;
+  return {MomentInR(R_RW, m[0], m[1]), MomentInR(R_RW, m[2], m[3]), strain.station_from_wrist_m[0],
+          strain.station_from_wrist_m[1], strain.moment_noise_Nm};
 }
 
 /// The beam with its chord from `p_RW` to `p_RE` (m, in R). The moments' parts along the chord are

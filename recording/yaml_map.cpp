@@ -123,6 +123,14 @@ double YamlMap::NonNegative(const std::string& key) const {
   return value;
 }
 
+double YamlMap::NumberOr(const std::string& key, double fallback) const {
+  return Has(key) ? Number(key) : fallback;
+}
+
+double YamlMap::PositiveOr(const std::string& key, double fallback) const {
+  return Has(key) ? Positive(key) : fallback;
+}
+
 double YamlMap::NonNegativeOr(const std::string& key, double fallback) const {
   return Has(key) ? NonNegative(key) : fallback;
 }

@@ -29,6 +29,8 @@ class YamlMap {
   double Number(const std::string& key) const;       ///< finite
   double Positive(const std::string& key) const;     ///< finite, > 0
   double NonNegative(const std::string& key) const;  ///< finite, >= 0
+  double NumberOr(const std::string& key, double fallback) const;
+  double PositiveOr(const std::string& key, double fallback) const;
   double NonNegativeOr(const std::string& key, double fallback) const;
   std::int64_t Integer(const std::string& key) const;
 

@@ -19,15 +19,9 @@ constexpr double kMaxStep_m = 0.05;
 BeamFit FitBeam(const Measurements& z, const Ch4Setup& setup) {
   const Eigen::Vector3d p_RE = z.em->T_RS.p;
   const double length = setup.instrument.length_m;
-  if (z.strain) {
-    MomentPair pair;
-    pair.m1_Nm = MomentInR(*z.R_RW, z.strain->moments_Nm[0], z.strain->moments_Nm[1]);
-    pair.m2_Nm = MomentInR(*z.R_RW, z.strain->moments_Nm[2], z.strain->moments_Nm[3]);
-    pair.station1_m = z.strain->station_from_wrist_m[0];
-    pair.station2_m = z.strain->station_from_wrist_m[1];
-    pair.noise_Nm = z.strain->moment_noise_Nm;
-    return FitFromMoments(z.p_RW, p_RE, pair, setup.instrument.bending_stiffness_Nm2, length);
-  }
+  if (z.strain)
+    return FitFromMoments(z.p_RW, p_RE, MomentsInR(*z.strain, *z.R_RW),
+                          setup.instrument.bending_stiffness_Nm2, length);
   SlopeNoise noise;
   noise.wrist_rad = z.wrist_orientation_noise_rad;
   noise.port_rad = z.port_direction_noise_rad;

@@ -12,12 +12,6 @@
 namespace flextip {
 namespace {
 
-double NumberOr(const YamlMap& map, const std::string& key, double fallback) {
-  return map.Has(key) ? map.Number(key) : fallback;
-}
-double PositiveOr(const YamlMap& map, const std::string& key, double fallback) {
-  return map.Has(key) ? map.Positive(key) : fallback;
-}
 Eigen::Vector3d VectorOr(const YamlMap& map, const std::string& key,
                          const Eigen::Vector3d& fallback) {
   return map.Has(key) ? map.Vector3(key) : fallback;
@@ -59,19 +53,19 @@ class ScenarioReader {
     instrument.mass_per_length_kg_m = map.NonNegativeOr("mass_per_length_kg_m", 0.0);
     scenario_.loop.base.p_RP = Section(top_, "port").Vector3("position_m");
     scenario_.loop.base.gravity_m_s2 = VectorOr(top_, "gravity_m_s2", {0.0, 0.0, -9.81});
-    scenario_.loop.port_prior_m = PositiveOr(top_, "port_registration_m", 0.0003);
+    scenario_.loop.port_prior_m = top_.PositiveOr("port_registration_m", 0.0003);
 
     PlantSetup& plant = scenario_.loop.plant;
     plant.instrument = instrument;
     plant.p_RP = scenario_.loop.base.p_RP;
     plant.weight_N_m = instrument.mass_per_length_kg_m * scenario_.loop.base.gravity_m_s2;
-    plant.roll_rad = NumberOr(top_, "roll_rad", 0.0);
+    plant.roll_rad = top_.NumberOr("roll_rad", 0.0);
   }
 
   void ReadWrist() {
     const YamlMap map = Section(top_, "wrist");
     scenario_.loop.p_RW_start = map.Vector3("start_m");
-    scenario_.loop.max_wrist_speed_m_s = PositiveOr(map, "max_speed_m_s", 0.2);
+    scenario_.loop.max_wrist_speed_m_s = map.PositiveOr("max_speed_m_s", 0.2);
   }
 
   void ReadLoad() {
@@ -87,7 +81,7 @@ class ScenarioReader {
     t.stiffness_N_m = tissue.NonNegative("stiffness_N_m");
     t.tangential_stiffness_N_m = tissue.NonNegativeOr("tangential_stiffness_N_m", 0.0);
     t.p_anchor = VectorOr(tissue, "anchor_m", t.p_surface);
-    t.onset_m = PositiveOr(tissue, "onset_m", 0.001);
+    t.onset_m = tissue.PositiveOr("onset_m", 0.001);
   }
 
   static Eigen::Vector3d Unit(const YamlMap& map, const std::string& key) {
@@ -186,7 +180,7 @@ class ScenarioReader {
 
     LaparoscopeOptions& scope = scenario_.laparoscope;
     scope.seed = static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
-    scope.exposure = PositiveOr(map, "exposure", scope.exposure);
+    scope.exposure = map.PositiveOr("exposure", scope.exposure);
     scope.blur_sigma_px = map.NonNegativeOr("blur_sigma_px", scope.blur_sigma_px);
     scope.full_well_electrons = map.NonNegativeOr("full_well_electrons", scope.full_well_electrons);
     scope.read_noise_electrons =
@@ -197,7 +191,7 @@ class ScenarioReader {
     if (map.Has("occluders")) {
       for (const YamlMap& occluder : map.Maps("occluders")) ReadOccluder(occluder);
     }
-    scenario_.tracker.detector.quad_decimate = PositiveOr(map, "quad_decimate", 1.0);
+    scenario_.tracker.detector.quad_decimate = map.PositiveOr("quad_decimate", 1.0);
   }
 
   void ReadOccluder(const YamlMap& map) {
@@ -272,10 +266,10 @@ class ScenarioReader {
       path.waypoints_m.push_back(waypoint.Vector3("to_m"));
     }
     if (path.waypoints_m.empty()) throw map.Error("waypoints", "found none, expected at least one");
-    path.speed_m_s = PositiveOr(map, "speed_m_s", path.speed_m_s);
+    path.speed_m_s = map.PositiveOr("speed_m_s", path.speed_m_s);
     path.settle_s = map.NonNegativeOr("settle_s", path.settle_s);
-    path.step_m = PositiveOr(map, "step_m", path.step_m);
-    path.reached_m = PositiveOr(map, "reached_m", path.reached_m);
+    path.step_m = map.PositiveOr("step_m", path.step_m);
+    path.reached_m = map.PositiveOr("reached_m", path.reached_m);
   }
 
   void ReadControllers() {
@@ -291,9 +285,9 @@ class ScenarioReader {
     ControllerOptions& options = scenario_.loop.controller;
     if (!top_.Has("control")) return;
     const YamlMap map = Section(top_, "control");
-    options.gain = PositiveOr(map, "gain", options.gain);
-    options.max_step_m = PositiveOr(map, "max_step_m", options.max_step_m);
-    options.min_singular_value = PositiveOr(map, "min_singular_value", options.min_singular_value);
+    options.gain = map.PositiveOr("gain", options.gain);
+    options.max_step_m = map.PositiveOr("max_step_m", options.max_step_m);
+    options.min_singular_value = map.PositiveOr("min_singular_value", options.min_singular_value);
     const std::string law = map.TextOr("beam_load_law", "tip_force");
     if (law != "tip_force" && law != "port_force") {
       throw map.Error("beam_load_law",

@@ -11,13 +11,6 @@
 namespace flextip {
 namespace {
 
-double PositiveOr(const YamlMap& map, const std::string& key, double fallback) {
-  return map.Has(key) ? map.Positive(key) : fallback;
-}
-double NumberOr(const YamlMap& map, const std::string& key, double fallback) {
-  return map.Has(key) ? map.Number(key) : fallback;
-}
-
 /// Index of `found` among the names.
 template <class Names>
 std::size_t OneOf(const YamlMap& map, const std::string& key, const Names& names,
@@ -44,7 +37,7 @@ class Reader {
     ReadInstrument();
     ReadErrors();
     ReadForce();
-    scenario_.setup.gain = PositiveOr(top_, "gain", 1.0);
+    scenario_.setup.gain = top_.PositiveOr("gain", 1.0);
     ReadGrid();
     if (top_.Has("tolerance")) ReadTolerance();
     if (top_.Has("plan")) ReadPlan();
@@ -98,7 +91,7 @@ class Reader {
     ReadLimit(map, "sum_rad", limits.sum_min, limits.sum_max);
     if constexpr (N == 3) {
       double& base = scenario_.setup.truth.arm.base_max_rad;
-      base = PositiveOr(map, "base_max_rad", base);
+      base = map.PositiveOr("base_max_rad", base);
     }
   }
 
@@ -118,7 +111,7 @@ class Reader {
       const auto joints = map.Numbers("joints_rad", N);
       error.joints_rad = VectorN<N>::Map(joints.data());
     }
-    error.shaft_m = NumberOr(map, "shaft_m", 0.0);
+    error.shaft_m = map.NumberOr("shaft_m", 0.0);
     return error;
   }
 
@@ -154,7 +147,7 @@ class Reader {
 
   /// So that a typing error does not ask for a billion points.
   double Spacing(const YamlMap& map, double fallback) const {
-    const double spacing = PositiveOr(map, "spacing_m", fallback);
+    const double spacing = map.PositiveOr("spacing_m", fallback);
     const double least = scenario_.setup.truth.shaft_m / 400.0;
     if (spacing < least)
       throw map.Error("spacing_m", fmt::format("found {}, expected at least {:.3g} (the shaft's "
@@ -170,7 +163,7 @@ class Reader {
       constexpr const char* kPlanes[] = {"zy", "zx", "xy"};
       constexpr int kRight[] = {2, 2, 0}, kUp[] = {1, 0, 1};
       const std::size_t plane = OneOf(map, "plane", kPlanes, "");
-      const double offset = NumberOr(map, "offset_m", 0.0);
+      const double offset = map.NumberOr("offset_m", 0.0);
       scenario_.slices.emplace_back(
           fmt::format("{} at {:.4g} mm", kPlanes[plane], 1000.0 * offset),
           Slice<N>{.right = kRight[plane], .up = kUp[plane], .offset_m = offset});
@@ -219,8 +212,8 @@ class Reader {
     task.options.fault = MotionFault(OneOf(map, "error", kFaults, "stray"));
     task.options.weight = map.NonNegativeOr("weight", 10.0);
     task.options.spacing_m = Spacing(map, std::max(0.005, scenario_.spacing_m));
-    task.follow.move_m = PositiveOr(map, "move_m", task.follow.move_m);
-    task.follow.gain = PositiveOr(map, "gain", task.follow.gain);
+    task.follow.move_m = map.PositiveOr("move_m", task.follow.move_m);
+    task.follow.gain = map.PositiveOr("gain", task.follow.gain);
     scenario_.plan = task;
   }
 

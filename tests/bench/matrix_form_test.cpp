@@ -11,7 +11,8 @@ Separation OfTaper(LoadKind load) {
   options.scene.duration_s = 4.0;
   options.scene.load = load;
   options.scene.motion = MotionKind::kSines;
-  return MeasureForm(MakeHidden(options, 5).recording, options, 5);
+  const HiddenRecording hidden = MakeHidden(options, 5);
+  return MeasureForm(hidden.recording, hidden.attempt, options, 5);
 }
 
 TEST(MatrixForm, ATaperShowsUnderALoadOnly) {
@@ -24,9 +25,20 @@ TEST(MatrixForm, ATaperShowsUnderALoadOnly) {
 TEST(MatrixForm, NothingChangedIsNothingToTell) {
   HiddenOptions options;
   options.scene.duration_s = 4.0;
-  const Separation same = MeasureForm(MakeHidden(options, 6).recording, options, 6);
+  const HiddenRecording hidden = MakeHidden(options, 6);
+  const Separation same = MeasureForm(hidden.recording, hidden.attempt, options, 6);
   EXPECT_EQ(same.value, 0.0);
   EXPECT_EQ(same.rival, "none");
+}
+
+TEST(MatrixForm, AnotherDrawIsNotCompared) {
+  HiddenOptions options{.effects = {"taper"}};
+  options.scene.duration_s = 4.0;
+  options.scene.load = LoadKind::kVarying;
+  options.scene.motion = MotionKind::kSines;
+  const HiddenRecording hidden = MakeHidden(options, 5);
+  EXPECT_NE(MeasureForm(hidden.recording, hidden.attempt, options, 5).rival, "");
+  EXPECT_EQ(MeasureForm(hidden.recording, hidden.attempt + 1, options, 5).rival, "");
 }
 
 }  // namespace
