@@ -1,0 +1,123 @@
+// A tag's cells seen through a Gaussian blur: how white a point is, with derivatives.
+#pragma once
+
+#include <vector>
+
+#include "vision/normal_table.h"
+#include "vision/tag_cells.h"
+
+namespace flextip {
+
+/// The Gaussian's spread on the tag, in cells, and the correlation of its two axes.
+struct PatternBlur {
+  float sigma_u = 0.2f, sigma_v = 0.2f, rho = 0.0f;
+  float inverse_u = 5.0f, inverse_v = 5.0f;  ///< 1 / sigma
+
+  PatternBlur() = default;
+  PatternBlur(double su, double sv, double correlation)
+      : sigma_u(static_cast<float>(su)),
+        sigma_v(static_cast<float>(sv)),
+        rho(static_cast<float>(correlation)),
+        inverse_u(static_cast<float>(1 / su)),
+        inverse_v(static_cast<float>(1 / sv)) {}
+};
+
+/// The blurred pattern at a point: whiteness 0 to 1 and its derivatives by u and v.
+struct PatternValue {
+  float c, c_u, c_v, c_uu, c_uv, c_vv;
+  bool flat;  ///< no edge within reach: the derivatives are zero
+};
+
+/// The mean of the pattern under a bivariate normal distribution, exact but for the tails beyond
+/// 3.5 sigma and the correlation, which enters by the tetrachoric series to its third power (right
+/// to 0.002 for |rho| < 0.6); derivatives leave the correlation out.
+class BlurredPattern {
+ public:
+  explicit BlurredPattern(const TagCells& tag);
+
+  int Cells() const { return cells_; }
+
+  /// At (u, v) in cells from the top left corner of the pattern.
+  PatternValue At(float u, float v, const PatternBlur& blur) const {
+    const Near near_u(u, blur.sigma_u, blur.inverse_u), near_v(v, blur.sigma_v, blur.inverse_v);
+    const bool inside = u > -3 && v > -3 && u < last_ && v < last_;
+    return inside && near_u.lines <= 1 && near_v.lines <= 1 ? AtOneCrossing(near_u, near_v, blur)
+                                                            : AtMany(u, v, blur);
+  }
+
+  /// False where an unknown cell lies within `reach_u`, `reach_v` cells of the point.
+  bool Known(float u, float v, float reach_u, float reach_v) const;
+
+ private:
+  struct Lines;
+  static constexpr int kPad = 8;  // cells around the pattern, as their nearest known ones
+
+  // The lines between cells within reach of a place along one axis.
+  struct Near {
+    int first, lines;
+    float x;  // the first line's distance in sigmas
+    Near(float at, float sigma, float inverse) {
+      const float reach = NormalTable::kReach * sigma;
+      first = static_cast<int>(at - reach + 2 * kPad) + 1 - 2 * kPad;  // rounds down and adds one
+      lines = static_cast<int>(at + reach + 2 * kPad) + 1 - 2 * kPad - first;
+      x = (static_cast<float>(first) - at) * inverse;
+    }
+  };
+  PatternValue AtOneCrossing(const Near& u, const Near& v, const PatternBlur& blur) const;
+  PatternValue AtMany(float u, float v, const PatternBlur& blur) const;
+  const float* Column(int k) const { return &white_[static_cast<std::size_t>(k + kPad) * stride_]; }
+  void AddCorrelation(const Lines& u, const Lines& v, float rho, PatternValue& value) const;
+
+  int cells_, stride_;
+  float last_;  // three cells beyond the pattern
+  std::vector<float> white_;  // columns, padded
+  std::vector<bool> known_;   // columns, padded
+  const NormalTable* normal_ = &NormalTable::Get();
+};
+
+// With at most one line each way there are four cells at most.
+inline PatternValue BlurredPattern::AtOneCrossing(const Near& u, const Near& v,
+                                                  const PatternBlur& blur) const {
+  const float* before = Column(u.first - 1) + v.first - 1 + kPad;
+  PatternValue value{before[0], 0, 0, 0, 0, 0, false};
+  if (u.lines + v.lines == 0) {
+    value.flat = true;
+    return value;
+  }
+  const float* after = before + stride_;
+  const float su = blur.inverse_u, sv = blur.inverse_v;
+  if (v.lines == 0) {
+    const NormalTable::Value n = normal_->At(u.x);
+    const float rise = after[0] - before[0];
+    value.c = after[0] - n.cdf * rise;
+    value.c_u = n.density * rise * su;
+    value.c_uu = u.x * value.c_u * su;
+    return value;
+  }
+  if (u.lines == 0) {
+    const NormalTable::Value n = normal_->At(v.x);
+    const float rise = before[1] - before[0];
+    value.c = before[1] - n.cdf * rise;
+    value.c_v = n.density * rise * sv;
+    value.c_vv = v.x * value.c_v * sv;
+    return value;
+  }
+  const NormalTable::Value nu = normal_->At(u.x), nv = normal_->At(v.x);
+  const float rise0 = after[0] - before[0], rise1 = after[1] - before[1];
+  const float left = before[1] + nv.cdf * (before[0] - before[1]);
+  const float rise = rise1 + nv.cdf * (rise0 - rise1), corner = rise1 - rise0;
+  value.c = left + (1 - nu.cdf) * rise;
+  value.c_u = nu.density * rise * su;
+  value.c_uu = u.x * value.c_u * su;
+  value.c_v = nv.density * sv * (before[1] - before[0] + (1 - nu.cdf) * corner);
+  value.c_vv = v.x * value.c_v * sv;
+  const float density = corner * nu.density * nv.density;
+  const float xy = u.x * v.x;
+  value.c += density * blur.rho *
+             (1 + 0.5f * blur.rho *
+                      (xy + blur.rho * (u.x * u.x - 1) * (v.x * v.x - 1) * (1.0f / 3)));
+  value.c_uv = density * su * sv;
+  return value;
+}
+
+}  // namespace flextip

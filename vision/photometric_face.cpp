@@ -1,0 +1,253 @@
+#include "vision/photometric_face.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flextip {
+namespace {
+
+constexpr double kMinCosine = 0.105;        // of the angle between normal and view: 84 degrees
+constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
+constexpr float kReachOfUnknown = 2.0f;     // sigmas kept from what is not known
+constexpr float kFlatPart = 0.004f;         // whiteness nearer to 0 or 1 than this says nothing
+constexpr int kFlatEvery = 7;               // of flat pixels so many are left out for one taken
+constexpr double kHiddenRim_cells = 0.5;    // of a tag's rim that a neighbour may hide
+constexpr int kBlock = 64;
+
+// Rec. 601, as ToGrey.
+float GreyAt(const Image& image, int x, int y) {
+  const std::uint8_t* at = image.Row(y) + static_cast<std::ptrdiff_t>(x) * image.channels;
+  if (image.channels == 1) return at[0];
+  return 0.114f * at[0] + 0.587f * at[1] + 0.299f * at[2];
+}
+
+}  // namespace
+
+// Rays to the tag's cells: (a, b, 1/z) = to_tag (mx, my, 1), u = a z, v = b z.
+struct PhotometricFace::Geometry {
+  Eigen::Matrix3f to_tag;
+  Eigen::Matrix2f uv_of_px;  // derivative at the tag's centre
+  Eigen::Vector3f normal;    // into the tag
+  PatternBlur blur;
+  bool valid = false;
+
+  struct Place {
+    float u, v, z;
+  };
+  Place At(float mx, float my) const {
+    const float w = to_tag(2, 0) * mx + to_tag(2, 1) * my + to_tag(2, 2);
+    const float z = 1 / w;
+    return {(to_tag(0, 0) * mx + to_tag(0, 1) * my + to_tag(0, 2)) * z,
+            (to_tag(1, 0) * mx + to_tag(1, 1) * my + to_tag(1, 2)) * z, z};
+  }
+};
+
+PhotometricFace::PhotometricFace(const CollarTag& tag, const TagCells& cells,
+                                 const std::array<Side, 4>& sides)
+    : tag_(tag), pattern_(cells), cell_m_(tag.size_m / cells.border_cells), sides_(sides) {}
+
+double PhotometricFace::Cosine(const Pose& T_CE) const {
+  const Pose T_CG = T_CE * tag_.T_EG;
+  return T_CG.R.col(2).dot(T_CG.p) / T_CG.p.norm();
+}
+
+// In cells from the top left corner: u low, u high, v low, v high. A neighbour that is turned more
+// toward the camera may hide this tag's rim: its plate need not end where the planes meet.
+Eigen::Vector4f PhotometricFace::Limits(const Pose& T_CE) const {
+  Eigen::Vector4f limits;
+  const double half = 0.5 * pattern_.Cells(), border = 0.5 * tag_.size_m / cell_m_;
+  for (int i = 0; i < 4; ++i) {
+    double reach = sides_[i].reach_m / cell_m_;
+    if (sides_[i].neighbour_T_EG) {
+      const Pose T_CN = T_CE * *sides_[i].neighbour_T_EG;
+      if (T_CN.R.col(2).dot(T_CN.p) / T_CN.p.norm() > Cosine(T_CE)) {
+        reach = std::min(reach, border - kHiddenRim_cells);
+      }
+    }
+    limits[i] = static_cast<float>(half + (i % 2 == 0 ? -reach : reach));
+  }
+  return limits;
+}
+
+PhotometricFace::Geometry PhotometricFace::Place(const CameraModel& camera, const Pose& T_CE,
+                                                 const Optics& optics) const {
+  Geometry g;
+  Pose T_CG = T_CE * tag_.T_EG;
+  T_CG.p -= optics.print_offset_m * T_CG.R.col(2);
+  Eigen::Matrix<double, 2, 3> J;
+  if (!camera.Project(T_CG.p, &J)) return g;
+  const double half = 0.5 * pattern_.Cells();
+  Eigen::Matrix3d from_tag;
+  from_tag << cell_m_ * T_CG.R.col(0), cell_m_ * T_CG.R.col(1),
+      T_CG.p - half * cell_m_ * (T_CG.R.col(0) + T_CG.R.col(1));
+  const Eigen::Matrix3d to_tag = from_tag.inverse();
+  if (!to_tag.allFinite()) return g;
+  g.to_tag = to_tag.cast<float>();
+  const double z = T_CG.p.z();
+  Eigen::Matrix2d uv_of_m = z * (to_tag.topLeftCorner<2, 2>() -
+                                 Eigen::Vector2d(half, half) * to_tag.bottomLeftCorner<1, 2>());
+  const Eigen::Matrix2d uv_of_px = uv_of_m * (z * J.leftCols<2>()).inverse();
+  Eigen::Matrix2d spread_px;
+  spread_px << optics.blur_px2[0] + kPixelVariance, optics.blur_px2[1], optics.blur_px2[1],
+      optics.blur_px2[2] + kPixelVariance;
+  const Eigen::Matrix2d spread = uv_of_px * spread_px * uv_of_px.transpose();
+  const double su = std::sqrt(spread(0, 0)), sv = std::sqrt(spread(1, 1));
+  g.normal = T_CG.R.col(2).cast<float>();
+  g.uv_of_px = uv_of_px.cast<float>();
+  g.blur = {su, sv, std::clamp(spread(0, 1) / (su * sv), -0.75, 0.75)};
+  g.valid = std::isfinite(su) && std::isfinite(sv) && su < 1.6 && sv < 1.6;
+  return g;
+}
+
+bool PhotometricFace::IsSeen(const CameraModel& camera, const Pose& T_CE) const {
+  if (Cosine(T_CE) < kMinCosine) return false;
+  const auto px = camera.Project(T_CE * tag_.T_EG.p);
+  const CameraCalibration& c = camera.Calibration();
+  return px && px->x() > 0 && px->y() > 0 && px->x() < c.width_px - 1 && px->y() < c.height_px - 1;
+}
+
+void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& lens,
+                                   const Image& image, const Pose& T_CE, const Optics& optics,
+                                   int stride) {
+  pixels_.clear();
+  const Geometry g = Place(camera, T_CE, optics);
+  if (!g.valid) return;
+  const Pose T_CG = T_CE * tag_.T_EG;
+  const double reach = 0.5 * cell_m_ * pattern_.Cells();
+  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  for (const auto& [x, y] : {std::pair{-1, -1}, std::pair{1, -1}, std::pair{1, 1}, std::pair{-1, 1}}) {
+    const auto px = camera.Project(T_CG * Eigen::Vector3d(x * reach, y * reach, 0));
+    if (!px) return;
+    low = low.cwiseMin(*px);
+    high = high.cwiseMax(*px);
+  }
+  const int x0 = std::max(0, static_cast<int>(low.x())), y0 = std::max(0, static_cast<int>(low.y()));
+  const int x1 = std::min(lens.WidthPx() - 1, static_cast<int>(high.x()) + 1);
+  const int y1 = std::min(lens.HeightPx() - 1, static_cast<int>(high.y()) + 1);
+  const float reach_u = kReachOfUnknown * g.blur.sigma_u, reach_v = kReachOfUnknown * g.blur.sigma_v;
+  const Eigen::Vector4f limits =
+      Limits(T_CE) + Eigen::Vector4f(reach_u, -reach_u, reach_v, -reach_v);
+  int flat = 0;
+  for (int y = y0; y <= y1; y += stride) {
+    for (int x = x0 + (y / stride) % stride; x <= x1; x += stride) {
+      const LensMap::Ray& ray = lens.At(x, y);
+      const auto at = g.At(ray.x, ray.y);
+      const bool within = at.u > limits[0] && at.u < limits[1] && at.v > limits[2] && at.v < limits[3];
+      if (!within || !pattern_.Known(at.u, at.v, reach_u, reach_v)) continue;
+      const PatternValue value = pattern_.At(at.u, at.v, g.blur);
+      const float part = std::min(value.c, 1 - value.c);
+      if ((value.flat || part < kFlatPart) && flat++ % kFlatEvery != 0) continue;
+      pixels_.push_back({ray.x, ray.y, GreyAt(image, x, y)});
+    }
+  }
+}
+
+bool PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE,
+                                  const Optics& optics, const ToneCurve& tone) {
+  const Geometry g = Place(camera, T_CE, optics);
+  if (!g.valid) return false;
+  double sum[2] = {0, 0}, count[2] = {0, 0};
+  for (const Pixel& pixel : pixels_) {
+    const auto at = g.At(pixel.mx, pixel.my);
+    const float c = pattern_.At(at.u, at.v, g.blur).c;
+    if (c > 0.2f && c < 0.8f) continue;
+    sum[c > 0.5f] += pixel.grey;
+    count[c > 0.5f] += 1;
+  }
+  if (count[0] < 5 || count[1] < 5) return false;
+  const double black = sum[0] / count[0], white = sum[1] / count[1];
+  levels << tone.Light(black), 0, 0, tone.Light(white), 0, 0;
+  return white > black + 4;
+}
+
+void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
+                                 const Eigen::Vector3d& pivot_C, const Optics& optics,
+                                 const ToneCurve& tone, const RobustRule& rule,
+                                 FaceSums& sums) const {
+  using Row = Eigen::Matrix<float, FaceSums::kSize, 1>;
+  const Geometry g = Place(camera, T_CE, optics);
+  if (!g.valid) return;
+  const Eigen::Matrix<float, 6, 1> level = levels.cast<float>();
+  const Eigen::Vector3f pivot = pivot_C.cast<float>();
+  const Eigen::Matrix2f& B = g.uv_of_px;
+  const float half = 0.5f * static_cast<float>(pattern_.Cells());
+  const auto scale = static_cast<float>(rule.scale_grey), cut = static_cast<float>(rule.cut) * scale;
+  const float inverse_cut2 = 1 / (cut * cut);
+  Eigen::Matrix<float, FaceSums::kSize, kBlock> rows;
+  int filled = 0;
+  double n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
+  const auto flush = [&] {
+    const auto used = rows.leftCols(filled);
+    const Eigen::Matrix<float, FaceSums::kSize, FaceSums::kSize> part = used * used.transpose();
+    sums.A += part.cast<double>();
+    filled = 0;
+  };
+  for (const Pixel& pixel : pixels_) {
+    const auto at = g.At(pixel.mx, pixel.my);
+    const PatternValue p = pattern_.At(at.u, at.v, g.blur);
+    const float fu = at.u / half - 1, fv = at.v / half - 1;
+    const float black = level[0] + level[1] * fu + level[2] * fv;
+    const float white = level[3] + level[4] * fu + level[5] * fv;
+    const ToneCurve::Value film = tone.At(black + p.c * (white - black));
+    const float r = pixel.grey - film.grey, size = std::abs(r);
+    ++sums.errors[std::min(static_cast<int>(size * FaceSums::kBinsPerGrey), FaceSums::kBins - 1)];
+    float weight;
+    if (rule.redescending) {
+      const float t = 1 - r * r * inverse_cut2;
+      weight = size < cut ? t * t : 0.0f;
+      sums.robust_cost += size < cut ? cut * cut / 6 * (1 - t * t * t) * 2 : cut * cut / 3;
+    } else {
+      weight = size < scale ? 1.0f : scale / size;
+      sums.robust_cost += size < scale ? r * r : scale * (2 * size - scale);
+    }
+    sums.weight += weight;
+    n += weight, sx += weight * film.grey, sy += weight * pixel.grey;
+    sxx += weight * film.grey * film.grey, syy += weight * pixel.grey * pixel.grey;
+    sxy += weight * film.grey * pixel.grey;
+    if (weight == 0) continue;
+    const float root = std::sqrt(weight);
+    const float by_light = root * film.by_light;
+    Row row;
+    row[11] = by_light * (1 - p.c), row[12] = row[11] * fu, row[13] = row[11] * fv;
+    row[14] = by_light * p.c, row[15] = row[14] * fu, row[16] = row[14] * fv;
+    row[9] = root * film.by_gamma;
+    row[10] = 0;
+    row[17] = root * r;
+    if (p.flat) {
+      row.head<9>().setZero();
+    } else {
+      const float by_c = by_light * (white - black);
+      // By the place on the tag, by the ray, and by the point that moves with the tag.
+      const float z = at.z;
+      const float u_x = g.to_tag(0, 0) - at.u * g.to_tag(2, 0);
+      const float u_y = g.to_tag(0, 1) - at.u * g.to_tag(2, 1);
+      const float v_x = g.to_tag(1, 0) - at.v * g.to_tag(2, 0);
+      const float v_y = g.to_tag(1, 1) - at.v * g.to_tag(2, 1);
+      const float gx = (p.c_u * u_x + p.c_v * v_x) * by_c, gy = (p.c_u * u_y + p.c_v * v_y) * by_c;
+      const Eigen::Vector3f h(-gx, -gy, gx * pixel.mx + gy * pixel.my);
+      const Eigen::Vector3f q = Eigen::Vector3f(pixel.mx * z, pixel.my * z, z) - pivot;
+      row.segment<3>(0) = q.cross(h);
+      row.segment<3>(3) = h;
+      row[10] = -h.dot(g.normal);
+      // Spreading is diffusion: the derivative by a variance is half the second derivative.
+      const float xx = B(0, 0) * B(0, 0) * p.c_uu + 2 * B(0, 0) * B(1, 0) * p.c_uv +
+                       B(1, 0) * B(1, 0) * p.c_vv;
+      const float yy = B(0, 1) * B(0, 1) * p.c_uu + 2 * B(0, 1) * B(1, 1) * p.c_uv +
+                       B(1, 1) * B(1, 1) * p.c_vv;
+      const float xy = B(0, 0) * B(0, 1) * p.c_uu +
+                       (B(0, 0) * B(1, 1) + B(1, 0) * B(0, 1)) * p.c_uv +
+                       B(1, 0) * B(1, 1) * p.c_vv;
+      row[6] = 0.5f * by_c * xx, row[7] = by_c * xy, row[8] = 0.5f * by_c * yy;
+    }
+    rows.col(filled++) = row;
+    if (filled == kBlock) flush();
+  }
+  if (filled > 0) flush();
+  sums.pixels += Pixels();
+  if (n > 0) {
+    const double vx = sxx - sx * sx / n, vy = syy - sy * sy / n;
+    sums.correlation = vx > 0 && vy > 0 ? (sxy - sx * sy / n) / std::sqrt(vx * vy) : 0.0;
+  }
+}
+
+}  // namespace flextip

@@ -1,0 +1,104 @@
+// One tag of the collar against the pixels it covers.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/image.h"
+#include "core/pose.h"
+#include "core/tag_collar.h"
+#include "vision/blurred_pattern.h"
+#include "vision/camera_model.h"
+#include "vision/lens_map.h"
+#include "vision/tone_curve.h"
+
+namespace flextip {
+
+/// What the lens, the film and the print do to a whole picture.
+struct Optics {
+  /// Covariance xx, xy, yy (px^2) of the blur without a pixel's own extent: defocus and motion.
+  Eigen::Vector3d blur_px2{0.6, 0.0, 0.6};
+  double gamma = 2.2;
+  /// How far all tags lie off their stated places along their normals, outward: print and glue.
+  double print_offset_m = 0.0;
+};
+
+/// A face's light: black and white, each level + slope times the place on the tag (-1..1).
+using FaceLevels = Eigen::Matrix<double, 6, 1>;  // black, black_u, black_v, white, white_u, white_v
+
+/// How a face's pixels are counted: beyond `cut` times `scale_grey` a residual counts nothing
+/// (Tukey's biweight), or, where not `redescending`, ever less (Huber).
+struct RobustRule {
+  double scale_grey = 20.0;
+  double cut = 4.7;
+  bool redescending = false;
+};
+
+/// Sums over a face's pixels, in grey values. Parameters: pose (dw, dc) about a pivot in C, blur,
+/// gamma, print offset, levels; the last row and column are the residuals'.
+struct FaceSums {
+  static constexpr int kBlur = 6, kGamma = 9, kOffset = 10, kLevels = 11, kResidual = 17;
+  static constexpr int kSize = 18;
+  Eigen::Matrix<double, kSize, kSize> A = Eigen::Matrix<double, kSize, kSize>::Zero();
+  int pixels = 0;
+  double weight = 0;          ///< sum of the weights
+  double robust_cost = 0;     ///< sum of the rule's cost
+  double correlation = 0;     ///< of measured and predicted grey values, weighted
+  static constexpr int kBinsPerGrey = 8, kBins = 256;
+  std::array<int, kBins> errors{};  ///< how many |measured - predicted| fall into each bin
+};
+
+class PhotometricFace {
+ public:
+  /// What borders on the tag toward -x, +x, -y and +y of G.
+  struct Side {
+    double reach_m = 0;  ///< how far from the centre the tag's surroundings go on
+    std::optional<Pose> neighbour_T_EG;  ///< the tag that meets this one's plane there
+  };
+  PhotometricFace(const CollarTag& tag, const TagCells& cells, const std::array<Side, 4>& sides);
+
+  const CollarTag& Tag() const { return tag_; }
+
+  /// Whether the face looks to the camera at T_CE, less aslant than 84 degrees, and lies in the
+  /// picture at least in part.
+  bool IsSeen(const CameraModel& camera, const Pose& T_CE) const;
+  /// Cosine of the angle between the face's normal and the line of sight.
+  double Cosine(const Pose& T_CE) const;
+
+  /// Takes the pixels near the tag's edges, and a few others, at T_CE; every `stride`-th in both
+  /// directions.
+  void SelectPixels(const CameraModel& camera, const LensMap& lens, const Image& image,
+                    const Pose& T_CE, const Optics& optics, int stride);
+  int Pixels() const { return static_cast<int>(pixels_.size()); }
+
+  /// The levels that the pixels show at T_CE, without slopes; false where the tag has no contrast
+  /// there.
+  bool GuessLevels(const CameraModel& camera, const Pose& T_CE, const Optics& optics,
+                   const ToneCurve& tone);
+
+  /// `pivot_C`: the point about which the pose turns.
+  void Accumulate(const CameraModel& camera, const Pose& T_CE, const Eigen::Vector3d& pivot_C,
+                  const Optics& optics, const ToneCurve& tone, const RobustRule& rule,
+                  FaceSums& sums) const;
+
+  FaceLevels levels = FaceLevels::Zero();  ///< in light
+
+ private:
+  struct Pixel {
+    float mx, my, grey;
+  };
+  struct Geometry;
+  Geometry Place(const CameraModel& camera, const Pose& T_CE, const Optics& optics) const;
+
+  CollarTag tag_;
+  BlurredPattern pattern_;
+  double cell_m_;
+  Eigen::Vector4f Limits(const Pose& T_CE) const;
+
+  std::array<Side, 4> sides_;
+  std::vector<Pixel> pixels_;
+};
+
+}  // namespace flextip

@@ -1,0 +1,224 @@
+#include "vision/photometric_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "vision/reprojection.h"
+
+namespace flextip {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+// A stage ends with a step below so many pixels, the last with one whose square is below so
+// many of its own variances.
+constexpr double kCoarseStep_px = 0.8, kFineStep_px = 0.25;
+constexpr double kLastStep = 0.3;
+constexpr double kMaxTurn_rad = 0.2;
+constexpr double kParallel = 0.985;  // cosine of 10 degrees
+
+// Both halves of a (dw, dp) turned from C to R.
+Matrix6 Turn(const Eigen::Matrix3d& R_RC) {
+  Matrix6 Q = Matrix6::Zero();
+  Q.topLeftCorner<3, 3>() = Q.bottomRightCorner<3, 3>() = R_RC;
+  return Q;
+}
+
+struct Camera {
+  explicit Camera(const CameraCalibration& calibration)
+      : model(calibration), lens(model), T_CR(calibration.T_RC.Inverse()) {}
+  CameraModel model;
+  LensMap lens;
+  Pose T_CR;
+};
+
+}  // namespace
+
+struct PhotometricFit::Impl {
+  PhotometricOptions options;
+  std::vector<std::unique_ptr<Camera>> cameras;
+  std::vector<PhotometricView> views;
+  std::vector<bool> present;
+  std::vector<Eigen::Vector3d> points_E;  // of the collar
+
+  struct Sums {
+    Matrix6 JtJ = Matrix6::Zero();
+    Vector6 Jtr = Vector6::Zero();
+    double chi2 = 0, weight = 0;
+    int pixels = 0;
+  };
+
+  void Begin(const std::vector<const Image*>& images, const Pose& T_RE,
+             const std::vector<OpticsPrior>& priors) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      present[i] = i < images.size() && images[i] != nullptr && !images[i]->Empty();
+      if (present[i]) views[i].Begin(*images[i], cameras[i]->T_CR * T_RE, priors.at(i));
+    }
+  }
+
+  void Select(const Pose& T_RE, int pixels, double extra_blur_px2) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (present[i]) views[i].Select(cameras[i]->T_CR * T_RE, pixels, extra_blur_px2);
+    }
+  }
+
+  int Faces() const {
+    int faces = 0;
+    for (std::size_t i = 0; i < views.size(); ++i) faces += present[i] ? views[i].Faces() : 0;
+    return faces;
+  }
+
+  void DropFaces(double correlation) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (present[i]) views[i].DropFaces(correlation, options.min_contrast_grey);
+    }
+  }
+
+  Sums Linearise(const Pose& T_RE, bool redescending) {
+    Sums sums;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (!present[i] || views[i].Faces() == 0) continue;
+      const PoseTerm term = views[i].Linearise(cameras[i]->T_CR * T_RE, redescending);
+      const double variance = std::pow(std::max(views[i].NoiseGrey(), 0.5), 2);
+      const Matrix6 Q = Turn(cameras[i]->T_CR.R.transpose());
+      sums.JtJ += Q * term.JtJ * Q.transpose() / variance;
+      sums.Jtr += Q * term.Jtr / variance;
+      sums.chi2 += term.robust_cost / variance;
+      sums.weight += term.weight;
+      sums.pixels += term.pixels;
+    }
+    return sums;
+  }
+
+  void Step(const Vector6& step_R) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (!present[i] || views[i].Faces() == 0) continue;
+      views[i].Step(Turn(cameras[i]->T_CR.R).eval() * step_R);
+    }
+  }
+
+  // How far the collar moves in the pictures when E goes from one pose to the other (px).
+  double Moved_px(const Pose& from_T_RE, const Pose& to_T_RE) const {
+    double most = 0;
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+      for (const Eigen::Vector3d& x_E : points_E) {
+        const auto a = cameras[i]->model.Project(cameras[i]->T_CR * (from_T_RE * x_E));
+        const auto b = cameras[i]->model.Project(cameras[i]->T_CR * (to_T_RE * x_E));
+        if (present[i] && a && b) most = std::max(most, (*a - *b).norm());
+      }
+    }
+    return most;
+  }
+
+  // Gauss-Newton until a step is small.
+  bool Iterate(Pose& T_RE, Sums& sums, int max_iterations, double small_px, bool redescending) {
+    for (int i = 0; i < max_iterations; ++i) {
+      sums = Linearise(T_RE, redescending);
+      if (sums.pixels == 0) return false;
+      Vector6 step = sums.JtJ.ldlt().solve(sums.Jtr);
+      if (!step.allFinite()) return false;
+      const double size = step.dot(sums.JtJ * step);
+      const double turn = step.head<3>().norm();
+      if (turn > kMaxTurn_rad) step *= kMaxTurn_rad / turn;
+      const Pose moved = MovePose(T_RE, step);
+      const double moved_px = Moved_px(T_RE, moved);
+      T_RE = moved;
+      Step(step);
+      if (moved_px < small_px || (redescending && size < kLastStep)) return true;
+    }
+    return false;
+  }
+
+  bool OnePlane() const {
+    std::vector<Eigen::Vector3d> all;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (!present[i]) continue;
+      const auto normals = views[i].Normals();
+      all.insert(all.end(), normals.begin(), normals.end());
+    }
+    return std::all_of(all.begin(), all.end(),
+                       [&](const Eigen::Vector3d& n) { return n.dot(all[0]) > kParallel; });
+  }
+
+  PhotometricResult Report(const Pose& T_RE, const Sums& sums, bool converged) const;
+};
+
+PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sums,
+                                               bool converged) const {
+  PhotometricResult result;
+  result.T_RE = T_RE;
+  result.chi2 = sums.chi2;
+  result.pixels = sums.pixels;
+  result.faces = Faces();
+  result.one_plane = OnePlane();
+  result.information = sums.JtJ;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    ViewFit fit;
+    if (present[i]) fit = {views[i].SeenOptics(), views[i].NoiseGrey(), views[i].FaceFits()};
+    result.views.push_back(fit);
+  }
+  const Eigen::LDLT<Matrix6> solver(sums.JtJ);
+  const bool solvable = solver.info() == Eigen::Success && solver.isPositive();
+  if (solvable) result.covariance = solver.solve(Matrix6::Identity());
+  if (!converged || !solvable) {
+    result.status = PhotometricStatus::kNotConverged;
+  } else if (sums.weight < options.min_inliers * sums.pixels) {
+    result.status = PhotometricStatus::kPoorFit;
+  } else {
+    result.status = PhotometricStatus::kOk;
+  }
+  return result;
+}
+
+PhotometricFit::PhotometricFit(const std::vector<CameraCalibration>& cameras,
+                               const TagCollar& collar, const PhotometricOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->options = options;
+  const std::vector<PhotometricFace> faces = MakeFaces(collar);
+  for (const CameraCalibration& camera : cameras) {
+    impl_->cameras.push_back(std::make_unique<Camera>(camera));
+    impl_->views.emplace_back(impl_->cameras.back()->model, impl_->cameras.back()->lens, faces);
+  }
+  for (const CollarTag& tag : collar.tags) {
+    impl_->points_E.push_back(tag.T_EG * Eigen::Vector3d(0.5 * tag.size_m, 0.5 * tag.size_m, 0));
+    impl_->points_E.push_back(tag.T_EG * Eigen::Vector3d(-0.5 * tag.size_m, -0.5 * tag.size_m, 0));
+  }
+  impl_->present.assign(cameras.size(), false);
+}
+PhotometricFit::~PhotometricFit() = default;
+PhotometricFit::PhotometricFit(PhotometricFit&&) noexcept = default;
+PhotometricFit& PhotometricFit::operator=(PhotometricFit&&) noexcept = default;
+
+PhotometricResult PhotometricFit::Fit(const std::vector<const Image*>& images,
+                                      const Pose& start_T_RE,
+                                      const std::vector<OpticsPrior>& priors, bool coarse) {
+  Impl& f = *impl_;
+  const PhotometricOptions& o = f.options;
+  Pose T_RE = start_T_RE;
+  Impl::Sums sums;
+  f.Begin(images, T_RE, priors);
+  if (f.Faces() == 0) return {};
+  if (coarse) {
+    f.Select(T_RE, o.coarse_pixels, o.coarse_extra_blur_px2);
+    f.Iterate(T_RE, sums, o.max_coarse_iterations, kCoarseStep_px, false);
+  }
+  f.Select(T_RE, 2 * o.coarse_pixels, 0);
+  f.Iterate(T_RE, sums, o.max_coarse_iterations, kFineStep_px, true);
+  f.DropFaces(0.6 * o.min_correlation);
+  if (f.Faces() == 0) return {};
+  f.Select(T_RE, 0, 0);
+  bool converged = f.Iterate(T_RE, sums, o.max_iterations, 0, true);
+  const int faces = f.Faces();
+  f.DropFaces(o.min_correlation);
+  if (f.Faces() == 0) {
+    PhotometricResult poor;
+    poor.status = PhotometricStatus::kPoorFit;
+    return poor;
+  }
+  if (f.Faces() < faces) converged = f.Iterate(T_RE, sums, o.max_iterations, 0, true);
+  return f.Report(T_RE, sums, converged);
+}
+
+}  // namespace flextip

@@ -1,0 +1,74 @@
+// The pose of the tip frame E from the grey values of all visible tags at once, in one or more
+// cameras.
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/pose.h"
+#include "core/tag_collar.h"
+#include "vision/photometric_view.h"
+
+namespace flextip {
+
+enum class PhotometricStatus {
+  kOk,
+  kNoFaces,       ///< no tag is where it should be
+  kNotConverged,  ///< the steps do not become small
+  kPoorFit,       ///< what is there does not look like the tags
+};
+
+struct PhotometricOptions {
+  int coarse_pixels = 500;             ///< of all faces together, until the steps become small
+  double coarse_extra_blur_px2 = 2.0;  ///< widens the reach of the first steps
+  int max_coarse_iterations = 8, max_iterations = 6;
+  double min_correlation = 0.88;  ///< of a face's measured and predicted grey values
+  double min_contrast_grey = 10.0;
+  double min_inliers = 0.6;       ///< mean weight of all pixels
+  double model_noise_px = 0.01;   ///< what edges are wrong by together, per face
+};
+
+/// What one camera's picture said.
+struct ViewFit {
+  Optics optics;
+  double noise_grey = 0;
+  std::vector<FaceFit> faces;
+};
+
+struct PhotometricResult {
+  PhotometricStatus status = PhotometricStatus::kNoFaces;
+  Pose T_RE;
+  /// Of (dw, dp), T_RE = (exp([dw]x) R, p + dp), both in R (rad, m).
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  double chi2 = 0;  ///< robust cost over the noise's variance
+  int pixels = 0, faces = 0;
+  bool one_plane = false;  ///< all faces seen are parallel: two poses may look alike
+  std::vector<ViewFit> views;
+
+  bool IsUsable() const { return status == PhotometricStatus::kOk; }
+};
+
+class PhotometricFit {
+ public:
+  /// Throws InputError for a tag that does not exist or a lens model that cannot be used.
+  PhotometricFit(const std::vector<CameraCalibration>& cameras, const TagCollar& collar,
+                 const PhotometricOptions& options = {});
+  ~PhotometricFit();
+  PhotometricFit(PhotometricFit&&) noexcept;
+  PhotometricFit& operator=(PhotometricFit&&) noexcept;
+
+  /// Gauss-Newton from `start_T_RE`, which must be right to about a cell of the tag. One image
+  /// (null: no picture) and one prior a camera. `coarse`: begin with a widened blur.
+  PhotometricResult Fit(const std::vector<const Image*>& images, const Pose& start_T_RE,
+                        const std::vector<OpticsPrior>& priors, bool coarse = true);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace flextip

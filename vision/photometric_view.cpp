@@ -1,0 +1,244 @@
+#include "vision/photometric_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/rotation.h"
+
+namespace flextip {
+namespace {
+
+constexpr double kFirstScale_grey = 25.0, kMinNoise_grey = 0.7;
+constexpr double kSlopeOfContrast = 0.15;  // how much light may change over a face
+constexpr double kMinBlur_px2 = 0.01, kMaxBlur_px2 = 60.0;
+constexpr double kAslant = 0.3;  // cosine of 73 degrees
+constexpr double kKnown = 1e-6, kKnown_m = 1e-10;  // standard deviations of what is not fitted
+
+using Vector5 = Eigen::Matrix<double, 5, 1>;
+
+}  // namespace
+
+PhotometricView::PhotometricView(const CameraModel& camera, const LensMap& lens,
+                                 std::vector<PhotometricFace> faces)
+    : camera_(camera), lens_(lens), faces_(std::move(faces)) {}
+
+void PhotometricView::Begin(const Image& image, const Pose& T_CE, const OpticsPrior& prior) {
+  image_ = &image;
+  prior_ = prior;
+  optics_ = prior.mean;
+  tone_ = ToneCurve(optics_.gamma);
+  noise_grey_ = 0;
+  seen_.clear();
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    if (faces_[i].IsSeen(camera_, T_CE)) seen_.push_back({i, true, false, {}, {}});
+  }
+  // A face seen much aslant says little, and that little is the least certain.
+  const bool any = std::any_of(seen_.begin(), seen_.end(), [&](const SeenFace& s) {
+    return faces_[s.face].Cosine(T_CE) > kAslant;
+  });
+  if (any) {
+    std::erase_if(seen_, [&](const SeenFace& s) { return faces_[s.face].Cosine(T_CE) < kAslant; });
+  }
+}
+
+Optics PhotometricView::Widened() const {
+  Optics wide = optics_;
+  wide.blur_px2 += Eigen::Vector3d(extra_blur_px2_, 0, extra_blur_px2_);
+  return wide;
+}
+
+void PhotometricView::Select(const Pose& T_CE, int pixels, double extra_blur_px2) {
+  extra_blur_px2_ = extra_blur_px2;
+  double area = 0;  // of the seen faces' bounding boxes, roughly
+  for (const SeenFace& s : seen_) {
+    Eigen::Matrix<double, 2, 3> J;
+    const Pose T_CG = T_CE * faces_[s.face].Tag().T_EG;
+    if (!s.active || !camera_.Project(T_CG.p, &J)) continue;
+    const double side = J(0, 0) * faces_[s.face].Tag().size_m;
+    area += side * side * T_CG.R.col(2).dot(T_CG.p) / T_CG.p.norm();
+  }
+  const int stride =
+      pixels > 0 ? std::max(1, static_cast<int>(std::lround(std::sqrt(area / pixels)))) : 1;
+  for (SeenFace& s : seen_) {
+    if (!s.active) continue;
+    faces_[s.face].SelectPixels(camera_, lens_, *image_, T_CE, Widened(), stride);
+    if (!s.has_levels) {
+      s.has_levels = s.active = faces_[s.face].GuessLevels(camera_, T_CE, Widened(), tone_);
+    }
+  }
+}
+
+int PhotometricView::Faces() const {
+  return static_cast<int>(
+      std::count_if(seen_.begin(), seen_.end(), [](const SeenFace& s) { return s.active; }));
+}
+
+std::vector<FaceFit> PhotometricView::FaceFits() const {
+  std::vector<FaceFit> fits;
+  for (const SeenFace& s : seen_) {
+    if (!s.active) continue;
+    const FaceLevels& level = faces_[s.face].levels;
+    const double contrast = tone_.At(static_cast<float>(level[3])).grey -
+                            tone_.At(static_cast<float>(level[0])).grey;
+    fits.push_back({faces_[s.face].Tag().id, s.sums.pixels,
+                    s.sums.weight / std::max(1, s.sums.pixels), s.sums.correlation, contrast});
+  }
+  return fits;
+}
+
+int PhotometricView::DropFaces(double min_correlation, double min_contrast) {
+  std::size_t at = 0;
+  const auto fits = FaceFits();
+  for (SeenFace& s : seen_) {
+    if (!s.active) continue;
+    const FaceFit& fit = fits[at++];
+    s.active = fit.correlation >= min_correlation && fit.contrast >= min_contrast;
+  }
+  return Faces();
+}
+
+std::vector<Eigen::Vector3d> PhotometricView::Normals() const {
+  std::vector<Eigen::Vector3d> normals;
+  for (const SeenFace& s : seen_) {
+    if (s.active) normals.push_back(-faces_[s.face].Tag().T_EG.R.col(2));
+  }
+  return normals;
+}
+
+// From the median size of the residuals.
+void PhotometricView::LearnNoise() {
+  std::array<int, FaceSums::kBins> errors{};
+  int count = 0, below = 0;
+  for (const SeenFace& s : seen_) {
+    for (int i = 0; s.active && i < FaceSums::kBins; ++i) errors[i] += s.sums.errors[i];
+    count += s.active ? s.sums.pixels : 0;
+  }
+  if (count == 0) return;
+  int bin = 0;
+  while (2 * (below + errors[bin]) < count) below += errors[bin++];
+  const double within = (0.5 * count - below) / std::max(1, errors[bin]);
+  noise_grey_ = std::max(kMinNoise_grey, 1.4826 * (bin + within) / FaceSums::kBinsPerGrey);
+}
+
+PoseTerm PhotometricView::Linearise(const Pose& T_CE, bool redescending) {
+  RobustRule rule;
+  rule.scale_grey = noise_grey_ > 0 ? noise_grey_ * (redescending ? 1.0 : 1.5) : kFirstScale_grey;
+  rule.redescending = redescending && noise_grey_ > 0;
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
+  for (const SeenFace& s : seen_) pivot += T_CE * faces_[s.face].Tag().T_EG.p;
+  if (!seen_.empty()) pivot /= static_cast<double>(seen_.size());
+  // About the pivot dc = dp - dw x (p - pivot).
+  to_pivot_.bottomLeftCorner<3, 3>() = Skew(T_CE.p - pivot);
+
+  Matrix11 A = Matrix11::Zero();
+  Vector11 b = Vector11::Zero();
+  PoseTerm totals;
+  for (SeenFace& s : seen_) {
+    if (!s.active) continue;
+    s.sums = FaceSums();
+    faces_[s.face].Accumulate(camera_, T_CE, pivot, Widened(), tone_, rule, s.sums);
+    EliminateLevels(s, A, b);
+    totals.robust_cost += s.sums.robust_cost;
+    totals.weight += s.sums.weight;
+    totals.pixels += s.sums.pixels;
+  }
+  LearnNoise();
+  PoseTerm term = EliminateOptics(A, b);
+  term.robust_cost = totals.robust_cost;
+  term.weight = totals.weight;
+  term.pixels = totals.pixels;
+  return term;
+}
+
+void PhotometricView::EliminateLevels(SeenFace& s, Matrix11& A, Vector11& b) const {
+  constexpr int kL = FaceSums::kLevels, kR = FaceSums::kResidual;
+  const FaceLevels& level = faces_[s.face].levels;
+  Eigen::Matrix<double, 6, 6> H = s.sums.A.block<6, 6>(kL, kL);
+  Eigen::Matrix<double, 6, 1> r = s.sums.A.block<6, 1>(kL, kR);
+  const double noise2 = std::pow(std::max(noise_grey_, kMinNoise_grey), 2);
+  const double slope = kSlopeOfContrast * std::max(0.02, level[3]);
+  for (const int i : {1, 2, 4, 5}) {
+    H(i, i) += noise2 / (slope * slope);
+    r[i] -= noise2 / (slope * slope) * level[i];
+  }
+  for (const int i : {0, 3}) H(i, i) += 1e-3 * noise2;
+  const Eigen::Matrix<double, 6, 11> C = s.sums.A.block<6, 11>(kL, 0);
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(H);
+  s.levels.constant = solver.solve(r);
+  s.levels.by_rest = solver.solve(C);
+  A += s.sums.A.topLeftCorner<11, 11>() - C.transpose() * s.levels.by_rest;
+  b += s.sums.A.block<11, 1>(0, kR) - C.transpose() * s.levels.constant;
+}
+
+PoseTerm PhotometricView::EliminateOptics(Matrix11 A, Vector11 b) {
+  const double noise2 = std::pow(std::max(noise_grey_, kMinNoise_grey), 2);
+  const double gamma_sd = prior_.gamma_sd > 0 ? prior_.gamma_sd : kKnown;
+  const double offset_sd = prior_.print_offset_sd_m > 0 ? prior_.print_offset_sd_m : kKnown_m;
+  Vector5 sd, off;
+  sd << prior_.blur_sd_px2, 0.5 * prior_.blur_sd_px2, prior_.blur_sd_px2, gamma_sd, offset_sd;
+  off << optics_.blur_px2 - prior_.mean.blur_px2, optics_.gamma - prior_.mean.gamma,
+      optics_.print_offset_m - prior_.mean.print_offset_m;
+  for (int i = 0; i < 5; ++i) {
+    A(6 + i, 6 + i) += noise2 / (sd[i] * sd[i]);
+    b[6 + i] -= noise2 / (sd[i] * sd[i]) * off[i];
+  }
+  const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(A.bottomRightCorner<5, 5>());
+  const Eigen::Matrix<double, 5, 6> C = A.bottomLeftCorner<5, 6>();
+  optics_elimination_.constant = solver.solve(b.tail<5>());
+  optics_elimination_.by_rest = solver.solve(C);
+  const Eigen::Matrix<double, 6, 6> JtJ =
+      A.topLeftCorner<6, 6>() - C.transpose() * optics_elimination_.by_rest;
+  const Eigen::Matrix<double, 6, 1> Jtr =
+      b.head<6>() - C.transpose() * optics_elimination_.constant;
+  PoseTerm term;
+  term.JtJ = to_pivot_.transpose() * JtJ * to_pivot_;
+  term.Jtr = to_pivot_.transpose() * Jtr;
+  return term;
+}
+
+void PhotometricView::Step(const Eigen::Matrix<double, 6, 1>& step) {
+  Vector11 rest;
+  rest.head<6>() = to_pivot_ * step;
+  rest.tail<5>() =
+      optics_elimination_.constant - optics_elimination_.by_rest * rest.head<6>();
+  const double limit = std::max(0.3, 0.7 * std::max(optics_.blur_px2[0], optics_.blur_px2[2]));
+  const Eigen::Vector3d moved =
+      optics_.blur_px2 + rest.segment<3>(6).cwiseMax(-limit).cwiseMin(limit);
+  const double xx = std::clamp(moved[0], kMinBlur_px2, kMaxBlur_px2);
+  const double yy = std::clamp(moved[2], kMinBlur_px2, kMaxBlur_px2);
+  const double most = 0.95 * std::sqrt(xx * yy);
+  optics_.blur_px2 = {xx, std::clamp(moved[1], -most, most), yy};
+  if (prior_.gamma_sd > 0) {
+    optics_.gamma = std::clamp(optics_.gamma + rest[9], 0.7, 3.5);
+    tone_ = ToneCurve(optics_.gamma);
+  }
+  optics_.print_offset_m += rest[10];
+  for (SeenFace& s : seen_) {
+    if (s.active) faces_[s.face].levels += s.levels.constant - s.levels.by_rest * rest;
+  }
+}
+
+std::vector<PhotometricFace> MakeFaces(const TagCollar& collar) {
+  std::vector<PhotometricFace> faces;
+  for (const CollarTag& tag : collar.tags) {
+    const TagCells cells = ReadTagCells(collar.family, tag.id);
+    const double reach = 0.5 * cells.cells * tag.size_m / cells.border_cells;
+    std::array<PhotometricFace::Side, 4> sides;
+    for (auto& side : sides) side.reach_m = reach;
+    for (const CollarTag& other : collar.tags) {
+      const Eigen::Vector3d n = other.T_EG.R.col(2);
+      const double distance = n.dot(other.T_EG.p - tag.T_EG.p);
+      for (int i = 0; i < 4 && &other != &tag; ++i) {
+        const Eigen::Vector3d out = (i % 2 == 0 ? -1 : 1) * tag.T_EG.R.col(i / 2);
+        const double rate = n.dot(out);
+        const double meets = distance / rate;
+        if (std::abs(rate) < 0.2 || meets < 0.3 * tag.size_m || meets > sides[i].reach_m) continue;
+        sides[i] = {meets, other.T_EG};
+      }
+    }
+    faces.emplace_back(tag, cells, sides);
+  }
+  return faces;
+}
+
+}  // namespace flextip

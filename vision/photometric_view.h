@@ -1,0 +1,107 @@
+// The collar's tags in one camera's picture: all faces, and the optics they share.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/image.h"
+#include "vision/photometric_face.h"
+
+namespace flextip {
+
+/// Normal equations of one Gauss-Newton step on (dw, dp) as in MovePose, in grey values squared:
+/// JtJ step = Jtr. What belongs to the picture alone (light, blur, gamma) is eliminated.
+struct PoseTerm {
+  Eigen::Matrix<double, 6, 6> JtJ = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> Jtr = Eigen::Matrix<double, 6, 1>::Zero();
+  double robust_cost = 0;  ///< of all pixels
+  double weight = 0;       ///< sum of the pixels' weights
+  int pixels = 0;
+};
+
+/// How a face was seen.
+struct FaceFit {
+  int tag_id = 0;
+  int pixels = 0;
+  double inliers = 0;      ///< mean weight of its pixels
+  double correlation = 0;  ///< of measured and predicted grey values
+  double contrast = 0;     ///< white less black (grey values)
+};
+
+/// What is known of a picture's optics beforehand.
+struct OpticsPrior {
+  Optics mean;
+  double blur_sd_px2 = 1.0;
+  double gamma_sd = 0.0;  ///< 0: known
+  double print_offset_sd_m = 0.0;  ///< 0: known
+};
+
+class PhotometricView {
+ public:
+  /// The camera and its map must outlive the view.
+  PhotometricView(const CameraModel& camera, const LensMap& lens,
+                  std::vector<PhotometricFace> faces);
+
+  const CameraModel& Camera() const { return camera_; }
+  const Optics& SeenOptics() const { return optics_; }
+
+  /// Starts with a picture: the faces seen from T_CE take part.
+  void Begin(const Image& image, const Pose& T_CE, const OpticsPrior& prior);
+
+  /// Chooses the pixels anew, about `pixels` of them (0: all). `extra_blur_px2` widens the model's
+  /// blur and with it the reach of a step.
+  void Select(const Pose& T_CE, int pixels, double extra_blur_px2);
+
+  /// Leaves faces out that do not look like their tags; returns how many are left.
+  int DropFaces(double min_correlation, double min_contrast);
+  int Faces() const;
+  std::vector<FaceFit> FaceFits() const;
+  /// The normals (toward the camera) of the faces that take part, in E.
+  std::vector<Eigen::Vector3d> Normals() const;
+
+  /// The sums at T_CE under the scale of residuals known so far.
+  PoseTerm Linearise(const Pose& T_CE, bool redescending);
+  /// Moves light, blur and gamma with the pose's step (the last Linearise's).
+  void Step(const Eigen::Matrix<double, 6, 1>& step);
+
+  /// Robust standard deviation of a pixel's residual (grey values) in the last Linearise.
+  double NoiseGrey() const { return noise_grey_; }
+
+ private:
+  using Vector11 = Eigen::Matrix<double, 11, 1>;
+  using Matrix11 = Eigen::Matrix<double, 11, 11>;
+  /// x_eliminated = constant - by_rest * rest.
+  template <int N, int Rest>
+  struct Elimination {
+    Eigen::Matrix<double, N, 1> constant = Eigen::Matrix<double, N, 1>::Zero();
+    Eigen::Matrix<double, N, Rest> by_rest = Eigen::Matrix<double, N, Rest>::Zero();
+  };
+  struct SeenFace {
+    std::size_t face;
+    bool active = true, has_levels = false;
+    FaceSums sums;
+    Elimination<6, 11> levels;
+  };
+  void EliminateLevels(SeenFace& seen, Matrix11& A, Vector11& b) const;
+  PoseTerm EliminateOptics(Matrix11 A, Vector11 b);
+  Optics Widened() const;
+  void LearnNoise();
+
+  const CameraModel& camera_;
+  const LensMap& lens_;
+  std::vector<PhotometricFace> faces_;
+  std::vector<SeenFace> seen_;
+  const Image* image_ = nullptr;
+  OpticsPrior prior_;
+  Optics optics_;
+  ToneCurve tone_;
+  double extra_blur_px2_ = 0, noise_grey_ = 0;
+  Eigen::Matrix<double, 6, 6> to_pivot_ = Eigen::Matrix<double, 6, 6>::Identity();
+  Elimination<5, 6> optics_elimination_;
+};
+
+/// The faces of a collar; how far each side's white reaches follows from its neighbours' planes.
+/// Throws InputError where a tag does not exist.
+std::vector<PhotometricFace> MakeFaces(const TagCollar& collar);
+
+}  // namespace flextip
