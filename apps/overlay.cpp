@@ -93,7 +93,9 @@ void DrawTip(cv::Mat& canvas, const CameraModel& model, const TipObservation& ti
 
 std::string Describe(const TipTrack& track) {
   if (track.tip.status != TipStatus::kOk) return Name(track.tip.status);
-  return fmt::format("ok, {} tags, {:.2f} px", track.pose.tags_used, track.rms_px);
+  return track.source == TrackSource::kPixels
+             ? fmt::format("ok, {} tags, {:.1f} grey levels", track.tags_used, track.noise_grey)
+             : fmt::format("ok, {} tags, {:.2f} px", track.tags_used, track.rms_px);
 }
 
 }  // namespace
@@ -119,8 +121,9 @@ void DrawTrack(Image& image, const TipTrack& track, const CameraCalibration& cam
   const CameraModel model(camera);
   cv::Mat canvas = View(image);
   if (track.tip.status == TipStatus::kOk) {
-    DrawCollar(canvas, model, collar, track.pose.T_CE);
-    DrawAxes(canvas, model, track.pose.T_CE);
+    const Pose T_CE = camera.T_RC.Inverse() * track.T_RE;
+    DrawCollar(canvas, model, collar, T_CE);
+    DrawAxes(canvas, model, T_CE);
   }
   if (track.tip.status != TipStatus::kLost) DrawTip(canvas, model, track.tip);
   DrawLabel(image, Describe(track));

@@ -46,7 +46,7 @@ struct PhotometricFit::Impl {
   struct Sums {
     Matrix6 JtJ = Matrix6::Zero();
     Vector6 Jtr = Vector6::Zero();
-    double chi2 = 0, weight = 0;
+    double weight = 0;
     int pixels = 0;
   };
 
@@ -85,7 +85,6 @@ struct PhotometricFit::Impl {
       const Matrix6 Q = Turn(cameras[i]->T_CR.R.transpose());
       sums.JtJ += Q * term.JtJ * Q.transpose() / variance;
       sums.Jtr += Q * term.Jtr / variance;
-      sums.chi2 += term.robust_cost / variance;
       sums.weight += term.weight;
       sums.pixels += term.pixels;
     }
@@ -142,27 +141,46 @@ struct PhotometricFit::Impl {
                        [&](const Eigen::Vector3d& n) { return n.dot(all[0]) > kParallel; });
   }
 
+  Matrix6 ModelCovariance(const Pose& T_RE) const;
   PhotometricResult Report(const Pose& T_RE, const Sums& sums, bool converged) const;
 };
+
+// As if the corners of all tags were measured with the model's noise.
+Matrix6 PhotometricFit::Impl::ModelCovariance(const Pose& T_RE) const {
+  Matrix6 information = Matrix6::Zero();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!present[i]) continue;
+    std::vector<Correspondence> corners;
+    for (const Eigen::Vector3d& x_E : views[i].Corners()) corners.push_back({x_E, {0, 0}});
+    const auto sum = Reproject(cameras[i]->model, corners, cameras[i]->T_CR * T_RE);
+    const Matrix6 Q = Turn(cameras[i]->T_CR.R.transpose());
+    if (sum) information += Q * sum->JtJ * Q.transpose();
+  }
+  return options.model_noise_px * options.model_noise_px *
+         information.ldlt().solve(Matrix6::Identity());
+}
 
 PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sums,
                                                bool converged) const {
   PhotometricResult result;
   result.T_RE = T_RE;
-  result.chi2 = sums.chi2;
   result.pixels = sums.pixels;
   result.faces = Faces();
   result.one_plane = OnePlane();
-  result.information = sums.JtJ;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    ViewFit fit;
-    if (present[i]) fit = {views[i].SeenOptics(), views[i].NoiseGrey(), views[i].FaceFits()};
-    result.views.push_back(fit);
-  }
   const Eigen::LDLT<Matrix6> solver(sums.JtJ);
   const bool solvable = solver.info() == Eigen::Success && solver.isPositive();
-  if (solvable) result.covariance = solver.solve(Matrix6::Identity());
-  if (!converged || !solvable) {
+  const Matrix6 covariance = solvable ? Matrix6(solver.solve(Matrix6::Identity())) : Matrix6::Zero();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    ViewFit fit;
+    const Matrix6 Q = Turn(cameras[i]->T_CR.R);
+    if (present[i]) {
+      fit = {views[i].Learned(Q * covariance * Q.transpose()), views[i].NoiseGrey(),
+             views[i].FaceFits()};
+    }
+    result.views.push_back(fit);
+  }
+  result.covariance = covariance + ModelCovariance(T_RE);
+  if (!converged || !solvable || !result.covariance.allFinite()) {
     result.status = PhotometricStatus::kNotConverged;
   } else if (sums.weight < options.min_inliers * sums.pixels) {
     result.status = PhotometricStatus::kPoorFit;
@@ -170,6 +188,15 @@ PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sum
     result.status = PhotometricStatus::kOk;
   }
   return result;
+}
+
+double LogLikelihoodRatio2(const PhotometricResult& a, const PhotometricResult& b) {
+  double ratio = 0;
+  for (std::size_t i = 0; i < std::min(a.views.size(), b.views.size()); ++i) {
+    if (a.views[i].noise_grey <= 0 || b.views[i].noise_grey <= 0) continue;
+    ratio += 2 * a.pixels * std::log(b.views[i].noise_grey / a.views[i].noise_grey);
+  }
+  return ratio;
 }
 
 PhotometricFit::PhotometricFit(const std::vector<CameraCalibration>& cameras,

@@ -28,12 +28,13 @@ struct PhotometricOptions {
   double min_correlation = 0.88;  ///< of a face's measured and predicted grey values
   double min_contrast_grey = 10.0;
   double min_inliers = 0.6;       ///< mean weight of all pixels
-  double model_noise_px = 0.01;   ///< what edges are wrong by together, per face
+  double model_noise_px = 0.015;  ///< what a tag's corners are wrong by whatever the noise: print,
+                                  ///< lens, film; per axis
 };
 
 /// What one camera's picture said.
 struct ViewFit {
-  Optics optics;
+  OpticsPrior learned;  ///< its mean is what was fitted
   double noise_grey = 0;
   std::vector<FaceFit> faces;
 };
@@ -43,14 +44,16 @@ struct PhotometricResult {
   Pose T_RE;
   /// Of (dw, dp), T_RE = (exp([dw]x) R, p + dp), both in R (rad, m).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
-  double chi2 = 0;  ///< robust cost over the noise's variance
   int pixels = 0, faces = 0;
   bool one_plane = false;  ///< all faces seen are parallel: two poses may look alike
   std::vector<ViewFit> views;
 
   bool IsUsable() const { return status == PhotometricStatus::kOk; }
 };
+
+/// Twice the log of how much likelier the pixels are under `a` than under `b`, from the noise that
+/// each fit leaves.
+double LogLikelihoodRatio2(const PhotometricResult& a, const PhotometricResult& b);
 
 class PhotometricFit {
  public:

@@ -12,6 +12,7 @@ constexpr double kFirstScale_grey = 25.0, kMinNoise_grey = 0.7;
 constexpr double kSlopeOfContrast = 0.15;  // how much light may change over a face
 constexpr double kMinBlur_px2 = 0.01, kMaxBlur_px2 = 60.0;
 constexpr double kAslant = 0.3;  // cosine of 73 degrees
+constexpr double kBlurChange = 0.4;  // of the blur, from one picture to the next
 constexpr double kKnown = 1e-6, kKnown_m = 1e-10;  // standard deviations of what is not fitted
 
 using Vector5 = Eigen::Matrix<double, 5, 1>;
@@ -186,6 +187,7 @@ PoseTerm PhotometricView::EliminateOptics(Matrix11 A, Vector11 b) {
   const Eigen::Matrix<double, 5, 6> C = A.bottomLeftCorner<5, 6>();
   optics_elimination_.constant = solver.solve(b.tail<5>());
   optics_elimination_.by_rest = solver.solve(C);
+  optics_variance_ = noise2 * solver.solve(Eigen::Matrix<double, 5, 5>::Identity()).diagonal();
   const Eigen::Matrix<double, 6, 6> JtJ =
       A.topLeftCorner<6, 6>() - C.transpose() * optics_elimination_.by_rest;
   const Eigen::Matrix<double, 6, 1> Jtr =
@@ -216,6 +218,33 @@ void PhotometricView::Step(const Eigen::Matrix<double, 6, 1>& step) {
   for (SeenFace& s : seen_) {
     if (s.active) faces_[s.face].levels += s.levels.constant - s.levels.by_rest * rest;
   }
+}
+
+OpticsPrior PhotometricView::Learned(const Eigen::Matrix<double, 6, 6>& covariance) const {
+  const Eigen::Matrix<double, 5, 6> by_pose = optics_elimination_.by_rest * to_pivot_;
+  const Vector5 sd =
+      (optics_variance_ + (by_pose * covariance * by_pose.transpose()).diagonal()).cwiseSqrt();
+  OpticsPrior next = prior_;
+  next.mean = optics_;
+  next.blur_sd_px2 = kBlurChange * (optics_.blur_px2[0] + optics_.blur_px2[2]) + 0.1;
+  if (prior_.gamma_sd > 0) next.gamma_sd = std::min(prior_.gamma_sd, std::max(0.003, sd[3]));
+  if (prior_.print_offset_sd_m > 0) {
+    next.print_offset_sd_m = std::min(prior_.print_offset_sd_m, std::max(2e-6, sd[4]));
+  }
+  return next;
+}
+
+std::vector<Eigen::Vector3d> PhotometricView::Corners() const {
+  std::vector<Eigen::Vector3d> corners;
+  for (const SeenFace& s : seen_) {
+    if (!s.active) continue;
+    const CollarTag& tag = faces_[s.face].Tag();
+    const double h = 0.5 * tag.size_m;
+    for (const auto& [x, y] : {std::pair{-h, h}, std::pair{h, h}, std::pair{h, -h}, std::pair{-h, -h}}) {
+      corners.push_back(tag.T_EG * Eigen::Vector3d(x, y, 0));
+    }
+  }
+  return corners;
 }
 
 std::vector<PhotometricFace> MakeFaces(const TagCollar& collar) {

@@ -31,7 +31,7 @@ struct FaceFit {
 /// What is known of a picture's optics beforehand.
 struct OpticsPrior {
   Optics mean;
-  double blur_sd_px2 = 1.0;
+  double blur_sd_px2 = 1.0;  ///< in either direction; of one direction against the other, half
   double gamma_sd = 0.0;  ///< 0: known
   double print_offset_sd_m = 0.0;  ///< 0: known
 };
@@ -63,6 +63,12 @@ class PhotometricView {
   PoseTerm Linearise(const Pose& T_CE, bool redescending);
   /// Moves light, blur and gamma with the pose's step (the last Linearise's).
   void Step(const Eigen::Matrix<double, 6, 1>& step);
+
+  /// The optics as fitted, as a prior for the next picture: what stays from picture to picture with
+  /// the standard deviation it is known to now. `covariance`: of the pose (dw, dp) in C.
+  OpticsPrior Learned(const Eigen::Matrix<double, 6, 6>& covariance) const;
+  /// The corners of the faces that take part, in E.
+  std::vector<Eigen::Vector3d> Corners() const;
 
   /// Robust standard deviation of a pixel's residual (grey values) in the last Linearise.
   double NoiseGrey() const { return noise_grey_; }
@@ -98,6 +104,7 @@ class PhotometricView {
   double extra_blur_px2_ = 0, noise_grey_ = 0;
   Eigen::Matrix<double, 6, 6> to_pivot_ = Eigen::Matrix<double, 6, 6>::Identity();
   Elimination<5, 6> optics_elimination_;
+  Eigen::Matrix<double, 5, 1> optics_variance_ = Eigen::Matrix<double, 5, 1>::Zero();
 };
 
 /// The faces of a collar; how far each side's white reaches follows from its neighbours' planes.

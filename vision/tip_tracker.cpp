@@ -5,13 +5,20 @@
 
 #include "core/error.h"
 #include "core/rotation.h"
+#include "vision/background_detector.h"
+#include "vision/reprojection.h"
 #include "vision/tip_filter.h"
+#include "vision/tip_finder.h"
 
 namespace flextip {
 namespace {
 
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
 // How much of the corner noise seen so far is remembered from frame to frame.
 constexpr double kNoiseMemory = 0.9;
+constexpr double kMinSearch_px = 8.0, kMaxSearch_px = 60.0;
+constexpr int kThoroughEvery = 5;  // of the frames of a lost tip, at full resolution
 
 void CheckCollar(const TagCollar& collar) {
   if (collar.tags.empty()) throw InputError("the tag collar has no tags");
@@ -25,38 +32,64 @@ void CheckCollar(const TagCollar& collar) {
   }
 }
 
-TagDetectorOptions DetectorFor(const TagCollar& collar, TagDetectorOptions options) {
-  options.family = collar.family;
-  return options;
+const TagCollar& Checked(const TagCollar& collar) {
+  CheckCollar(collar);
+  return collar;
+}
+
+void CheckImage(const Image& image, const CameraCalibration& c) {
+  if (image.Empty()) throw InputError("the image is empty");
+  if (image.channels != 1 && image.channels != 3) {
+    throw InputError(fmt::format("expected an image of 1 or 3 channels, found {}", image.channels));
+  }
+  if (image.width_px != c.width_px || image.height_px != c.height_px) {
+    throw InputError(fmt::format("expected an image of {}x{} pixels, found {}x{}", c.width_px,
+                                 c.height_px, image.width_px, image.height_px));
+  }
+}
+
+double MaxSd(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
 }
 
 }  // namespace
 
 struct TipTracker::Impl {
-  CameraModel camera;
-  TagCollar collar;
   TrackerOptions options;
-  TagDetector detector;
+  TipFinder finder;
+  std::vector<CameraCalibration> cameras;
   TipFilter filter;
-  std::optional<Pose> last_T_CE;  // of the last frame in which the collar was seen
-  int predicted_frames = 0;
+  std::optional<BackgroundDetector> background;
+
+  std::optional<Pose> last_T_RE;  // of the last frame in which the collar was seen
+  TimeNs last_ns = 0;
+  Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();  // rad/s
+  int predicted_frames = 0, lost_frames = 0;
   double noise_sum_px2, noise_dof;  // squared corner errors so far, fading, and their freedom
 
-  Impl(const CameraCalibration& c, const TagCollar& t, const TrackerOptions& o)
-      : camera(c),
-        collar(t),
-        options(o),
-        detector(DetectorFor(t, o.detector)),
+  Impl(const std::vector<CameraCalibration>& c, const TagCollar& collar, const TrackerOptions& o)
+      : options(o),
+        finder(c, Checked(collar), o),
+        cameras(c),
         filter(o.acceleration_noise_m_s2),
         noise_sum_px2(o.pose.prior_variance_px2 * o.pose.prior_dof),
         noise_dof(o.pose.prior_dof) {
-    CheckCollar(t);
+    if (!o.background_detection) return;
+    TagDetectorOptions detector = o.detector;
+    detector.family = collar.family;
+    background.emplace(detector);
   }
 
   void ForgetIfStale(TimeNs t_ns);
-  CollarPose EstimatePose(const std::vector<TagDetection>& tags);
-  void Report(const CollarPose& pose, TipTrack& track) const;
-  void Predict(TimeNs t_ns, TipTrack& track);
+  std::optional<TipPrediction> Expect(TimeNs t_ns, const std::optional<TipPrediction>& model) const;
+  double SearchRadius(const TipPrediction& expected) const;
+  Sight Find(const Images& images, TimeNs t_ns, const std::optional<TipPrediction>& expected);
+  Sight FindLost(const Images& images, TimeNs t_ns, const std::optional<Pose>& near_T_RE);
+  Sight FindFromTags(const std::vector<TagDetection>& tags);
+  TipTrack Finish(const Sight& sight, TimeNs t_ns, const std::optional<TipPrediction>& expected,
+                  bool has_model);
+  void Remember(const Sight& sight, TimeNs t_ns);
+  void Report(const Sight& sight, TipTrack& track) const;
 };
 
 void TipTracker::Impl::ForgetIfStale(TimeNs t_ns) {
@@ -64,78 +97,162 @@ void TipTracker::Impl::ForgetIfStale(TimeNs t_ns) {
   const TimeNs age = t_ns - filter.LastTime();
   if (age > 0 && age <= options.max_prediction_ns) return;
   filter.Reset();
-  last_T_CE.reset();
+  last_T_RE.reset();
+  turn_rate.setZero();
 }
 
-CollarPose TipTracker::Impl::EstimatePose(const std::vector<TagDetection>& tags) {
-  CollarPoseOptions pose_options = options.pose;
-  pose_options.prior_variance_px2 = noise_dof > 0 ? noise_sum_px2 / noise_dof : 0.0;
-  pose_options.prior_dof = noise_dof;
-  const CollarPose pose = EstimateCollarPose(camera, collar, tags, pose_options, last_T_CE);
-  if (pose.IsUsable()) {
-    noise_sum_px2 = kNoiseMemory * noise_sum_px2 + pose.squared_error_px2;
-    noise_dof = kNoiseMemory * noise_dof + pose.dof;
+// The better of what the model and the motion so far say.
+std::optional<TipPrediction> TipTracker::Impl::Expect(
+    TimeNs t_ns, const std::optional<TipPrediction>& model) const {
+  if (!filter.Started() || !last_T_RE) return model;
+  const TipFilter::Prediction moved = filter.At(t_ns);
+  const double dt_s = 1e-9 * static_cast<double>(t_ns - last_ns);
+  TipPrediction motion;
+  motion.T_RE = {ExpRotation(dt_s * turn_rate) * last_T_RE->R, moved.p};
+  motion.covariance.setZero();
+  motion.covariance.topLeftCorner<3, 3>() =
+      std::pow(0.01 + 0.5 * dt_s, 2) * Eigen::Matrix3d::Identity();
+  motion.covariance.bottomRightCorner<3, 3>() = moved.covariance_m2;
+  const auto spread = [](const TipPrediction& p) {
+    return p.covariance.bottomRightCorner<3, 3>().trace();
+  };
+  return model && spread(*model) < spread(motion) ? *model : motion;
+}
+
+double TipTracker::Impl::SearchRadius(const TipPrediction& expected) const {
+  const Pose T_CE = cameras[0].T_RC.Inverse() * expected.T_RE;
+  const double sd_px = cameras[0].fu_px * MaxSd(expected.covariance.bottomRightCorner<3, 3>()) /
+                       std::max(0.01, T_CE.p.z());
+  return std::clamp(3 * sd_px, kMinSearch_px, kMaxSearch_px);
+}
+
+Sight TipTracker::Impl::Find(const Images& images, TimeNs t_ns,
+                             const std::optional<TipPrediction>& expected) {
+  Sight sight;
+  if (expected && finder.MightSee(expected->T_RE)) {
+    sight = finder.FindNear(images, expected->T_RE, SearchRadius(*expected));
   }
-  return pose;
+  if (sight.Found()) return sight;
+  const std::optional<Pose> near_T_RE =
+      expected ? std::optional<Pose>(expected->T_RE) : std::nullopt;
+  return FindLost(images, t_ns, near_T_RE);
 }
 
-// From the camera to R: p_RE = R_RC p_CE + p_RC.
-void TipTracker::Impl::Report(const CollarPose& pose, TipTrack& track) const {
-  const Pose& T_RC = camera.Calibration().T_RC;
-  track.T_RE = T_RC * pose.T_CE;
-  track.rms_px = pose.rms_px;
+// The whole picture: now, or on the thread. What the thread found in an earlier picture is where
+// this one is searched.
+Sight TipTracker::Impl::FindLost(const Images& images, TimeNs t_ns,
+                                 const std::optional<Pose>& near_T_RE) {
+  if (!background) {
+    const bool thorough = lost_frames++ % kThoroughEvery == 0;
+    return finder.FindAnywhere(images, near_T_RE, thorough);
+  }
+  Sight sight;
+  if (const auto found = background->Take()) {
+    const Sight then = finder.FromTags(found->tags, near_T_RE, options.pose);
+    if (then.Found()) sight = finder.FindNear(images, then.T_RE, kMaxSearch_px);
+  }
+  if (!sight.Found() && images[0] != nullptr) background->Submit(*images[0], t_ns);
+  return sight;
+}
+
+Sight TipTracker::Impl::FindFromTags(const std::vector<TagDetection>& tags) {
+  CollarPoseOptions pose = options.pose;
+  pose.prior_variance_px2 = noise_dof > 0 ? noise_sum_px2 / noise_dof : 0.0;
+  pose.prior_dof = noise_dof;
+  const Sight sight = finder.FromTags(tags, last_T_RE, pose);
+  if (sight.Found()) {
+    noise_sum_px2 = kNoiseMemory * noise_sum_px2 + sight.squared_error_px2;
+    noise_dof = kNoiseMemory * noise_dof + sight.dof;
+  }
+  return sight;
+}
+
+void TipTracker::Impl::Remember(const Sight& sight, TimeNs t_ns) {
+  filter.Measure(t_ns, sight.T_RE.p, sight.covariance.bottomRightCorner<3, 3>());
+  if (last_T_RE) {
+    const double dt_s = 1e-9 * static_cast<double>(t_ns - last_ns);
+    turn_rate = LogRotation(sight.T_RE.R * last_T_RE->R.transpose()) / dt_s;
+  }
+  last_T_RE = sight.T_RE;
+  last_ns = t_ns;
+  predicted_frames = lost_frames = 0;
+  finder.Learn(sight);
+}
+
+void TipTracker::Impl::Report(const Sight& sight, TipTrack& track) const {
   track.tip.status = TipStatus::kOk;
-  track.tip.p_RE = track.T_RE.p;
-  track.tip.covariance_m2 = T_RC.R * pose.covariance.bottomRightCorner<3, 3>() * T_RC.R.transpose();
-  track.tip.d_RE = track.T_RE.R.col(0);
+  track.T_RE = sight.T_RE;
+  track.covariance = sight.covariance;
+  track.tip.p_RE = sight.T_RE.p;
+  track.tip.covariance_m2 = sight.covariance.bottomRightCorner<3, 3>();
+  track.tip.d_RE = sight.T_RE.R.col(0);
   // A rotation dw turns the direction d by dw x d.
-  const Eigen::Matrix3d turn = Skew(pose.T_CE.R.col(0));
+  const Eigen::Matrix3d turn = Skew(sight.T_RE.R.col(0));
   const Eigen::Matrix3d of_direction =
-      turn * pose.covariance.topLeftCorner<3, 3>() * turn.transpose();
+      turn * sight.covariance.topLeftCorner<3, 3>() * turn.transpose();
   track.direction_noise_rad = std::sqrt(0.5 * of_direction.trace());
 }
 
-void TipTracker::Impl::Predict(TimeNs t_ns, TipTrack& track) {
-  if (!filter.Started() || predicted_frames >= options.max_predicted_frames) return;
+TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
+                                  const std::optional<TipPrediction>& expected, bool has_model) {
+  TipTrack track;
+  track.tags = sight.tags;
+  track.source = sight.source;
+  track.rms_px = sight.rms_px;
+  track.noise_grey = sight.noise_grey;
+  track.tags_used = sight.tags_used;
+  track.ambiguous = sight.ambiguous;
+  track.alternative_T_RE = sight.alternative_T_RE;
+  if (sight.Found() && MaxSd(sight.covariance.bottomRightCorner<3, 3>()) <= options.max_ok_sd_m) {
+    Report(sight, track);
+    Remember(sight, t_ns);
+    return track;
+  }
+  const bool patient = has_model || predicted_frames < options.max_predicted_frames;
+  if (!expected || !patient) return track;
+  const Eigen::Matrix3d covariance = expected->covariance.bottomRightCorner<3, 3>();
+  if (MaxSd(covariance) > options.max_predicted_sd_m) return track;
   ++predicted_frames;
-  const TipFilter::Prediction prediction = filter.At(t_ns);
   track.tip.status = TipStatus::kPredicted;
-  track.tip.p_RE = prediction.p;
-  track.tip.covariance_m2 = prediction.covariance_m2;
+  track.tip.p_RE = expected->T_RE.p;
+  track.tip.covariance_m2 = covariance;
+  return track;
 }
 
 TipTracker::TipTracker(const CameraCalibration& camera, const TagCollar& collar,
                        const TrackerOptions& options)
-    : impl_(std::make_unique<Impl>(camera, collar, options)) {}
+    : TipTracker(std::vector<CameraCalibration>{camera}, collar, options) {}
+TipTracker::TipTracker(const std::vector<CameraCalibration>& cameras, const TagCollar& collar,
+                       const TrackerOptions& options)
+    : impl_(std::make_unique<Impl>(cameras, collar, options)) {}
 TipTracker::~TipTracker() = default;
 TipTracker::TipTracker(TipTracker&&) noexcept = default;
 TipTracker& TipTracker::operator=(TipTracker&&) noexcept = default;
 
-TipTrack TipTracker::Track(const Image& image, TimeNs t_ns) {
-  const CameraCalibration& c = impl_->camera.Calibration();
-  if (image.Empty()) throw InputError("the image is empty");
-  const bool fits = image.width_px == c.width_px && image.height_px == c.height_px;
-  if (c.width_px > 0 && !fits) {
-    throw InputError(fmt::format("expected an image of {}x{} pixels, found {}x{}", c.width_px,
-                                 c.height_px, image.width_px, image.height_px));
+TipTrack TipTracker::Track(const Image& image, TimeNs t_ns,
+                           const std::optional<TipPrediction>& model) {
+  return Track(Images{&image}, t_ns, model);
+}
+
+TipTrack TipTracker::Track(const std::vector<const Image*>& images, TimeNs t_ns,
+                           const std::optional<TipPrediction>& model) {
+  if (images.size() != impl_->cameras.size()) {
+    throw InputError(fmt::format("expected {} images, one a camera, found {}",
+                                 impl_->cameras.size(), images.size()));
   }
-  return Track(impl_->detector.Detect(image), t_ns);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (images[i] != nullptr) CheckImage(*images[i], impl_->cameras[i]);
+  }
+  impl_->ForgetIfStale(t_ns);
+  const std::optional<TipPrediction> expected = impl_->Expect(t_ns, model);
+  const Sight sight = impl_->Find(images, t_ns, expected);
+  return impl_->Finish(sight, t_ns, expected, model.has_value());
 }
 
 TipTrack TipTracker::Track(const std::vector<TagDetection>& tags, TimeNs t_ns) {
-  TipTrack track;
-  track.tags = tags;
   impl_->ForgetIfStale(t_ns);
-  track.pose = impl_->EstimatePose(tags);
-  if (track.pose.IsUsable()) {
-    impl_->Report(track.pose, track);
-    impl_->filter.Measure(t_ns, track.tip.p_RE, track.tip.covariance_m2);
-    impl_->last_T_CE = track.pose.T_CE;
-    impl_->predicted_frames = 0;
-  } else {
-    impl_->Predict(t_ns, track);
-  }
-  return track;
+  const std::optional<TipPrediction> expected = impl_->Expect(t_ns, {});
+  return impl_->Finish(impl_->FindFromTags(tags), t_ns, expected, false);
 }
 
 }  // namespace flextip

@@ -1,7 +1,8 @@
-// From a camera's frames to the instrument's tip, frame by frame.
+// From the frames of one or more cameras to the instrument's tip, frame by frame.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/camera.h"
@@ -11,26 +12,46 @@
 #include "core/time_series.h"
 #include "core/tip_observation.h"
 #include "vision/collar_pose.h"
+#include "vision/photometric_fit.h"
 #include "vision/tag_detector.h"
+#include "vision/tip_prediction.h"
 
 namespace flextip {
 
 struct TrackerOptions {
   TagDetectorOptions detector;  ///< its family is taken from the collar
   CollarPoseOptions pose;
-  int max_predicted_frames = 3;  ///< then the tip is lost
+  PhotometricOptions photometric;
+  bool photometric_fit = true;  ///< false: the tags' corners alone
+  /// A lost tip is looked for on a thread; what it finds counts some frames later. For live
+  /// pictures; false gives the same result on every machine.
+  bool background_detection = false;
+  int max_predicted_frames = 3;  ///< then the tip is lost, unless a model is given
   TimeNs max_prediction_ns = 200'000'000;
+  double max_predicted_sd_m = 0.01;      ///< a prediction less certain than this is none
+  double max_ok_sd_m = 0.003;            ///< nor is what was seen (one tag, two poses)
   double acceleration_noise_m_s2 = 1.0;  ///< how fast a prediction's covariance grows
+  double gamma_guess = 2.2, gamma_guess_sd = 0.4;  ///< where the camera's is not known
+  double print_offset_sd_m = 3e-5;       ///< how well the tags' places along their normals are known
 };
+
+/// How a frame's pose was found.
+enum class TrackSource { kNone, kCorners, kPixels };
 
 /// What one frame said.
 struct TipTrack {
   TipObservation tip;                ///< in R; d_RE only where the tags were seen
-  std::vector<TagDetection> tags;    ///< every tag detected, of the collar or not
+  std::vector<TagDetection> tags;    ///< in the first camera: detected, or where the fit puts them
+  TrackSource source = TrackSource::kNone;
   Pose T_RE;                         ///< means something where `tip.status` is kOk
-  double rms_px = 0.0;               ///< corner distance of the fit, where kOk
+  Eigen::Matrix<double, 6, 6> covariance =
+      Eigen::Matrix<double, 6, 6>::Zero();  ///< of T_RE, (dw, dp) in R, where kOk
+  double rms_px = 0.0;               ///< corner distance of the fit, where kCorners
+  double noise_grey = 0.0;           ///< of a pixel about the fit, where kPixels
+  int tags_used = 0;                 ///< in all cameras
+  bool ambiguous = false;            ///< another pose fits nearly as well
+  std::optional<Pose> alternative_T_RE;  ///< that pose, or a clearly worse one
   double direction_noise_rad = 0.0;  ///< of d_RE, per axis across it, where kOk
-  CollarPose pose;                   ///< the fit in the camera frame
 };
 
 /// Follows one collar. Frames must come in increasing time; a frame that goes back in time starts
@@ -41,14 +62,21 @@ class TipTracker {
   /// positive, an id twice).
   TipTracker(const CameraCalibration& camera, const TagCollar& collar,
              const TrackerOptions& options = {});
+  TipTracker(const std::vector<CameraCalibration>& cameras, const TagCollar& collar,
+             const TrackerOptions& options = {});
   ~TipTracker();
   TipTracker(TipTracker&&) noexcept;
   TipTracker& operator=(TipTracker&&) noexcept;
 
-  /// Throws InputError where the image is empty or its size is not the camera's.
-  TipTrack Track(const Image& image, TimeNs t_ns);
+  /// `model`: where wrist and shaft model expect the tip. Throws InputError where the image is
+  /// empty or its size is not the camera's.
+  TipTrack Track(const Image& image, TimeNs t_ns, const std::optional<TipPrediction>& model = {});
 
-  /// The same from tags that were detected elsewhere.
+  /// One image a camera, taken at the same time; null where a camera has none.
+  TipTrack Track(const std::vector<const Image*>& images, TimeNs t_ns,
+                 const std::optional<TipPrediction>& model = {});
+
+  /// From tags that were detected elsewhere, in the first camera.
   TipTrack Track(const std::vector<TagDetection>& tags, TimeNs t_ns);
 
  private:

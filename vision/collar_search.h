@@ -1,0 +1,46 @@
+// Where the collar is in a picture when it is some pixels off the place it is thought to be at.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "core/image.h"
+#include "core/pose.h"
+#include "core/tag_collar.h"
+#include "vision/camera_model.h"
+
+namespace flextip {
+
+class CollarSearch {
+ public:
+  /// Throws InputError for a tag that does not exist. The camera must outlive the search.
+  CollarSearch(const CameraModel& camera, const TagCollar& collar);
+
+  struct Match {
+    Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();
+    double correlation = 0;  ///< of the tags' cells and the picture, mean of the faces; -1 to 1
+  };
+  /// Moves the tags as they would be seen from T_CE over the picture, up to `radius_px` either way,
+  /// in steps of about half a cell, and finds where they correlate best.
+  Match Find(const Image& image, const Pose& T_CE, double radius_px) const;
+
+  /// T_CE moved across the line of sight so that the collar is seen `shift_px` away.
+  Pose Shifted(const Pose& T_CE, const Eigen::Vector2d& shift_px) const;
+
+ private:
+  struct Face {
+    CollarTag tag;
+    std::vector<Eigen::Vector3d> x_E;  // places on the tag
+    std::vector<float> white;          // their whiteness, smoothed over about a cell
+  };
+  /// A face's template: places in the reduced picture, values of mean 0 and square sum 1.
+  struct Template {
+    std::vector<int> offsets;
+    std::vector<float> values;
+  };
+
+  const CameraModel& camera_;
+  std::vector<Face> faces_;
+};
+
+}  // namespace flextip

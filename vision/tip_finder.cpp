@@ -1,0 +1,307 @@
+#include "vision/tip_finder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/rotation.h"
+#include "vision/reprojection.h"
+
+namespace flextip {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+constexpr double kMinSearchCorrelation = 0.35;
+constexpr double kAmbiguousRatio = 30.0;   // twice the log of the odds
+constexpr double kCornerFallback_px = 0.2;  // what corners alone may be wrong by: gamma, blur
+constexpr double kFirstBlurSd_px2 = 3.0;
+constexpr int kDetectMargin_px = 12;
+
+TagDetectorOptions DetectorFor(const TagCollar& collar, TagDetectorOptions options, bool quick) {
+  options.family = collar.family;
+  if (quick) options.quad_decimate = std::max(2.0, options.quad_decimate);
+  return options;
+}
+
+Matrix6 Turned(const Matrix6& covariance_C, const Eigen::Matrix3d& R_RC) {
+  Matrix6 Q = Matrix6::Zero();
+  Q.topLeftCorner<3, 3>() = Q.bottomRightCorner<3, 3>() = R_RC;
+  return Q * covariance_C * Q.transpose();
+}
+
+Image Crop(const Image& image, int x0, int y0, int width, int height) {
+  Image crop(width, height, image.channels);
+  for (int y = 0; y < height; ++y) {
+    const std::uint8_t* from = image.Row(y0 + y) + static_cast<std::ptrdiff_t>(x0) * image.channels;
+    std::copy(from, from + static_cast<std::ptrdiff_t>(width) * image.channels, crop.Row(y));
+  }
+  return crop;
+}
+
+// The pose under which a tag, seen as from T_CE, looks nearly the same: turned about its centre so
+// that the normal comes to lie on the other side of the line of sight.
+Pose OtherPlanarPose(const Pose& T_CE, const Pose& T_EG) {
+  const Pose T_CG = T_CE * T_EG;
+  const Eigen::Vector3d normal = T_CG.R.col(2), sight = T_CG.p.normalized();
+  const Eigen::Vector3d axis = normal.cross(sight);
+  const double angle = std::atan2(axis.norm(), normal.dot(sight));
+  if (axis.norm() < 1e-6) return T_CE;
+  const Pose turned{ExpRotation(2 * angle * axis.normalized()) * T_CG.R, T_CG.p};
+  return turned * T_EG.Inverse();
+}
+
+}  // namespace
+
+TipFinder::TipFinder(const std::vector<CameraCalibration>& cameras, const TagCollar& collar,
+                     const TrackerOptions& options)
+    : collar_(collar),
+      options_(options),
+      detector_(DetectorFor(collar, options.detector, false)),
+      quick_detector_(DetectorFor(collar, options.detector, true)),
+      fit_(cameras, collar, options.photometric) {
+  for (const CameraCalibration& camera : cameras) {
+    models_.push_back(std::make_unique<CameraModel>(camera));
+    searches_.emplace_back(*models_.back(), collar);
+    OpticsPrior prior;
+    prior.mean.gamma = camera.gamma.value_or(options.gamma_guess);
+    prior.gamma_sd = camera.gamma ? 0.0 : options.gamma_guess_sd;
+    prior.print_offset_sd_m = options.print_offset_sd_m;
+    prior.blur_sd_px2 = kFirstBlurSd_px2;
+    priors_.push_back(prior);
+  }
+}
+
+void TipFinder::Forget() {
+  for (OpticsPrior& prior : priors_) {
+    prior.mean.blur_px2 = Optics().blur_px2;
+    prior.blur_sd_px2 = kFirstBlurSd_px2;
+  }
+}
+
+void TipFinder::Learn(const Sight& sight) {
+  if (sight.source != TrackSource::kPixels) return;
+  for (std::size_t i = 0; i < priors_.size(); ++i) {
+    if (sight.pixels.views[i].noise_grey > 0) priors_[i] = sight.pixels.views[i].learned;
+  }
+}
+
+bool TipFinder::MightSee(const Pose& T_RE) const {
+  for (const auto& model : models_) {
+    const CameraCalibration& c = model->Calibration();
+    for (const CollarTag& tag : collar_.tags) {
+      const auto px = model->Project(c.T_RC.Inverse() * (T_RE * tag.T_EG.p));
+      const bool inside = px && px->x() > -20 && px->y() > -20 && px->x() < c.width_px + 20 &&
+                          px->y() < c.height_px + 20;
+      if (inside) return true;
+    }
+  }
+  return false;
+}
+
+Sight TipFinder::FitPixels(const Images& images, const Pose& T_RE) {
+  Sight sight;
+  sight.pixels = fit_.Fit(images, T_RE, priors_);
+  if (!sight.pixels.IsUsable()) return sight;
+  sight.source = TrackSource::kPixels;
+  sight.T_RE = sight.pixels.T_RE;
+  sight.covariance = sight.pixels.covariance;
+  sight.tags_used = sight.pixels.faces;
+  for (const ViewFit& view : sight.pixels.views) {
+    sight.noise_grey = std::max(sight.noise_grey, view.noise_grey);
+  }
+  sight.tags = PredictedTags(sight.pixels);
+  return sight;
+}
+
+std::vector<TagDetection> TipFinder::PredictedTags(const PhotometricResult& fit) const {
+  std::vector<TagDetection> tags;
+  const Pose T_CE = models_[0]->Calibration().T_RC.Inverse() * fit.T_RE;
+  for (const FaceFit& face : fit.views[0].faces) {
+    const auto tag = std::find_if(collar_.tags.begin(), collar_.tags.end(),
+                                  [&](const CollarTag& t) { return t.id == face.tag_id; });
+    TagDetection detection;
+    detection.id = face.tag_id;
+    detection.decision_margin = 0.5 * face.contrast;
+    detection.refined = true;
+    const auto corners_E = CornersInE(*tag);
+    for (int i = 0; i < 4; ++i) {
+      const auto px = models_[0]->Project(T_CE * corners_E[i]);
+      if (px) detection.corners_px[i] = *px;
+      detection.raw_corners_px[i] = detection.corners_px[i] + Eigen::Vector2d(0.5, 0.5);
+    }
+    tags.push_back(detection);
+  }
+  return tags;
+}
+
+Sight TipFinder::FindNear(const Images& images, const Pose& T_RE, double radius_px) {
+  if (options_.photometric_fit) {
+    Sight sight = FitPixels(images, T_RE);
+    for (std::size_t i = 0; i < images.size() && !sight.Found(); ++i) {
+      if (images[i] == nullptr) continue;
+      const Pose& T_RC = models_[i]->Calibration().T_RC;
+      const Pose T_CE = T_RC.Inverse() * T_RE;
+      const CollarSearch::Match match = searches_[i].Find(*images[i], T_CE, radius_px);
+      if (match.correlation < kMinSearchCorrelation) continue;
+      sight = FitPixels(images, T_RC * searches_[i].Shifted(T_CE, match.shift_px));
+    }
+    if (sight.Found()) {
+      CheckOtherPlanarPose(images, T_RE, sight);
+      return sight;
+    }
+  }
+  std::vector<std::vector<TagDetection>> tags(images.size());
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (images[i] != nullptr) tags[i] = DetectNear(*images[i], i, T_RE, radius_px);
+  }
+  Sight sight = BestOf(tags, T_RE);
+  if (!sight.Found() || !options_.photometric_fit) return sight;
+  sight = Refined(images, sight);
+  CheckOtherPlanarPose(images, T_RE, sight);
+  return sight;
+}
+
+std::vector<TagDetection> TipFinder::DetectNear(const Image& image, std::size_t camera,
+                                                const Pose& T_RE, double radius_px) {
+  const Pose T_CE = models_[camera]->Calibration().T_RC.Inverse() * T_RE;
+  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  for (const CollarTag& tag : collar_.tags) {
+    for (const Eigen::Vector3d& corner : CornersInE(tag)) {
+      const auto px = models_[camera]->Project(T_CE * corner);
+      if (!px) continue;
+      low = low.cwiseMin(*px);
+      high = high.cwiseMax(*px);
+    }
+  }
+  const double margin = radius_px + kDetectMargin_px + 0.1 * (high - low).maxCoeff();
+  const int x0 = static_cast<int>(std::clamp(low.x() - margin, 0.0, image.width_px - 1.0));
+  const int y0 = static_cast<int>(std::clamp(low.y() - margin, 0.0, image.height_px - 1.0));
+  const int x1 = static_cast<int>(std::clamp(high.x() + margin, 0.0, image.width_px - 1.0));
+  const int y1 = static_cast<int>(std::clamp(high.y() + margin, 0.0, image.height_px - 1.0));
+  if (x1 - x0 < 16 || y1 - y0 < 16) return {};
+  auto tags = detector_.Detect(Crop(image, x0, y0, x1 - x0 + 1, y1 - y0 + 1));
+  for (TagDetection& tag : tags) {
+    for (auto* corners : {&tag.corners_px, &tag.raw_corners_px}) {
+      for (Eigen::Vector2d& corner : *corners) corner += Eigen::Vector2d(x0, y0);
+    }
+  }
+  return tags;
+}
+
+Sight TipFinder::FindAnywhere(const Images& images, const std::optional<Pose>& near_T_RE,
+                              bool thorough) {
+  std::vector<std::vector<TagDetection>> tags(images.size());
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (images[i] != nullptr) tags[i] = (thorough ? detector_ : quick_detector_).Detect(*images[i]);
+  }
+  Sight sight = BestOf(tags, near_T_RE);
+  if (!sight.Found() || !options_.photometric_fit) return sight;
+  sight = Refined(images, sight);
+  CheckOtherPlanarPose(images, near_T_RE, sight);
+  return sight;
+}
+
+// The camera that knows best decides.
+Sight TipFinder::BestOf(const std::vector<std::vector<TagDetection>>& tags,
+                        const std::optional<Pose>& near_T_RE) const {
+  Sight best;
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    const Pose& T_RC = models_[i]->Calibration().T_RC;
+    std::optional<Pose> near_T_CE;
+    if (near_T_RE) near_T_CE = T_RC.Inverse() * *near_T_RE;
+    CollarPoseOptions corners = options_.pose;
+    if (options_.photometric_fit) corners.corner_noise_floor_px = kCornerFallback_px;
+    const CollarPose pose =
+        EstimateCollarPose(*models_[i], collar_, tags[i], corners, near_T_CE);
+    if (!pose.IsUsable()) {
+      if (i == 0) best.tags = tags[0];
+      continue;
+    }
+    const Matrix6 covariance = Turned(pose.covariance, T_RC.R);
+    if (best.Found() && covariance.bottomRightCorner<3, 3>().trace() >
+                            best.covariance.bottomRightCorner<3, 3>().trace()) {
+      continue;
+    }
+    best.source = TrackSource::kCorners;
+    best.T_RE = T_RC * pose.T_CE;
+    best.covariance = covariance;
+    best.tags = tags[0];
+    best.rms_px = pose.rms_px;
+    best.squared_error_px2 = pose.squared_error_px2;
+    best.dof = pose.dof;
+    best.tags_used = pose.tags_used;
+    best.ambiguous = pose.ambiguous;
+    if (pose.alternative) best.alternative_T_RE = T_RC * *pose.alternative;
+  }
+  return best;
+}
+
+Sight TipFinder::FromTags(const std::vector<TagDetection>& tags,
+                          const std::optional<Pose>& near_T_RE,
+                          const CollarPoseOptions& options) const {
+  const Pose& T_RC = models_[0]->Calibration().T_RC;
+  std::optional<Pose> near_T_CE;
+  if (near_T_RE) near_T_CE = T_RC.Inverse() * *near_T_RE;
+  const CollarPose pose = EstimateCollarPose(*models_[0], collar_, tags, options, near_T_CE);
+  Sight sight;
+  sight.tags = tags;
+  if (!pose.IsUsable()) return sight;
+  sight.source = TrackSource::kCorners;
+  sight.T_RE = T_RC * pose.T_CE;
+  sight.covariance = Turned(pose.covariance, T_RC.R);
+  sight.rms_px = pose.rms_px;
+  sight.squared_error_px2 = pose.squared_error_px2;
+  sight.dof = pose.dof;
+  sight.tags_used = pose.tags_used;
+  sight.ambiguous = pose.ambiguous;
+  if (pose.alternative) sight.alternative_T_RE = T_RC * *pose.alternative;
+  return sight;
+}
+
+// What the corners say, made better by the pixels where those agree.
+Sight TipFinder::Refined(const Images& images, const Sight& corners) {
+  Sight sight = FitPixels(images, corners.T_RE);
+  if (!sight.Found() && corners.alternative_T_RE) {
+    sight = FitPixels(images, *corners.alternative_T_RE);
+  }
+  if (!sight.Found()) return corners;
+  sight.rms_px = corners.rms_px;
+  sight.tags = corners.tags;
+  return sight;
+}
+
+// With one plane in view two poses may fit: tries the other, keeps the likelier, and where both
+// are nearly as likely takes the one that is expected.
+void TipFinder::CheckOtherPlanarPose(const Images& images, const std::optional<Pose>& near_T_RE,
+                                     Sight& sight) {
+  if (sight.source != TrackSource::kPixels || !sight.pixels.one_plane) return;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (images[i] == nullptr || sight.pixels.views[i].faces.empty()) continue;
+    const auto tag = std::find_if(collar_.tags.begin(), collar_.tags.end(), [&](const CollarTag& t) {
+      return t.id == sight.pixels.views[i].faces[0].tag_id;
+    });
+    const Pose& T_RC = models_[i]->Calibration().T_RC;
+    const Pose other = T_RC * OtherPlanarPose(T_RC.Inverse() * sight.T_RE, tag->T_EG);
+    Sight second = FitPixels(images, other);
+    if (!second.Found()) return;
+    const double apart = PoseDifference(sight.T_RE, second.T_RE).head<3>().norm();
+    if (apart < 0.02) return;  // the same minimum
+    double ratio = LogLikelihoodRatio2(sight.pixels, second.pixels);
+    const bool unclear = std::abs(ratio) < kAmbiguousRatio;
+    bool swap = ratio < 0;
+    if (unclear && near_T_RE) {
+      swap = PoseDifference(*near_T_RE, second.T_RE).head<3>().norm() <
+             PoseDifference(*near_T_RE, sight.T_RE).head<3>().norm();
+    }
+    if (swap) std::swap(sight, second);
+    sight.alternative_T_RE = second.T_RE;
+    sight.ambiguous = unclear;
+    if (unclear && !near_T_RE) {
+      const Eigen::Matrix<double, 6, 1> difference = PoseDifference(sight.T_RE, second.T_RE);
+      sight.covariance += 0.5 * difference * difference.transpose();
+    }
+    return;
+  }
+}
+
+}  // namespace flextip
