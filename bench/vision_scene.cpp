@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/rotation.h"
 #include "simulation/tag_pattern.h"
 #include "vision/collar_pose.h"
 
@@ -59,6 +60,19 @@ ShaftCurve ArcShaft(const Pose& T_RE, double radius_m, double diameter_m) {
         T_RE * Eigen::Vector3d(-radius_m * std::sin(angle), radius_m * (1 - std::cos(angle)), 0));
   }
   return curve;
+}
+
+Pose CollarSeen(const Eigen::Vector3d& middle_C, double around, double lean, double roll,
+                double behind_tip_m) {
+  const Eigen::Vector3d view = middle_C.normalized();
+  const Eigen::Matrix<double, 3, 2> across = NormalBasis(view);
+  const Eigen::Vector3d side = std::cos(around) * across.col(0) + std::sin(around) * across.col(1);
+  const Eigen::Vector3d d_C = std::cos(lean) * side + std::sin(lean) * view;
+  const Eigen::Vector3d out =
+      (-view + view.dot(d_C) * d_C).normalized();  // to the camera, across the shaft
+  Eigen::Matrix3d R_CE;
+  R_CE << d_C, out, d_C.cross(out);
+  return {R_CE * ExpRotation({roll, 0, 0}), middle_C + behind_tip_m * d_C};
 }
 
 std::map<int, TagCorners> TagsInView(const CameraModel& camera, const TagCollar& collar,
