@@ -58,8 +58,8 @@ std::vector<std::unique_ptr<VisionPeer>> MakePeers(const CameraCalibration& came
 std::optional<Pose> PoseByPnp(const CameraCalibration& camera, const TagCollar& collar,
                               const TagsFound& corners_px);
 
-/// ViSP's model-based tracker of edges, on the outlines of a collar's tags. It follows a pose; its
-/// pictures must be free of lens distortion. Null where ViSP is not installed.
+/// ViSP's model-based tracker, of edges on the outlines of a collar's tags and of points within. It
+/// follows a pose; its pictures must be free of lens distortion. Null where ViSP is not installed.
 class VispTracker {
  public:
   virtual ~VispTracker() = default;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <opencv2/imgproc.hpp>
 
 #include "bench/vision_peer.h"
@@ -130,19 +131,26 @@ std::string CaoModel(const TagCollar& collar) {
          std::to_string(collar.tags.size()) + '\n' + faces + "0\n0\n";
 }
 
-class VispEdgeTracker : public VispTracker {
+// Its model loader writes to std::cout whatever it is told.
+class QuietOutput {
  public:
-  VispEdgeTracker(const CameraCalibration& camera, const TagCollar& collar)
-      : tracker_(1, vpMbGenericTracker::EDGE_TRACKER) {
-    vpMe me;  // as in its tutorial for AprilTags, but for the range: 30 px of motion
-    me.setMaskSize(5);
-    me.setMaskNumber(180);
-    me.setRange(12);
-    me.setThreshold(10000);
-    me.setMu1(0.5);
-    me.setMu2(0.5);
-    me.setSampleStep(4);
-    tracker_.setMovingEdge(me);
+  QuietOutput() : kept_(std::cout.rdbuf(nullptr)) {}
+  ~QuietOutput() {
+    std::cout.rdbuf(kept_);
+    std::cout.clear();
+  }
+  QuietOutput(const QuietOutput&) = delete;
+  QuietOutput& operator=(const QuietOutput&) = delete;
+
+ private:
+  std::streambuf* kept_;
+};
+
+class VispHybridTracker : public VispTracker {
+ public:
+  VispHybridTracker(const CameraCalibration& camera, const TagCollar& collar)
+      : tracker_(1, vpMbGenericTracker::EDGE_TRACKER | vpMbGenericTracker::KLT_TRACKER) {
+    SetFeatures();
     vpCameraParameters parameters;
     parameters.initPersProjWithoutDistortion(camera.fu_px, camera.fv_px, camera.cu_px,
                                              camera.cv_px);
@@ -153,10 +161,14 @@ class VispEdgeTracker : public VispTracker {
     tracker_.setFarClippingDistance(2.0);
     const auto file = std::filesystem::temp_directory_path() / "flextip_collar.cao";
     std::ofstream(file) << CaoModel(collar);
-    tracker_.loadModel(file.string());
+    {
+      const QuietOutput quiet;
+      tracker_.loadModel(file.string());
+    }
     std::filesystem::remove(file);
   }
   void Start(const Image& grey, const Pose& T_CE) override {
+    const QuietOutput quiet;
     tracker_.initFromPose(ToVisp(grey), FromPose(T_CE));
   }
   std::optional<Pose> Track(const Image& grey, double& ms) override {
@@ -177,6 +189,29 @@ class VispEdgeTracker : public VispTracker {
   }
 
  private:
+  // As its tutorial on tracking from AprilTags has them; points may be nearer to each other and to
+  // a face's rim, for tags of 45 px.
+  void SetFeatures() {
+    vpMe me;
+    me.setMaskSize(5);
+    me.setMaskNumber(180);
+    me.setRange(12);
+    me.setThreshold(10000);
+    me.setMu1(0.5);
+    me.setMu2(0.5);
+    me.setSampleStep(4);
+    tracker_.setMovingEdge(me);
+    vpKltOpencv points;
+    points.setMaxFeatures(300);
+    points.setWindowSize(5);
+    points.setQuality(0.015);
+    points.setMinDistance(4);
+    points.setHarrisFreeParameter(0.01);
+    points.setBlockSize(3);
+    points.setPyramidLevels(3);
+    tracker_.setKltOpencv(points);
+    tracker_.setKltMaskBorder(2);
+  }
   vpMbGenericTracker tracker_;
 };
 
@@ -189,7 +224,7 @@ std::unique_ptr<VisionPeer> MakeVispPeer(const CameraCalibration& camera, const 
 
 std::unique_ptr<VispTracker> MakeVispTracker(const CameraCalibration& camera,
                                              const TagCollar& collar) {
-  return std::make_unique<VispEdgeTracker>(camera, collar);
+  return std::make_unique<VispHybridTracker>(camera, collar);
 }
 
 }  // namespace flextip

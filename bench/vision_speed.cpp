@@ -153,7 +153,7 @@ class VispTracking : public Contender {
     }
     Restart();
   }
-  std::string Name() const override { return "ViSP edge tracker"; }
+  std::string Name() const override { return "ViSP model tracker"; }
   void Restart() override {
     tracker_ = MakeVispTracker(clip_.camera, clip_.collar);
     lost_ = true;
