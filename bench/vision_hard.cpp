@@ -7,6 +7,7 @@
 #include <fstream>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "bench/tool.h"
@@ -25,7 +26,7 @@ struct Arguments {
   std::vector<std::string> events, families = {"tag36h11", "tag25h9", "tagStandard41h12"};
   bool wrist = false, summarize = false;
   double drift_mm = 1.0, drift_deg = 1.0;
-  std::filesystem::path out, pictures;
+  std::filesystem::path out, pictures, sheet;
 };
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -43,6 +44,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--drift-deg", a.drift_deg, "Of its rotation, per axis");
   app.add_option("--sequence", a.only, "Only the sequence of this number");
   app.add_option("--pictures", a.pictures, "Folder for PNGs of the frames");
+  app.add_option("--sheet", a.sheet, "Only writes this picture: a frame of each event");
   app.add_flag("--summarize", a.summarize, "Only read sequences.jsonl");
   app.add_option("-o,--out", a.out,
                  "Folder for sequences.jsonl, summary.json, table.txt, wrong.txt")
@@ -102,9 +104,39 @@ void WritePicture(const Image& image, const std::filesystem::path& folder, int n
   cv::imwrite((folder / fmt::format("{:04}_{:03}.png", number, frame)).string(), view);
 }
 
+VisionSequence SequenceOf(const Arguments& a, int number) {
+  return DrawSequence(a.seed, number, a.frames_each, a.width_px, a.families,
+                      a.events.empty() ? VisionEvents() : a.events);
+}
+
+// The middle of each event, four in a row.
+void WriteSheet(const Arguments& a) {
+  constexpr int kColumns = 4;
+  const std::size_t events = a.events.empty() ? VisionEvents().size() : a.events.size();
+  std::vector<cv::Mat> rows, row;
+  for (std::size_t i = 0; i < events; ++i) {
+    VisionSequence s = SequenceOf(a, static_cast<int>(i));
+    const Laparoscope scope(s.camera, s.collar, s.options);
+    const FrameRange range = s.in_event.empty() ? FrameRange{0, a.frames_each} : s.in_event[0];
+    const int last = std::min(range.last, a.frames_each - 1);
+    Image image = s.Render(scope, (range.first + last) / 2);
+    cv::Mat view = cv::Mat(image.height_px, image.width_px, CV_8UC3, image.data.data()).clone();
+    cv::putText(view, fmt::format("{}", fmt::join(s.events, " + ")), {10, 28},
+                cv::FONT_HERSHEY_SIMPLEX, 0.8, {255, 255, 255}, 2, cv::LINE_AA);
+    row.push_back(view);
+    if (row.size() < kColumns && i + 1 < events) continue;
+    while (row.size() < kColumns) row.push_back(cv::Mat::zeros(view.size(), view.type()));
+    cv::hconcat(row, rows.emplace_back());
+    row.clear();
+  }
+  cv::Mat sheet;
+  cv::vconcat(rows, sheet);
+  cv::resize(sheet, sheet, {}, 0.6, 0.6, cv::INTER_AREA);
+  cv::imwrite(a.sheet.string(), sheet, {cv::IMWRITE_JPEG_QUALITY, 88});
+}
+
 SequenceScore RunSequence(const Arguments& a, int number) {
-  const VisionSequence s = DrawSequence(a.seed, number, a.frames_each, a.width_px, a.families,
-                                        a.events.empty() ? VisionEvents() : a.events);
+  const VisionSequence s = SequenceOf(a, number);
   const Laparoscope scope(s.camera, s.collar, s.options);
   TipTracker tracker(s.camera, s.collar);
   WristModel model(a.drift_deg * M_PI / 180, 1e-3 * a.drift_mm, a.seed + number);
@@ -166,6 +198,10 @@ void Run(Arguments& arguments) {
   cv::setNumThreads(1);
   if (arguments.wrist && !kTakesPrediction<TipTracker>) {
     throw InputError("--wrist: this tracker takes no prediction");
+  }
+  if (!arguments.sheet.empty()) {
+    WriteSheet(arguments);
+    return;
   }
   std::filesystem::create_directories(arguments.out);
   if (!arguments.summarize) RunAll(arguments);
