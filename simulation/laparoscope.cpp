@@ -11,6 +11,7 @@
 #include "simulation/render_raster.h"
 #include "simulation/render_rays.h"
 #include "simulation/render_scene.h"
+#include "simulation/render_veil.h"
 #include "simulation/tissue_texture.h"
 #include "vision/camera_model.h"
 
@@ -18,11 +19,34 @@ namespace flextip {
 namespace {
 
 constexpr double kDistanceWithoutTissue_m = 0.1;
-constexpr std::size_t kMaxOccluders = 24;
+constexpr std::size_t kMaxOccluders = 24, kMaxStains = 16;
 
 void Require(bool condition, const char* name, double found, const char* expected) {
   if (condition) return;
   throw InputError(fmt::format("laparoscope: {}: found {}, expected {}", name, found, expected));
+}
+
+void Check(const Hazards& hazards) {
+  for (const Smoke& s : hazards.smoke) {
+    Require(s.transmission > 0 && s.transmission <= 1, "smoke: transmission", s.transmission,
+            "above 0, 1 at most");
+    Require(s.unevenness >= 0 && s.unevenness <= 1, "smoke: unevenness", s.unevenness, "0 to 1");
+    Require(s.scale_px > 0, "smoke: scale", s.scale_px, "> 0 px");
+  }
+  for (const Defocus& d : hazards.defocus) {
+    Require(d.sigma_px >= 0 && d.sigma_px < 50, "defocus: sigma", d.sigma_px, "0 to 50 px");
+  }
+  for (const ExposureStep& e : hazards.exposure_steps) {
+    Require(std::isfinite(e.factor) && e.factor > 0, "exposure step", e.factor, "> 0");
+  }
+  for (const Stain& s : hazards.stains) {
+    Require(s.radius_m > 0, "stain: radius", s.radius_m, "> 0");
+    Require(s.opacity >= 0 && s.opacity <= 1, "stain: opacity", s.opacity, "0 to 1");
+  }
+  Require(hazards.stains.size() <= kMaxStains, "number of stains",
+          static_cast<double>(hazards.stains.size()), "16 at most");
+  Require(hazards.others.size() <= 1, "number of other instruments",
+          static_cast<double>(hazards.others.size()), "1 at most");
 }
 
 void Check(const CameraCalibration& camera, const LaparoscopeOptions& o) {
@@ -45,6 +69,7 @@ void Check(const CameraCalibration& camera, const LaparoscopeOptions& o) {
     const double length = (occluder.b_R - occluder.a_R).norm();
     Require(length > 0, "occluder: distance of a and b", length, "> 0");
   }
+  Check(o.hazards);
 }
 
 // The light's strength that gives the exposure asked for.
@@ -74,10 +99,13 @@ struct Laparoscope::Impl {
   Impl(const CameraCalibration& calibration, const TagCollar& tags, const LaparoscopeOptions& o)
       : options((Check(calibration, o), o)),
         camera(calibration),
-        collar(tags),
+        collar(tags, o.hazards.mirrored_tags),
         rays(calibration),
         light(MakeLight(calibration, o)),
         film(o, calibration.gamma.value_or(o.gamma)) {
+    for (const OtherInstrument& other : o.hazards.others) {
+      other_collars.emplace_back(other.collar, std::vector<int>{});
+    }
     DrawTissue();
   }
 
@@ -95,9 +123,17 @@ struct Laparoscope::Impl {
     });
   }
 
+  void AddAir(LinearImage& image, int frame_number) const {
+    render::DrawSmoke(options.hazards.smoke, frame_number, options.seed, image);
+    const auto exposure = static_cast<float>(options.hazards.ExposureAt(frame_number));
+    if (exposure == 1.0f) return;
+    for (float& v : image.data) v *= exposure;
+  }
+
   LaparoscopeOptions options;
   CameraModel camera;
   render::CollarBody collar;
+  std::vector<render::CollarBody> other_collars;
   render::PixelRays rays;
   render::Light light;
   render::Film film;
@@ -113,15 +149,34 @@ Laparoscope& Laparoscope::operator=(Laparoscope&&) noexcept = default;
 
 LinearImage Laparoscope::RenderLinear(const ShaftCurve& curve, int frame_number) const {
   assert(curve.points.size() >= 2 && curve.diameter_m > 0);
-  const render::Scene scene(impl_->camera, impl_->collar, impl_->options.occluders, curve,
-                            frame_number);
+  render::Scene scene(impl_->camera, frame_number);
+  scene.AddInstrument(curve, impl_->collar, impl_->options.hazards);
+  for (std::size_t i = 0; i < impl_->other_collars.size(); ++i) {
+    scene.AddOther(impl_->options.hazards.others[i], impl_->other_collars[i]);
+  }
+  for (const Occluder& occluder : impl_->options.occluders) scene.AddOccluder(occluder);
+  scene.Finish();
   LinearImage image = impl_->tissue;
   render::Raster(impl_->rays, scene, impl_->light).Draw(image);
+  impl_->AddAir(image, frame_number);
   return impl_->options.grey ? ToGrey(image) : image;
 }
 
 Image Laparoscope::Render(const ShaftCurve& curve, int frame_number) const {
-  LinearImage light = RenderLinear(curve, frame_number);
+  return Render(std::span(&curve, 1), frame_number);
+}
+
+Image Laparoscope::Render(std::span<const ShaftCurve> during_exposure, int frame_number) const {
+  assert(!during_exposure.empty());
+  LinearImage light = RenderLinear(during_exposure.front(), frame_number);
+  for (const ShaftCurve& curve : during_exposure.subspan(1)) {
+    const LinearImage more = RenderLinear(curve, frame_number);
+    for (std::size_t i = 0; i < light.data.size(); ++i) light.data[i] += more.data[i];
+  }
+  const float part = 1.0f / static_cast<float>(during_exposure.size());
+  if (during_exposure.size() > 1) {
+    for (float& v : light.data) v *= part;
+  }
   return impl_->film.Develop(light, frame_number);
 }
 

@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/tag_collar.h"
+#include "simulation/render_hazards.h"
 #include "simulation/shaft_curve.h"
 
 namespace flextip {
@@ -41,11 +43,12 @@ struct Occluder {
   int first_frame = 0, last_frame = std::numeric_limits<int>::max();
 };
 
-/// Order of the image's making: linear radiance, blur, exposure, shot and read noise, clipping at
-/// the full well, gamma, 8 bit.
+/// Order of the image's making: linear radiance, smoke, exposure, blur, shot and read noise,
+/// clipping at the full well, gamma, 8 bit.
 struct LaparoscopeOptions {
   TissueOptions tissue;
   std::vector<Occluder> occluders;
+  Hazards hazards;
   double exposure = 0.33;          ///< signal, as a part of the full well, of a white matt surface
                                    ///< that faces the scope on its axis at `exposure_distance_m`
   double exposure_distance_m = 0;  ///< 0: the distance of the tissue along the optical axis, or
@@ -87,7 +90,12 @@ class Laparoscope {
   /// The frame as the camera gives it. The same seed, number and curve give the same bytes.
   Image Render(const ShaftCurve& curve, int frame_number) const;
 
-  /// The noise-free linear light in each pixel (its mean over the pixel's area), for tests.
+  /// With motion blur: the linear light's mean over the exposure, in which the shaft takes the
+  /// shapes `during_exposure` (at least one; at equal steps of time). Nothing else moves meanwhile.
+  Image Render(std::span<const ShaftCurve> during_exposure, int frame_number) const;
+
+  /// The noise-free linear light in each pixel (its mean over the pixel's area), smoke and exposure
+  /// included, for tests.
   LinearImage RenderLinear(const ShaftCurve& curve, int frame_number) const;
 
   /// The exponent in use: the calibration's where it has one.

@@ -42,6 +42,13 @@ std::vector<Vector2d> ConvexHull(std::vector<Vector2d> points) {
 
 Vector2d Across(const Vector3d& v) { return v.tail<2>(); }
 
+void Mirror(TagPattern& pattern) {
+  for (int row = 0; row < pattern.cells; ++row) {
+    const auto first = pattern.white.begin() + row * pattern.cells;
+    std::reverse(first, first + pattern.cells);
+  }
+}
+
 }  // namespace
 
 bool CollarBody::Plate::AlongShaft() const {
@@ -50,15 +57,17 @@ bool CollarBody::Plate::AlongShaft() const {
          Across(Normal()).dot(Across(T_EG.p)) > 0;
 }
 
-CollarBody::CollarBody(const TagCollar& collar) {
+CollarBody::CollarBody(const TagCollar& collar, const std::vector<int>& mirrored) {
   std::vector<Plate> left;
   for (const CollarTag& tag : collar.tags) {
     if (!(tag.size_m > 0)) {
       throw InputError(fmt::format("tag {}: found size {} m, expected > 0", tag.id, tag.size_m));
     }
     patterns_.push_back(MakeTagPattern(collar.family, tag.id));
+    if (std::count(mirrored.begin(), mirrored.end(), tag.id) > 0) Mirror(patterns_.back());
     const double cell_m = tag.size_m / patterns_.back().border_cells;
-    left.push_back({tag.T_EG, 0.5 * patterns_.back().cells * cell_m, cell_m, patterns_.size() - 1});
+    left.push_back(
+        {tag.T_EG, 0.5 * patterns_.back().cells * cell_m, cell_m, tag.id, patterns_.size() - 1});
   }
   while (!left.empty()) {  // rings of tags at one place along the shaft
     const Plate first = left.front();
@@ -145,6 +154,7 @@ void CollarBody::AddFace(const std::vector<Vector3d>& corners, const Vector3d& n
     face.ey = plate->T_EG.R.col(1);
     face.normal = plate->Normal();
     face.cell_m = plate->cell_m;
+    face.tag_id = plate->id;
   } else {
     face.origin = corners[0];
     face.ex = (corners[1] - corners[0]).normalized();

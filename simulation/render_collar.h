@@ -16,7 +16,8 @@ namespace flextip::render {
 /// tag that lies otherwise is a plate by itself.
 class CollarBody {
  public:
-  explicit CollarBody(const TagCollar& collar);
+  /// Tags with ids in `mirrored` are printed left for right.
+  CollarBody(const TagCollar& collar, const std::vector<int>& mirrored);
   /// The faces seen from the camera, in its frame.
   std::vector<Face> FacesSeen(const Pose& T_CE) const;
 
@@ -24,6 +25,7 @@ class CollarBody {
   struct Plate {  // a tag with its pattern, in E
     Pose T_EG;
     double half_m = 0, cell_m = 0;
+    int id = 0;
     std::size_t pattern = 0;
     Eigen::Vector3d Normal() const { return -T_EG.R.col(2); }
     bool AlongShaft() const;

@@ -63,9 +63,10 @@ bool Face::MeetPlane(const Vector3d& ray, double& depth, Vector2d& at) const {
 
 bool Face::Inside(const Vector2d& at) const {
   if (disc_radius_m > 0) {
-    const double angle = std::atan2(at.y(), at.x());
+    const Vector2d from = at - disc_centre;
+    const double angle = std::atan2(from.y(), from.x());
     const double rim = 1 + 0.10 * std::sin(3 * angle + 1) + 0.05 * std::sin(7 * angle);
-    return at.squaredNorm() < std::pow(disc_radius_m * rim, 2);
+    if (from.squaredNorm() >= std::pow(disc_radius_m * rim, 2)) return false;
   }
   for (const Vector3d& e : edges_) {
     if (e.x() * at.x() + e.y() * at.y() + e.z() < 0) return false;

@@ -14,9 +14,12 @@ struct Face {
   Eigen::Vector3d origin, ex, ey, normal;  ///< `normal`: unit, out of the visible side
   bool two_sided = false;
   std::vector<Eigen::Vector2d> polygon;  ///< corners (m), anticlockwise in (ex, ey)
-  double disc_radius_m = 0;              ///< a disc where > 0; the polygon then only bounds it
+  double disc_radius_m = 0;              ///< where > 0, only what lies in the disc as well
+  Eigen::Vector2d disc_centre = Eigen::Vector2d::Zero();
   const TagPattern* pattern = nullptr;
-  double cell_m = 0;  ///< side of a cell of the pattern
+  double cell_m = 0;       ///< side of a cell of the pattern
+  int tag_id = -1;         ///< of the tag on it
+  double bulge_per_m = 0;  ///< how the normal that gives the shading leans outward
 
   bool FacesCamera() const { return two_sided || normal.dot(origin) < 0; }
   /// Prepares Intersect; to be called once the fields above are set.
@@ -25,6 +28,11 @@ struct Face {
   bool Intersect(const Eigen::Vector3d& ray, double& depth, Eigen::Vector2d& at) const;
   /// The place where the ray meets the whole plane; false where it does not meet it in front.
   bool MeetPlane(const Eigen::Vector3d& ray, double& depth, Eigen::Vector2d& at) const;
+  /// The normal for shading.
+  Eigen::Vector3d NormalAt(const Eigen::Vector2d& at) const {
+    if (bulge_per_m == 0) return normal;
+    return (normal + bulge_per_m * (at.x() * ex + at.y() * ey)).normalized();
+  }
   bool White(const Eigen::Vector2d& at) const {
     return !pattern || pattern->WhiteAt(at.x() / cell_m, at.y() / cell_m);
   }

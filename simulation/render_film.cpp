@@ -47,7 +47,8 @@ std::vector<float> NormalQuantiles() {
 }  // namespace
 
 Film::Film(const LaparoscopeOptions& options, double gamma)
-    : blur_sigma_px_(options.blur_sigma_px),
+    : hazards_(options.hazards),
+      blur_sigma_px_(options.blur_sigma_px),
       electrons_(options.full_well_electrons),
       read_electrons_(options.read_noise_electrons),
       seed_(options.seed),
@@ -61,9 +62,10 @@ Film::Film(const LaparoscopeOptions& options, double gamma)
 
 Image Film::Develop(LinearImage& light, int frame_number) const {
   const int row_values = light.width_px * light.channels;
-  if (blur_sigma_px_ > 0) {
+  const double sigma_px = hazards_.BlurAt(frame_number, blur_sigma_px_);
+  if (sigma_px > 0) {
     cv::Mat view(light.height_px, light.width_px, CV_32FC(light.channels), light.data.data());
-    cv::GaussianBlur(view, view, {0, 0}, blur_sigma_px_, blur_sigma_px_, cv::BORDER_REPLICATE);
+    cv::GaussianBlur(view, view, {0, 0}, sigma_px, sigma_px, cv::BORDER_REPLICATE);
   }
   Image image(light.width_px, light.height_px, light.channels);
   std::uint64_t frame_state = seed_;

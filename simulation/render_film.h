@@ -20,6 +20,7 @@ class Film {
  private:
   void DevelopRow(const float* light, std::uint8_t* out, int count, std::uint64_t state) const;
 
+  Hazards hazards_;
   double blur_sigma_px_, electrons_, read_electrons_;
   std::uint64_t seed_;
   std::vector<std::uint8_t> code_;  // of the signal's root in steps of 1/65535

@@ -16,11 +16,16 @@ constexpr double kMargin_px = 4.0;
 constexpr double kNear_m = 1e-3;
 constexpr double kLeastStep_m = 1e-9;
 
+// 1: as steel.
+void SetGloss(double strength, Material& material) {
+  material.gloss_wide = static_cast<float>(0.12 * strength);
+  material.gloss_narrow = static_cast<float>(0.42 * strength);
+}
+
 Material Steel() {
   Material steel;
   steel.albedo = {0.27f, 0.26f, 0.255f};
-  steel.gloss_wide = 0.12f;
-  steel.gloss_narrow = 0.42f;
+  SetGloss(1.0, steel);
   return steel;
 }
 
@@ -33,31 +38,74 @@ Material Print() {
 
 }  // namespace
 
-Scene::Scene(const CameraModel& camera, const CollarBody& collar,
-             const std::vector<Occluder>& occluders, const ShaftCurve& curve, int frame_number)
-    : width_px_(camera.Calibration().width_px),
+Scene::Scene(const CameraModel& camera, int frame_number)
+    : camera_(camera),
+      T_CR_(camera.Calibration().T_RC.Inverse()),
+      frame_(frame_number),
+      width_px_(camera.Calibration().width_px),
       height_px_(camera.Calibration().height_px),
       tiles_across_((width_px_ + kTile_px - 1) / kTile_px),
       tiles_down_((height_px_ + kTile_px - 1) / kTile_px),
-      tiles_(static_cast<std::size_t>(tiles_across_) * tiles_down_, 0) {
-  const Pose T_CR = camera.Calibration().T_RC.Inverse();
-  std::vector<Vector3d> points;
-  for (const Vector3d& p : curve.points) {  // points that coincide say nothing
-    const Vector3d x = T_CR * p;
-    if (points.empty() || (x - points.back()).norm() > kLeastStep_m) points.push_back(x);
-  }
-  AddTube(Tube(points, T_CR.R * curve.T_RE.R.col(0), 0.5 * curve.diameter_m, {}), Steel());
-  for (const Face& face : collar.FacesSeen(T_CR * curve.T_RE)) AddFace(face, Print());
-  for (const Occluder& o : occluders) {
-    if (frame_number >= o.first_frame && frame_number <= o.last_frame) {
-      AddOccluder(o, T_CR, frame_number);
-    }
-  }
+      tiles_(static_cast<std::size_t>(tiles_across_) * tiles_down_, 0) {}
+
+void Scene::Finish() {
   materials_.insert(materials_.end(), face_materials_.begin(), face_materials_.end());
   assert(materials_.size() <= kMaxObjects + 1);
   spans_.assign(tubes_.size(), std::vector<Span>(tiles_.size()));
-  for (std::size_t i = 0; i < tubes_.size(); ++i) MarkTube(camera, i);
-  for (std::size_t i = 0; i < faces_.size(); ++i) MarkFace(camera, i);
+  for (std::size_t i = 0; i < tubes_.size(); ++i) MarkTube(i);
+  for (std::size_t i = 0; i < faces_.size(); ++i) MarkFace(i);
+}
+
+void Scene::AddShaft(const ShaftCurve& curve) {
+  std::vector<Vector3d> points;
+  for (const Vector3d& p : curve.points) {  // points that coincide say nothing
+    const Vector3d x = T_CR_ * p;
+    if (points.empty() || (x - points.back()).norm() > kLeastStep_m) points.push_back(x);
+  }
+  AddTube(Tube(points, T_CR_.R * curve.T_RE.R.col(0), 0.5 * curve.diameter_m, {}), Steel());
+}
+
+void Scene::AddInstrument(const ShaftCurve& curve, const CollarBody& collar,
+                          const Hazards& hazards) {
+  AddShaft(curve);
+  Material print = Print();
+  double bulge_per_m = 0;
+  for (const Gloss& gloss : hazards.gloss) {
+    if (!gloss.frames.Has(frame_)) continue;
+    SetGloss(gloss.strength, print);
+    bulge_per_m = gloss.bulge_per_m;
+  }
+  for (Face& face : collar.FacesSeen(T_CR_ * curve.T_RE)) {
+    if (face.tag_id >= 0) face.bulge_per_m = bulge_per_m;
+    AddStains(face, print, hazards.stains);
+    AddFace(std::move(face), print);
+  }
+}
+
+// A stain is the face again, in other colours, within the stain's rim. Among objects at the same
+// depth the first is seen, so it comes before the face.
+void Scene::AddStains(const Face& face, const Material& print, const std::vector<Stain>& stains) {
+  for (const Stain& stain : stains) {
+    if (face.tag_id < 0 || stain.tag_id != face.tag_id || !stain.frames.Has(frame_)) continue;
+    Face film = face;
+    film.disc_radius_m = stain.radius_m;
+    film.disc_centre = stain.centre_m;
+    Material material = print;
+    const auto opacity = static_cast<float>(stain.opacity);
+    const Eigen::Vector3f colour = stain.albedo_bgr.cast<float>();
+    material.albedo += opacity * (colour - material.albedo);
+    material.albedo_black += opacity * (colour - material.albedo_black);
+    AddFace(std::move(film), material);
+  }
+}
+
+void Scene::AddOther(const OtherInstrument& other, const CollarBody& collar) {
+  if (!other.frames.Has(frame_)) return;
+  const Vector3d moved_R = other.velocity_R * static_cast<double>(frame_ - other.frames.first);
+  ShaftCurve curve = other.curve;
+  curve.T_RE.p += moved_R;
+  for (Vector3d& p : curve.points) p += moved_R;
+  AddInstrument(curve, collar, {});
 }
 
 void Scene::AddTube(Tube tube, const Material& material) {
@@ -70,13 +118,13 @@ void Scene::AddFace(Face face, const Material& material) {
   face_materials_.push_back(material);
 }
 
-void Scene::AddOccluder(const Occluder& o, const Pose& T_CR, int frame_number) {
-  const Vector3d moved_R = o.velocity_R * static_cast<double>(frame_number - o.first_frame);
-  const Vector3d a = T_CR * (o.a_R + moved_R), b = T_CR * (o.b_R + moved_R);
+void Scene::AddOccluder(const Occluder& o) {
+  if (frame_ < o.first_frame || frame_ > o.last_frame) return;
+  const Vector3d moved_R = o.velocity_R * static_cast<double>(frame_ - o.first_frame);
+  const Vector3d a = T_CR_ * (o.a_R + moved_R), b = T_CR_ * (o.b_R + moved_R);
   Material material;
   material.albedo = o.albedo_bgr.cast<float>();
-  material.gloss_wide = static_cast<float>(0.12 * o.specular);
-  material.gloss_narrow = static_cast<float>(0.42 * o.specular);
+  SetGloss(o.specular, material);
   const Vector3d axis = (b - a).normalized();
   if (o.kind == Occluder::Kind::kCapsule) {
     const Vector3d reach = o.radius_m * axis;  // a and b are the centres of the round ends
@@ -117,9 +165,9 @@ void Scene::MarkBox(Vector2d low, Vector2d high, int object, std::size_t tube, f
   }
 }
 
-void Scene::MarkTube(const CameraModel& camera, std::size_t index) {
+void Scene::MarkTube(std::size_t index) {
   const Tube& tube = tubes_[index];
-  const CameraCalibration& c = camera.Calibration();
+  const CameraCalibration& c = camera_.Calibration();
   const double focal_px = std::max(c.fu_px, c.fv_px);
   const int steps = static_cast<int>(std::lround(tube.LengthM() / tube.StepM()));
   Vector2d last(-1e9, -1e9);
@@ -127,7 +175,7 @@ void Scene::MarkTube(const CameraModel& camera, std::size_t index) {
     Vector3d x, t;
     tube.Curve(k * tube.StepM(), x, t);
     if (x.z() < std::max(kNear_m, 1.5 * tube.RadiusM())) continue;
-    const auto px = camera.Project(x);
+    const auto px = camera_.Project(x);
     if (!px) continue;
     const double jump = (*px - last).norm();
     if (jump < 3.0 && k != steps) continue;
@@ -141,7 +189,7 @@ void Scene::MarkTube(const CameraModel& camera, std::size_t index) {
   }
 }
 
-void Scene::MarkFace(const CameraModel& camera, std::size_t index) {
+void Scene::MarkFace(std::size_t index) {
   const Face& face = faces_[index];
   const int object = static_cast<int>(tubes_.size() + index) + 1;
   Vector2d low(1e9, 1e9), high(-1e9, -1e9);
@@ -152,7 +200,7 @@ void Scene::MarkFace(const CameraModel& camera, std::size_t index) {
     for (int k = 0; k < kPieces; ++k) {
       const Vector2d at = a + (b - a) * k / kPieces;
       const Vector3d x = face.origin + at.x() * face.ex + at.y() * face.ey;
-      const auto px = x.z() > kNear_m ? camera.Project(x) : std::nullopt;
+      const auto px = x.z() > kNear_m ? camera_.Project(x) : std::nullopt;
       whole_image |= !px;
       if (!px) continue;
       low = low.cwiseMin(*px);
@@ -187,7 +235,7 @@ int Scene::Trace(const Vector3d& ray, ObjectMask candidates, Guesses& guesses,
       double depth = 0;
       Vector2d at;
       if (!face->Intersect(ray, depth, at) || depth >= nearest.depth) continue;
-      nearest = {depth, face->normal, face->White(at)};
+      nearest = {depth, face->NormalAt(at), face->White(at)};
     } else {
       Tube::Hit hit;
       if (!tubes_[object - 1].Intersect(ray, guesses[object - 1], hit)) continue;

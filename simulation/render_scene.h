@@ -32,8 +32,12 @@ class Scene {
  public:
   static constexpr int kTile_px = 8;
 
-  Scene(const CameraModel& camera, const CollarBody& collar, const std::vector<Occluder>& occluders,
-        const ShaftCurve& curve, int frame_number);
+  /// An empty scene. What is added must be finished before it is traced.
+  Scene(const CameraModel& camera, int frame_number);
+  void AddInstrument(const ShaftCurve& curve, const CollarBody& collar, const Hazards& hazards);
+  void AddOther(const OtherInstrument& other, const CollarBody& collar);
+  void AddOccluder(const Occluder& occluder);
+  void Finish();
 
   /// Places along the tubes from which to search; one a tube.
   using Guesses = std::vector<double>;
@@ -58,11 +62,15 @@ class Scene {
   };
   void AddTube(Tube tube, const Material& material);
   void AddFace(Face face, const Material& material);
-  void AddOccluder(const Occluder& occluder, const Pose& T_CR, int frame_number);
-  void MarkTube(const CameraModel& camera, std::size_t tube);
-  void MarkFace(const CameraModel& camera, std::size_t face);
+  void AddShaft(const ShaftCurve& curve);
+  void AddStains(const Face& face, const Material& print, const std::vector<Stain>& stains);
+  void MarkTube(std::size_t tube);
+  void MarkFace(std::size_t face);
   void MarkBox(Eigen::Vector2d low, Eigen::Vector2d high, int object, std::size_t tube, float s);
 
+  const CameraModel& camera_;
+  Pose T_CR_;
+  int frame_;
   int width_px_, height_px_, tiles_across_, tiles_down_;
   std::vector<Tube> tubes_;  // objects 1 to tubes_.size()
   std::vector<Face> faces_;  // objects from tubes_.size() + 1

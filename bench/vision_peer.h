@@ -1,0 +1,82 @@
+// What the vision benches compare: each finds tags in a grey picture and, where it can, the pose of
+// the collar.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/tag_collar.h"
+#include "vision/tag_detector.h"
+
+namespace flextip {
+
+/// By id, in the order and with the pixel origin of TagDetection.
+using TagsFound = std::multimap<int, TagCorners>;
+
+struct PeerAnswer {
+  /// Tags of the collar alone.
+  TagsFound corners_px;
+  std::optional<Pose> T_CE;
+  double ms = 0;  ///< of the search and the pose, conversion of the image's type left out
+};
+
+class VisionPeer {
+ public:
+  virtual ~VisionPeer() = default;
+  virtual std::string Name() const = 0;
+  /// A single picture, without memory of others.
+  virtual PeerAnswer See(const Image& grey) = 0;
+};
+
+/// Detectors with a pose by least squares over the corners of all tags; one thread each.
+std::unique_ptr<VisionPeer> MakeAprilTagPeer(const CameraCalibration& camera,
+                                             const TagCollar& collar, double quad_decimate);
+enum class ArucoRefinement { kSubpixel, kAprilTag };
+std::unique_ptr<VisionPeer> MakeArucoPeer(const CameraCalibration& camera, const TagCollar& collar,
+                                          ArucoRefinement refinement);
+/// Null where ViSP is not installed.
+std::unique_ptr<VisionPeer> MakeVispPeer(const CameraCalibration& camera, const TagCollar& collar,
+                                         double quad_decimate);
+std::unique_ptr<VisionPeer> MakeFlextipPeer(const CameraCalibration& camera,
+                                            const TagCollar& collar);
+/// flextip's detection of tags alone, without a pose.
+std::unique_ptr<VisionPeer> MakeFlextipDetector(const TagCollar& collar);
+
+/// All of them that are there: AprilTag 3, ViSP, ArUco with both refinements, flextip.
+std::vector<std::unique_ptr<VisionPeer>> MakePeers(const CameraCalibration& camera,
+                                                   const TagCollar& collar);
+
+/// Of the collar from the corners of all tags by OpenCV, with the camera's lens model: SQPNP, and
+/// both IPPE poses of each tag, each refined by Levenberg-Marquardt on all corners; the least
+/// residual. Empty without tags.
+std::optional<Pose> PoseByPnp(const CameraCalibration& camera, const TagCollar& collar,
+                              const TagsFound& corners_px);
+
+/// ViSP's model-based tracker, of edges on the outlines of a collar's tags and of points within. It
+/// follows a pose; its pictures must be free of lens distortion. Null where ViSP is not installed.
+class VispTracker {
+ public:
+  virtual ~VispTracker() = default;
+  virtual void Start(const Image& grey, const Pose& T_CE) = 0;
+  /// Empty where it gives up.
+  virtual std::optional<Pose> Track(const Image& grey, double& ms) = 0;
+};
+std::unique_ptr<VispTracker> MakeVispTracker(const CameraCalibration& camera,
+                                             const TagCollar& collar);
+
+/// Milliseconds of a call.
+template <class Work>
+double TimeMs(Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+}  // namespace flextip

@@ -1,0 +1,23 @@
+// Line charts as SVG, written here.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace flextip {
+
+struct PlotLine {
+  std::string name;  ///< lines of one name have one colour in all plots of a picture
+  std::vector<std::pair<double, double>> points;
+};
+struct Plot {
+  std::string title, x_label, y_label;
+  bool log_y = false;  ///< points that are not positive are left out
+  std::vector<PlotLine> lines;
+};
+
+/// Panels side by side, `columns` in a row, with one legend.
+std::string PlotsSvg(const std::vector<Plot>& plots, const std::string& title, int columns);
+
+}  // namespace flextip

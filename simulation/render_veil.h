@@ -1,0 +1,15 @@
+// Smoke over a finished picture of linear light.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simulation/laparoscope.h"
+
+namespace flextip::render {
+
+/// The smoke of one frame, drawn over `image` (3 channels). Clouds are value noise of three octaves
+/// that depends on the seed and drifts to the right.
+void DrawSmoke(const std::vector<Smoke>& smoke, int frame, std::uint64_t seed, LinearImage& image);
+
+}  // namespace flextip::render
