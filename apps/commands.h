@@ -30,6 +30,7 @@ inline void OnRun(CLI::App& command, AppContext& context, std::function<void()> 
 //   OnRun(command, context, [options, &context] { RunTrack(*options, context); });
 void AddCalibrate(CLI::App& app, AppContext& context);
 void AddDiagnose(CLI::App& app, AppContext& context);
+void AddConvert(CLI::App& app, AppContext& context);
 void AddDetect(CLI::App& app, AppContext& context);
 void AddEstimate(CLI::App& app, AppContext& context);
 void AddMap(CLI::App& app, AppContext& context);

@@ -130,8 +130,8 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
   const auto score = ScoreAgainstTruth(options.input.recording, estimates);
   if (score && score->frames > 0) {
     summary["scored_samples"] = score->frames;
-    summary["tip_rms_error_m"] = score->rms_error_m;
-    summary["tip_mean_nees"] = score->mean_nees;
+    summary["tip_rms_error_m"] = score->RmsError();
+    summary["tip_mean_nees"] = score->MeanNees();
   }
   return summary;
 }

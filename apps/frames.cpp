@@ -3,8 +3,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <system_error>
@@ -15,57 +17,71 @@
 namespace flextip {
 namespace {
 
-Image FromMat(const cv::Mat& bgr) {
-  Image image(bgr.cols, bgr.rows, 3);
-  for (int y = 0; y < bgr.rows; ++y) {
-    std::copy_n(bgr.ptr<std::uint8_t>(y), static_cast<std::size_t>(3) * bgr.cols, image.Row(y));
-  }
-  return image;
-}
-
 cv::Mat View(const Image& image) {
   return cv::Mat(image.height_px, image.width_px, image.channels == 3 ? CV_8UC3 : CV_8UC1,
                  const_cast<std::uint8_t*>(image.data.data()));  // only read
 }
 
-// The codecs write what they dislike straight to stderr; whoever called them says it in one line.
-class QuietStderr {
- public:
-  QuietStderr() : saved_(dup(STDERR_FILENO)) {
-    std::fflush(stderr);
-    const int nothing = open("/dev/null", O_WRONLY);
-    if (saved_ >= 0 && nothing >= 0) dup2(nothing, STDERR_FILENO);
-    if (nothing >= 0) close(nothing);
-  }
-  ~QuietStderr() {
-    if (saved_ < 0) return;
-    dup2(saved_, STDERR_FILENO);
-    close(saved_);
-  }
-  QuietStderr(const QuietStderr&) = delete;
-  QuietStderr& operator=(const QuietStderr&) = delete;
-
- private:
-  int saved_;
-};
-
-}  // namespace
-
-void SilenceVideoCodecs() { setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); }
-
-Image ReadImageFile(const std::filesystem::path& file) {
+cv::Mat Decode(const std::filesystem::path& file) {
   const ImageHead head = ReadImageHead(file);
   if (!head.problem.empty()) {
     throw InputError::At(file.string(), 0, fmt::format("the image {}", head.problem));
   }
-  cv::Mat bgr;
+  cv::Mat picture;
   try {
     const QuietStderr quiet;
-    bgr = cv::imread(file.string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+    constexpr int kAsStored = cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH;
+    picture = cv::imread(file.string(), kAsStored | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {  // reported below
   }
-  if (bgr.empty()) throw InputError::At(file.string(), 0, "the image cannot be decoded");
-  return FromMat(bgr);
+  if (picture.empty()) throw InputError::At(file.string(), 0, "the image cannot be decoded");
+  if (picture.depth() != CV_8U && picture.depth() != CV_16U) {
+    throw InputError::At(file.string(), 0, "expected an image of 8 or 16 bits");
+  }
+  return picture;
+}
+
+}  // namespace
+
+QuietStderr::QuietStderr() : saved_(dup(STDERR_FILENO)) {
+  std::fflush(stderr);
+  const int nothing = open("/dev/null", O_WRONLY);
+  if (saved_ >= 0 && nothing >= 0) dup2(nothing, STDERR_FILENO);
+  if (nothing >= 0) close(nothing);
+}
+
+QuietStderr::~QuietStderr() {
+  if (saved_ < 0) return;
+  dup2(saved_, STDERR_FILENO);
+  close(saved_);
+}
+
+void SilenceVideoCodecs() {
+  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+}
+
+Image ReadGreyOrColour(const std::filesystem::path& file, const GreyRange& range) {
+  cv::Mat picture = Decode(file);
+  Image image(picture.cols, picture.rows, picture.channels());
+  const double scale = 255.0 / (range.white - range.black);
+  cv::Mat target = View(image);
+  if (picture.depth() == CV_16U) {
+    picture.convertTo(target, CV_8U, scale, -scale * range.black);  // rounds and clips
+  } else {
+    picture.copyTo(target);
+  }
+  return image;
+}
+
+Image ReadImageFile(const std::filesystem::path& file) { return ToColour(ReadGreyOrColour(file)); }
+
+Image ToColour(const Image& image) {
+  if (image.channels == 3) return image;
+  Image colour(image.width_px, image.height_px, 3);
+  std::uint8_t* to = colour.data.data();
+  for (const std::uint8_t grey : image.data) to = std::fill_n(to, 3, grey);
+  return colour;
 }
 
 void WritePng(const std::filesystem::path& file, const Image& image) {
@@ -77,62 +93,6 @@ void WritePng(const std::filesystem::path& file, const Image& image) {
   } catch (const cv::Exception&) {  // reported below
   }
   if (!written) throw WorkError(fmt::format("{}: cannot be written", file.string()));
-}
-
-struct FrameReader::Impl {
-  std::filesystem::path folder;  // RECORDING/cam0
-  CameraStream camera;
-  std::size_t next = 0;
-  cv::VideoCapture video;
-  int video_position = 0;  // the number of the frame that the video gives next
-
-  std::optional<Frame> NextOfVideo();
-};
-
-FrameReader::FrameReader(const std::filesystem::path& recording, const CameraStream& camera)
-    : impl_(std::make_unique<Impl>()) {
-  impl_->folder = recording / "cam0";
-  impl_->camera = camera;
-  if (Count() == 0) {
-    throw InputError::At(impl_->folder.string(), 0, "no frames, only the camera's settings");
-  }
-  if (camera.video.empty()) return;
-  const auto file = impl_->folder / camera.video;
-  if (!impl_->video.open(file.string())) {
-    throw InputError::At(file.string(), 0, "the video cannot be opened");
-  }
-}
-
-FrameReader::~FrameReader() = default;
-
-std::size_t FrameReader::Count() const {
-  const CameraStream& c = impl_->camera;
-  return c.video.empty() ? c.filenames.size() : c.frame_numbers.size();
-}
-
-std::optional<Frame> FrameReader::Impl::NextOfVideo() {
-  const Sample<int>& wanted = camera.frame_numbers[next];
-  while (video_position < wanted.value) {
-    if (!video.grab()) return {};
-    ++video_position;
-  }
-  cv::Mat bgr;
-  if (!video.read(bgr) || bgr.empty()) return {};
-  ++video_position;
-  return Frame{wanted.t_ns, FromMat(bgr)};
-}
-
-std::optional<Frame> FrameReader::Next() {
-  if (impl_->next >= Count()) return {};
-  std::optional<Frame> frame;
-  if (impl_->camera.video.empty()) {
-    const Sample<std::string>& name = impl_->camera.filenames[impl_->next];
-    frame = Frame{name.t_ns, ReadImageFile(impl_->folder / "data" / name.value)};
-  } else {
-    frame = impl_->NextOfVideo();
-  }
-  ++impl_->next;
-  return frame;
 }
 
 struct VideoFile::Impl {

@@ -1,47 +1,33 @@
-// Pictures from files: single ones, and the frames of a recording's camera.
+// Pictures and videos as files.
 #pragma once
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "core/image.h"
-#include "core/time_series.h"
-#include "recording/recording.h"
 
 namespace flextip {
 
-/// The picture in blue, green, red. Throws InputError naming the file where it is missing, empty,
-/// cut off or no picture.
+/// Which values of 16-bit pictures become 0 and 255; 8-bit ones stay as they are.
+struct GreyRange {
+  double black = 0.0, white = 65535.0;
+};
+
+/// The picture in blue, green, red with 8 bits. Throws InputError naming the file where it is
+/// missing, empty, cut off or no picture, and for pixels of other than 8 or 16 bits.
 Image ReadImageFile(const std::filesystem::path& file);
+
+/// The same with one channel where the file has one.
+Image ReadGreyOrColour(const std::filesystem::path& file, const GreyRange& range = {});
+
+/// A copy with three channels.
+Image ToColour(const Image& image);
 
 /// Keeps the video library's own messages off stderr. Before the first video is opened.
 void SilenceVideoCodecs();
 
 /// Throws WorkError where the disk refuses.
 void WritePng(const std::filesystem::path& file, const Image& image);
-
-struct Frame {
-  TimeNs t_ns = 0;
-  Image image;  ///< blue, green, red
-};
-
-/// The frames of RECORDING/cam0 one after another, from image files or a video.
-class FrameReader {
- public:
-  /// Throws InputError where there are no frames or the video cannot be opened.
-  FrameReader(const std::filesystem::path& recording, const CameraStream& camera);
-  ~FrameReader();
-
-  std::size_t Count() const;
-  /// The next frame; empty after the last, and where a video ends before its last frame number.
-  /// Throws InputError for an unreadable frame.
-  std::optional<Frame> Next();
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
 
 /// A video written frame by frame. What was not closed by Finish is of no use.
 class VideoFile {
@@ -55,6 +41,18 @@ class VideoFile {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+/// The codecs write what they dislike straight to stderr; whoever calls them says it in one line.
+class QuietStderr {
+ public:
+  QuietStderr();
+  ~QuietStderr();
+  QuietStderr(const QuietStderr&) = delete;
+  QuietStderr& operator=(const QuietStderr&) = delete;
+
+ private:
+  int saved_;
 };
 
 }  // namespace flextip

@@ -29,6 +29,7 @@ int Complain(const std::string& message, int code) {
 
 void AddCommands(CLI::App& app, AppContext& context) {
   AddCalibrate(app, context);
+  AddConvert(app, context);
   AddDetect(app, context);
   AddDiagnose(app, context);
   AddEstimate(app, context);

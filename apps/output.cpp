@@ -1,5 +1,6 @@
 #include "apps/output.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -60,6 +61,8 @@ OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
   }
   folder_ = name_;
   folder_ += fmt::format(".partial-{}", getpid());
+  resumed_ = options.resume && TakeOver();
+  if (resumed_) return;
   fs::remove_all(folder_, error);
   fs::create_directories(folder_, error);
   if (error) {
@@ -70,7 +73,26 @@ OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  if (!committed_) fs::remove_all(folder_, ignored);
+  if (!committed_ && !keep_) fs::remove_all(folder_, ignored);
+}
+
+// The newest NAME.partial-PID whose program runs no more becomes folder_.
+bool OutputFolder::TakeOver() const {
+  const std::string start = name_.filename().string() + ".partial-";
+  fs::path newest;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(name_.parent_path(), error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(start) || !entry.is_directory(error)) continue;
+    const pid_t pid = std::atoi(name.c_str() + start.size());
+    if (pid <= 0 || (pid != getpid() && kill(pid, 0) == 0)) continue;
+    if (newest.empty() || entry.last_write_time(error) > fs::last_write_time(newest, error)) {
+      newest = entry.path();
+    }
+  }
+  if (newest.empty()) return false;
+  if (newest != folder_) fs::rename(newest, folder_, error);
+  return !error;
 }
 
 void OutputFolder::RefuseToReplace(const std::vector<fs::path>& inputs) const {

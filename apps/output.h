@@ -12,10 +12,12 @@ namespace flextip {
 struct OutputOptions {
   bool force = false;                              ///< replace a folder that holds something
   std::vector<std::filesystem::path> inputs = {};  ///< what the command reads: never replaced
+  bool resume = false;  ///< take over what an interrupted run left, where there is such
 };
 
 /// Results are written to `folder()`, NAME.partial-PID beside NAME, which becomes NAME with Commit.
-/// What was not committed is removed: nothing half-written ever stands under NAME.
+/// What was not committed is removed, but for a program that was killed: nothing half-written ever
+/// stands under NAME.
 ///
 ///   OutputFolder output("out", "track", {.force = force, .inputs = {recording}});
 ///   ... write below output.folder(), output.Warn("...") ...
@@ -37,6 +39,11 @@ class OutputFolder {
   /// NAME, as an absolute path.
   const std::filesystem::path& name() const { return name_; }
 
+  /// Whether an interrupted run's files are in folder().
+  bool resumed() const { return resumed_; }
+  /// From now on folder() stays when the command fails: a later run can take it over.
+  void KeepUnfinished() { keep_ = true; }
+
   /// A line for the summary's `warnings`.
   void Warn(const std::string& warning) { warnings_.push_back(warning); }
   void Warn(const std::vector<std::string>& warnings) {
@@ -54,13 +61,14 @@ class OutputFolder {
   void Commit();
 
  private:
+  bool TakeOver() const;
   void RefuseToReplace(const std::vector<std::filesystem::path>& inputs) const;
 
   std::filesystem::path name_;
   std::filesystem::path folder_;
   std::string command_;
   bool force_;
-  bool committed_ = false;
+  bool committed_ = false, resumed_ = false, keep_ = false;
   std::vector<std::string> warnings_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

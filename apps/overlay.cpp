@@ -12,6 +12,7 @@ namespace {
 
 const cv::Scalar kGreen(80, 220, 60), kYellow(40, 220, 240), kOrange(0, 140, 255);
 const cv::Scalar kWhite(255, 255, 255), kBlack(0, 0, 0), kCyan(230, 200, 40);
+constexpr std::size_t kPicturesOfReport = 6, kPicturesOfOverlay = 24, kEveryOfUnknown = 150;
 constexpr double kAxis_m = 0.01;
 constexpr double kChi2Of99Percent = 9.21;  // two degrees of freedom
 constexpr int kFractionBits = 4;           // OpenCV draws to 1/16 px
@@ -140,6 +141,29 @@ void DrawPoints(Image& image, const std::vector<Eigen::Vector2d>& points_px) {
 void DrawLabel(Image& image, const std::string& text) {
   cv::Mat canvas = View(image);
   Text(canvas, text, {8, 22}, 0.6, kWhite);
+}
+
+OverlayWriter::OverlayWriter(const std::filesystem::path& folder, std::size_t frames,
+                             double rate_hz, bool video)
+    : folder_(folder), pictures_(video ? kPicturesOfOverlay : kPicturesOfReport) {
+  every_ = frames == 0 ? kEveryOfUnknown
+                       : std::max<std::size_t>(1, (frames + pictures_ - 1) / pictures_);
+  if (video) video_.emplace(folder / "overlay.mp4", rate_hz);
+}
+
+void OverlayWriter::Add(const Frame& frame, const TipTrack& track, const CameraCalibration& camera,
+                        const TagCollar& collar) {
+  const bool picture = count_ % every_ == 0 && count_ / every_ < pictures_;
+  ++count_;
+  if (!picture && !video_) return;
+  Image image = ToColour(frame.image);
+  DrawTrack(image, track, camera, collar);
+  if (picture) WritePng(folder_ / "overlay" / fmt::format("{}.png", frame.t_ns), image);
+  if (video_) video_->Add(image);
+}
+
+void OverlayWriter::Finish() {
+  if (video_ && count_ > 0) video_->Finish();
 }
 
 }  // namespace flextip

@@ -1,8 +1,12 @@
 // What vision found, drawn into the picture.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "apps/frame_source.h"
 
 #include "core/camera.h"
 #include "core/image.h"
@@ -23,5 +27,23 @@ void DrawTrack(Image& image, const TipTrack& track, const CameraCalibration& cam
 void DrawPoints(Image& image, const std::vector<Eigen::Vector2d>& points_px);
 
 void DrawLabel(Image& image, const std::string& text);
+
+/// Draws tracked frames into FOLDER/overlay.mp4, where that is wanted, and a few into
+/// FOLDER/overlay/*.png.
+class OverlayWriter {
+ public:
+  /// `frames` 0: not known.
+  OverlayWriter(const std::filesystem::path& folder, std::size_t frames, double rate_hz,
+                bool video);
+
+  void Add(const Frame& frame, const TipTrack& track, const CameraCalibration& camera,
+           const TagCollar& collar);
+  void Finish();
+
+ private:
+  std::filesystem::path folder_;
+  std::size_t pictures_, every_, count_ = 0;
+  std::optional<VideoFile> video_;
+};
 
 }  // namespace flextip

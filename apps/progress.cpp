@@ -9,9 +9,10 @@
 
 namespace flextip {
 
-Progress::Progress(std::string label, std::size_t total, bool quiet)
+Progress::Progress(std::string label, std::size_t total, bool quiet, std::string rate_unit)
     : label_(std::move(label)),
-      total_(std::max<std::size_t>(total, 1)),
+      rate_unit_(std::move(rate_unit)),
+      total_(total),
       visible_(!quiet && isatty(fileno(stderr)) == 1),
       start_(Clock::now()) {
   Update(0);
@@ -21,16 +22,24 @@ Progress::~Progress() {
   if (visible_) std::fputs("\r\033[K", stderr);
 }
 
-void Progress::Update(std::size_t done) {
+void Progress::Update(std::size_t done, const std::string& remark) {
   const auto now = Clock::now();
   if (!visible_ || (done > 0 && now - last_drawn_ < std::chrono::milliseconds(100))) return;
   last_drawn_ = now;
-  constexpr std::size_t kWidth = 32;
-  done = std::min(done, total_);
-  const std::size_t filled = kWidth * done / total_;
   const double seconds = std::chrono::duration<double>(now - start_).count();
-  fmt::print(stderr, "\r{} [{}{}] {:3} % {:.0f} s\033[K", label_, std::string(filled, '#'),
-             std::string(kWidth - filled, ' '), 100 * done / total_, seconds);
+  std::string line = fmt::format("{} {}", label_, done);
+  if (total_ > 0) {
+    constexpr std::size_t kWidth = 32;
+    done = std::min(done, total_);
+    const std::size_t filled = kWidth * done / total_;
+    line = fmt::format("{} [{}{}] {:3} %", label_, std::string(filled, '#'),
+                       std::string(kWidth - filled, ' '), 100 * done / total_);
+  }
+  line += fmt::format(" {:.0f} s", seconds);
+  if (!rate_unit_.empty() && seconds > 0) {
+    line += fmt::format(" {:.1f} {}", static_cast<double>(done) / seconds, rate_unit_);
+  }
+  fmt::print(stderr, "\r{} {}\033[K", line, remark);
   std::fflush(stderr);
 }
 

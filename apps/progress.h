@@ -7,22 +7,24 @@
 
 namespace flextip {
 
-/// Draws "label [####    ] 40 % 12 s" on stderr, at most ten times a second, and only where stderr
-/// is a terminal and the program was not asked to be quiet. Erases itself at the end.
+/// Draws "label [####    ] 40 % 12 s 31 fps" (the rate where a unit is given) on stderr, at most
+/// ten times a second, and only where stderr is a terminal and the program was not asked to be
+/// quiet. Erases itself at the end.
 class Progress {
  public:
-  Progress(std::string label, std::size_t total, bool quiet);
+  /// `total` 0: not known, and no bar but the count.
+  Progress(std::string label, std::size_t total, bool quiet, std::string rate_unit = "");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done` of the total is done.
-  void Update(std::size_t done);
+  /// `done` of the total is done; `remark` is shown behind.
+  void Update(std::size_t done, const std::string& remark = "");
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::string label_;
+  std::string label_, rate_unit_;
   std::size_t total_;
   bool visible_;
   Clock::time_point start_, last_drawn_;

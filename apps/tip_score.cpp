@@ -29,27 +29,31 @@ std::optional<Series<Eigen::Vector3d>> ReadTipTruth(const std::filesystem::path&
   return truth;
 }
 
+double TipScore::RmsError() const { return std::sqrt(squared_m2 / std::max(1, frames)); }
+double TipScore::RmsDepth() const { return std::sqrt(squared_depth_m2 / std::max(1, frames)); }
+double TipScore::RmsAcross() const {
+  return std::sqrt(std::max(0.0, squared_m2 - squared_depth_m2) / std::max(1, frames));
+}
+double TipScore::MeanNees() const { return nees / std::max(1, frames); }
+
+void TipScore::Add(const Sample<TipObservation>& sample, const Series<Eigen::Vector3d>& truth,
+                   const Pose& T_RC) {
+  const TipObservation& tip = sample.value;
+  const auto p_RE = ValueAt(truth, sample.t_ns);
+  if (tip.status != TipStatus::kOk || !p_RE) return;
+  const Eigen::Vector3d e_R = tip.p_RE - *p_RE;
+  const double along = (T_RC.R.transpose() * e_R).z();
+  squared_m2 += e_R.squaredNorm();
+  squared_depth_m2 += along * along;
+  nees += e_R.dot(tip.covariance_m2.ldlt().solve(e_R));
+  max_error_m = std::max(max_error_m, e_R.norm());
+  ++frames;
+}
+
 TipScore ScoreTips(const Series<TipObservation>& tips, const Series<Eigen::Vector3d>& truth,
                    const Pose& T_RC) {
   TipScore score;
-  double squared = 0, depth = 0, nees = 0;
-  for (const auto& sample : tips) {
-    const TipObservation& tip = sample.value;
-    const auto p_RE = ValueAt(truth, sample.t_ns);
-    if (tip.status != TipStatus::kOk || !p_RE) continue;
-    const Eigen::Vector3d e_R = tip.p_RE - *p_RE;
-    const double along = (T_RC.R.transpose() * e_R).z();
-    squared += e_R.squaredNorm();
-    depth += along * along;
-    nees += e_R.dot(tip.covariance_m2.ldlt().solve(e_R));
-    score.max_error_m = std::max(score.max_error_m, e_R.norm());
-    ++score.frames;
-  }
-  if (score.frames == 0) return score;
-  score.rms_error_m = std::sqrt(squared / score.frames);
-  score.rms_depth_m = std::sqrt(depth / score.frames);
-  score.rms_across_m = std::sqrt(std::max(0.0, squared - depth) / score.frames);
-  score.mean_nees = nees / score.frames;
+  for (const auto& tip : tips) score.Add(tip, truth, T_RC);
   return score;
 }
 

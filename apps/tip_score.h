@@ -16,13 +16,22 @@ namespace flextip {
 std::optional<Series<Eigen::Vector3d>> ReadTipTruth(const std::filesystem::path& recording,
                                                     const std::filesystem::path& file);
 
-/// Over the frames that were seen (status ok) at times the truth covers.
+/// Over the frames that were seen (status ok) at times the truth covers; sums, so that it can be
+/// added to frame by frame.
 struct TipScore {
   int frames = 0;
-  double rms_error_m = 0.0, max_error_m = 0.0;
-  double rms_across_m = 0.0;  ///< across the camera's axis, x and y together
-  double rms_depth_m = 0.0;   ///< along it
-  double mean_nees = 0.0;     ///< squared error over its covariance: 3 where that is honest
+  double squared_m2 = 0.0, squared_depth_m2 = 0.0;  ///< depth: along the camera's axis
+  double max_error_m = 0.0;
+  double nees = 0.0;
+
+  double RmsError() const;   ///< m
+  double RmsAcross() const;  ///< across the camera's axis, x and y together (m)
+  double RmsDepth() const;   ///< m
+  /// Squared error over its covariance: 3 where that is honest.
+  double MeanNees() const;
+
+  void Add(const Sample<TipObservation>& tip, const Series<Eigen::Vector3d>& truth,
+           const Pose& T_RC);
 };
 
 TipScore ScoreTips(const Series<TipObservation>& tips, const Series<Eigen::Vector3d>& truth,

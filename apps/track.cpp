@@ -1,4 +1,5 @@
-// flextip track: tags and the tip in the frames of a recording.
+// flextip track: tags and the tip in the frames of a recording, of plain pictures or a video, or of
+// a live camera.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -11,154 +12,119 @@
 #include <vector>
 
 #include "apps/commands.h"
-#include "apps/frames.h"
 #include "apps/output.h"
 #include "apps/overlay.h"
 #include "apps/progress.h"
-#include "apps/tip_score.h"
+#include "apps/stop_signal.h"
+#include "apps/track_input.h"
+#include "apps/track_tables.h"
 #include "core/error.h"
-#include "recording/csv.h"
-#include "recording/recording_reader.h"
-#include "recording/sensor_streams.h"
-#include "recording/series_file.h"
-#include "recording/text.h"
 #include "report/pages.h"
 #include "vision/tip_tracker.h"
 
 namespace flextip {
 namespace {
 
-constexpr std::size_t kPicturesOfReport = 6, kPicturesOfOverlay = 24;
+// A resumed run tracks so many frames again, without writing them: the tracker then has the state
+// that it had. It forgets by a tenth a frame.
+constexpr long kWarmUpFrames = 500;
 
 struct TrackOptions {
-  std::filesystem::path recording, out, truth;
+  TrackInputOptions input;
+  std::filesystem::path out, truth;
   TrackerOptions tracker;
-  bool overlay = false, force = false;
+  std::vector<double> black_white;
+  double rate_hz = 0.0;
+  long max_frames = 0;  // 0: all
+  bool overlay = false, force = false, resume = false;
+
+  std::string InputName() const {
+    if (!input.live.empty()) return input.live;
+    return std::filesystem::weakly_canonical(input.source).string();
+  }
 };
 
-struct TrackResult {
-  VisionStream vision;
-  Series<std::vector<TagDetection>> tags;
-  int ok = 0, predicted = 0, lost = 0;
-  double seconds = 0.0;  // reading and tracking, without drawing
-  double squared_direction_noise = 0.0, squared_rms_px = 0.0;  // sums over ok
-};
-
-// Draws every frame into the video and some into files.
-class OverlayWriter {
- public:
-  OverlayWriter(const std::filesystem::path& folder, std::size_t frames, double rate_hz, bool video)
-      : folder_(folder) {
-    const std::size_t pictures = video ? kPicturesOfOverlay : kPicturesOfReport;
-    every_ = std::max<std::size_t>(1, (frames + pictures - 1) / pictures);
-    if (video) video_.emplace(folder / "overlay.mp4", rate_hz);
+void CheckOptions(TrackOptions& options) {
+  if (!options.black_white.empty()) {
+    options.input.range = {options.black_white[0], options.black_white[1]};
   }
-
-  void Add(const Frame& frame, const TipTrack& track, const CameraCalibration& camera,
-           const TagCollar& collar) {
-    const bool picture = count_++ % every_ == 0;
-    if (!picture && !video_) return;
-    Image image = frame.image;
-    DrawTrack(image, track, camera, collar);
-    if (picture) WritePng(folder_ / "overlay" / fmt::format("{}.png", frame.t_ns), image);
-    if (video_) video_->Add(image);
+  if (options.input.range.black >= options.input.range.white) {
+    throw InputError(fmt::format("--black-white: found {},{}, expected the first below the second",
+                                 options.input.range.black, options.input.range.white));
   }
-  void Finish() {
-    if (video_) video_->Finish();
+  if (options.rate_hz > 0) options.input.rate_hz = options.rate_hz;
+  if (options.resume && !options.input.live.empty()) {
+    throw InputError("--resume: a live source cannot be seen again");
   }
-
- private:
-  std::filesystem::path folder_;
-  std::size_t every_ = 1, count_ = 0;
-  std::optional<VideoFile> video_;
-};
-
-Recording ReadForTracking(const TrackOptions& options, OutputFolder& output) {
-  ReadResult read = ReadRecording(options.recording);
-  output.Warn(read.warnings);
-  const auto require = [&](bool present, const char* what) {
-    if (!present) {
-      throw InputError::At(options.recording.string(), 0,
-                           fmt::format("no {}, tracking needs it", what));
-    }
-  };
-  require(read.recording.cam0.has_value(), "cam0/");
-  require(read.recording.tags0.has_value(), "tags0/");
-  return read.recording;
 }
 
-void AddFrame(const TipTrack& track, TimeNs t_ns, TrackResult& result) {
-  result.vision.tips.push_back({t_ns, track.tip});
-  result.tags.push_back({t_ns, track.tags});
-  result.ok += track.tip.status == TipStatus::kOk;
-  result.predicted += track.tip.status == TipStatus::kPredicted;
-  result.lost += track.tip.status == TipStatus::kLost;
-  if (track.tip.status != TipStatus::kOk) return;
-  result.squared_direction_noise += track.direction_noise_rad * track.direction_noise_rad;
-  result.squared_rms_px += track.rms_px * track.rms_px;
+std::string Remark(const TipTrack& track) {
+  if (track.tip.status == TipStatus::kLost) return "tip lost";
+  const Eigen::Vector3d p_mm = 1e3 * track.tip.p_RE;
+  return fmt::format("tip {:.2f} {:.2f} {:.2f} mm {}", p_mm.x(), p_mm.y(), p_mm.z(),
+                     Name(track.tip.status));
 }
 
-TrackResult TrackFrames(const TrackOptions& options, const Recording& recording,
-                        OutputFolder& output, bool quiet) {
-  using Clock = std::chrono::steady_clock;
-  const CameraStream& camera = *recording.cam0;
-  FrameReader frames(options.recording, camera);
-  TipTracker tracker(camera.calibration, *recording.tags0, options.tracker);
-  OverlayWriter overlay(output.folder(), frames.Count(), camera.calibration.rate_hz,
-                        options.overlay);
-  Progress progress("frames", frames.Count(), quiet);
-  TrackResult result;
-  while (true) {
-    const auto start = Clock::now();
+// Tracks the last frames before `tables` goes on once more.
+void WarmUp(FrameSource& frames, TipTracker& tracker, long done) {
+  const long again = std::min(done, kWarmUpFrames);
+  frames.Skip(static_cast<std::size_t>(done - again));
+  for (long i = 0; i < again; ++i) {
     const std::optional<Frame> frame = frames.Next();
+    if (!frame) return;
+    (void)tracker.Track(frame->image, frame->t_ns);
+  }
+}
+
+void TrackFrames(const TrackOptions& options, TrackInput& input,
+                 const std::optional<Series<Eigen::Vector3d>>& truth, OutputFolder& output,
+                 TrackTables& tables, bool quiet) {
+  using Clock = std::chrono::steady_clock;
+  const CameraCalibration& camera = input.recording.cam0->calibration;
+  const TagCollar& collar = *input.recording.tags0;
+  TipTracker tracker(camera, collar, options.tracker);
+  const long before = tables.sums.frames;
+  WarmUp(*input.frames, tracker, before);
+  const auto count = static_cast<long>(input.frames->Count());
+  const long total = options.max_frames > 0 && (count == 0 || options.max_frames < count)
+                         ? options.max_frames
+                         : count;
+  const auto to_do = static_cast<std::size_t>(std::max(0L, total - before));
+  OverlayWriter overlay(output.folder(), to_do, camera.rate_hz, options.overlay);
+  Progress progress("frames", to_do, quiet, "fps");
+  while (!StopSignal::Requested() && (options.max_frames == 0 || tables.sums.frames < total)) {
+    const auto start = Clock::now();
+    const std::optional<Frame> frame = input.frames->Next();
     if (!frame) break;
     const TipTrack track = tracker.Track(frame->image, frame->t_ns);
-    result.seconds += std::chrono::duration<double>(Clock::now() - start).count();
-    AddFrame(track, frame->t_ns, result);
-    overlay.Add(*frame, track, camera.calibration, *recording.tags0);
-    progress.Update(result.tags.size());
+    tables.sums.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    tables.Add(frame->t_ns, track);
+    if (truth) tables.sums.score.Add({frame->t_ns, track.tip}, *truth, camera.T_RC);
+    tables.SaveWhenDue();
+    overlay.Add(*frame, track, camera, collar);
+    progress.Update(static_cast<std::size_t>(tables.sums.frames - before), Remark(track));
   }
   overlay.Finish();
-  if (result.tags.empty()) {
-    throw InputError::At(options.recording.string(), 0, "no frame of cam0 can be read");
+  if (tables.sums.frames == 0) {
+    throw InputError::At(options.InputName(), 0, "no frame can be read");
   }
-  if (result.tags.size() < frames.Count()) {
-    output.Warn(
-        fmt::format("the video ends after {} of {} frames", result.tags.size(), frames.Count()));
+  if (input.is_recording && options.max_frames == 0 && tables.sums.frames < count) {
+    output.Warn(fmt::format("the video ends after {} of {} frames", tables.sums.frames, count));
   }
-  result.vision.rate_hz = camera.calibration.rate_hz;
-  result.vision.comment = "tip by tags";
-  result.vision.direction_noise_rad =
-      std::sqrt(result.squared_direction_noise / std::max(1, result.ok));
-  return result;
 }
 
-std::string TagTable(const Series<std::vector<TagDetection>>& frames) {
-  CsvWriter csv({kTimeColumn, "id []", "c0_x [px]", "c0_y [px]", "c1_x [px]", "c1_y [px]",
-                 "c2_x [px]", "c2_y [px]", "c3_x [px]", "c3_y [px]", "decision_margin []",
-                 "hamming []"});
-  for (const auto& frame : frames) {
-    for (const TagDetection& tag : frame.value) {
-      csv.Add(frame.t_ns).Add(static_cast<TimeNs>(tag.id));
-      for (const Eigen::Vector2d& c : tag.corners_px) csv.Add(c.x()).Add(c.y());
-      csv.Add(tag.decision_margin).Add(static_cast<TimeNs>(tag.hamming));
-      csv.EndRow();
-    }
+nlohmann::json Summary(const TrackSums& sums) {
+  const auto frames = static_cast<double>(sums.frames);
+  nlohmann::json summary = {{"frames", sums.frames},
+                            {"ok", sums.ok},
+                            {"predicted", sums.predicted},
+                            {"lost", sums.lost},
+                            {"frames_per_second", frames / std::max(sums.seconds, 1e-9)},
+                            {"tags_per_frame", static_cast<double>(sums.tags) / frames}};
+  if (sums.ok > 0) {
+    summary["rms_reprojection_error_px"] =
+        std::sqrt(sums.squared_rms_px / static_cast<double>(sums.ok));
   }
-  return csv.text();
-}
-
-nlohmann::json Summary(const TrackResult& r) {
-  std::size_t tags = 0;
-  for (const auto& frame : r.tags) tags += frame.value.size();
-  const auto frames = static_cast<double>(r.tags.size());
-  nlohmann::json summary = {{"frames", r.tags.size()},
-                            {"ok", r.ok},
-                            {"predicted", r.predicted},
-                            {"lost", r.lost},
-                            {"frames_per_second", frames / std::max(r.seconds, 1e-9)},
-                            {"tags_per_frame", static_cast<double>(tags) / frames}};
-  if (r.ok > 0) summary["rms_reprojection_error_px"] = std::sqrt(r.squared_rms_px / r.ok);
   return summary;
 }
 
@@ -168,11 +134,11 @@ void AddScore(const TipScore& score, nlohmann::json& summary, OutputFolder& outp
     output.Warn("no frame with the tip seen falls into the truth's time");
     return;
   }
-  summary["tip_rms_error_m"] = score.rms_error_m;
+  summary["tip_rms_error_m"] = score.RmsError();
   summary["tip_max_error_m"] = score.max_error_m;
-  summary["tip_rms_error_across_m"] = score.rms_across_m;
-  summary["tip_rms_error_depth_m"] = score.rms_depth_m;
-  summary["tip_mean_nees"] = score.mean_nees;
+  summary["tip_rms_error_across_m"] = score.RmsAcross();
+  summary["tip_rms_error_depth_m"] = score.RmsDepth();
+  summary["tip_mean_nees"] = score.MeanNees();
 }
 
 void PrintResult(const TrackOptions& options, const nlohmann::json& summary) {
@@ -189,36 +155,73 @@ void PrintResult(const TrackOptions& options, const nlohmann::json& summary) {
   fmt::print("{}\n", (options.out / "report.html").string());
 }
 
-void RunTrack(const TrackOptions& options, bool quiet) {
+void RunTrack(TrackOptions options, bool quiet) {
   SilenceVideoCodecs();
-  std::vector<std::filesystem::path> inputs{options.recording};
-  if (!options.truth.empty()) inputs.push_back(options.truth);
-  OutputFolder output(options.out, "track", {.force = options.force, .inputs = inputs});
-  const Recording recording = ReadForTracking(options, output);
-  const auto truth = ReadTipTruth(options.recording, options.truth);
-  const TrackResult result = TrackFrames(options, recording, output, quiet);
-  nlohmann::json summary = Summary(result);
-  if (truth) {
-    AddScore(ScoreTips(result.vision.tips, *truth, recording.cam0->calibration.T_RC), summary,
-             output);
+  CheckOptions(options);
+  std::vector<std::filesystem::path> inputs{options.input.source, options.truth};
+  std::erase_if(inputs, [](const auto& path) { return path.empty(); });
+  OutputFolder output(options.out, "track",
+                      {.force = options.force, .inputs = inputs, .resume = options.resume});
+  TrackInput input = OpenTrackInput(options.input);
+  output.Warn(input.warnings);
+  std::optional<Series<Eigen::Vector3d>> truth;
+  if (input.is_recording || !options.truth.empty()) {
+    truth = ReadTipTruth(options.input.source, options.truth);
   }
-  WriteVision(output.folder() / "vision0", result.vision);
-  WriteTags(output.folder() / "tags0", *recording.tags0);
-  WriteTextFile(output.folder() / "tags0" / "data.csv", TagTable(result.tags));
+  TrackTables tables(output.folder(), options.InputName(), output.resumed());
+  if (options.resume) {
+    output.Warn(tables.sums.frames > 0
+                    ? fmt::format("interrupted after {} frames and resumed{}", tables.sums.frames,
+                                  options.overlay ? "; the overlay begins there" : "")
+                    : "no interrupted run was found: began anew");
+    if (output.resumed()) output.KeepUnfinished();
+  }
+  std::optional<StopSignal> stop;
+  if (!options.input.live.empty()) stop.emplace();
+  TrackFrames(options, input, truth, output, tables, quiet);
+  nlohmann::json summary = Summary(tables.sums);
+  if (truth) AddScore(tables.sums.score, summary, output);
+  tables.Finish(*input.recording.tags0, input.recording.cam0->calibration.rate_hz);
   output.WriteSummary(summary);
   WriteTrackReport(output.folder());
   output.Commit();
   if (!quiet) PrintResult(options, summary);
 }
 
+void AddInputOptions(CLI::App& command, TrackOptions& options) {
+  command
+      .add_option("recording", options.input.source,
+                  "Recording with cam0/ and tags0/; or a folder of pictures or a video, with "
+                  "--camera and --collar")
+      ->type_name("RECORDING");
+  command.add_option("--live", options.input.live, "A device number, URL or file, until Ctrl-C")
+      ->type_name("SOURCE");
+  command.add_option("--camera", options.input.camera, "Camera file: EuRoC, Kalibr, ROS or OpenCV")
+      ->type_name("FILE");
+  command.add_option("--collar", options.input.collar, "Collar file, as a recording's tags0")
+      ->type_name("FILE");
+  command
+      .add_option("--rate", options.rate_hz,
+                  "Of plain pictures or a video; without it names in nanoseconds, the video's rate")
+      ->check(CLI::PositiveNumber)
+      ->type_name("HZ");
+  command.add_option("--frames", options.max_frames, "End after so many")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  command
+      .add_option("--black-white", options.black_white,
+                  "Values of 16-bit pictures that become 0 and 255; without it 0,65535")
+      ->expected(2)
+      ->delimiter(',')
+      ->type_name("LOW,HIGH");
+}
+
 }  // namespace
 
 void AddTrack(CLI::App& app, AppContext& context) {
-  auto* command = app.add_subcommand("track", "Localise tags and the tip in recorded frames");
+  auto* command = app.add_subcommand("track", "Localise tags and the tip in frames");
   auto options = std::make_shared<TrackOptions>();
-  command->add_option("recording", options->recording, "Folder with cam0/ and tags0/")
-      ->required()
-      ->type_name("RECORDING");
+  AddInputOptions(*command, *options);
   command->add_option("-o,--output", options->out, "Folder for the results")->required();
   command->add_flag("--overlay", options->overlay, "Draw what was found into a video");
   command->add_option("--truth", options->truth, "Score against this CSV: timestamp [ns],x,y,z")
@@ -230,7 +233,11 @@ void AddTrack(CLI::App& app, AppContext& context) {
   command->add_option("--threads", options->tracker.detector.threads, "Threads")
       ->capture_default_str();
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
-  command->footer("Example:\n  flextip track RECORDING -o OUT --overlay\n");
+  command->add_flag("--resume", options->resume, "Go on where an interrupted run ended");
+  command->footer(
+      "Example:\n  flextip track RECORDING -o OUT --overlay\n"
+      "  flextip track video.mp4 --camera sensor.yaml --collar collar.yaml -o OUT\n"
+      "  flextip track --live 0 --camera sensor.yaml --collar collar.yaml -o OUT\n");
   OnRun(*command, context, [options, &context] { RunTrack(*options, context.quiet); });
 }
 

@@ -76,7 +76,7 @@ void ReadDistortion(const YamlMap& yaml, CameraCalibration& camera) {
 CameraCalibration ReadCalibrationKeys(const YamlMap& yaml) {
   CameraCalibration camera;
   (void)yaml.Has("sensor_type");
-  (void)yaml.Has("comment");
+  for (const char* label : {"comment", "camera_name", "rostopic"}) (void)yaml.Has(label);
   if (const auto model = yaml.Text("camera_model"); model != "pinhole") {
     throw yaml.Error("camera_model", fmt::format("found {}, expected pinhole", Quoted(model)));
   }
@@ -97,20 +97,24 @@ CameraCalibration ReadCameraCalibration(const std::filesystem::path& file, ReadL
   return camera;
 }
 
-std::string CameraText(const CameraCalibration& camera, const std::string& comment) {
+std::string LensText(const CameraCalibration& camera) {
   const auto model = std::find_if(kModels.begin(), kModels.end(), [&](const ModelName& candidate) {
     return candidate.distortion == camera.distortion;
   });
   assert(model != kModels.end());
-  std::string text = HeadText("camera", comment, camera.rate_hz);
-  text += fmt::format("resolution: [{}, {}]\n", camera.width_px, camera.height_px);
+  std::string text = fmt::format("resolution: [{}, {}]\n", camera.width_px, camera.height_px);
   text += "camera_model: pinhole\n";
   text += fmt::format("intrinsics: {}\n",
                       YamlNumbers({camera.fu_px, camera.fv_px, camera.cu_px, camera.cv_px}));
   text += fmt::format("distortion_model: {}\n", model->name);
   text += fmt::format("distortion_coefficients: {}\n", YamlNumbers(camera.distortion_coefficients));
   if (camera.gamma) text += fmt::format("gamma: {}\n", YamlNumber(*camera.gamma));
-  return text + fmt::format("T_RC: {}\n", YamlTransform(camera.T_RC));
+  return text;
+}
+
+std::string CameraText(const CameraCalibration& camera, const std::string& comment) {
+  return HeadText("camera", comment, camera.rate_hz) + LensText(camera) +
+         fmt::format("T_RC: {}\n", YamlTransform(camera.T_RC));
 }
 
 void WriteCameraCalibration(const std::filesystem::path& file, const CameraCalibration& calibration,

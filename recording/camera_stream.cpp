@@ -1,4 +1,4 @@
-// cam0: the calibration, and which frame was taken when.
+// cam0 and cam1: the calibration, and which frame was taken when.
 #include <algorithm>
 #include <cmath>
 #include <opencv2/videoio.hpp>

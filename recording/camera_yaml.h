@@ -11,5 +11,7 @@ namespace flextip {
 CameraCalibration ReadCalibrationKeys(const YamlMap& yaml);
 
 std::string CameraText(const CameraCalibration& calibration, const std::string& comment);
+/// Of that the resolution, the lens and gamma.
+std::string LensText(const CameraCalibration& calibration);
 
 }  // namespace flextip

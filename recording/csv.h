@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -74,6 +75,8 @@ class CsvWriter {
   void EndRow();  ///< the row must be full
 
   const std::string& text() const { return text_; }
+  /// What was written since the last call, for tables that go to the disk row by row.
+  std::string TakeText() { return std::exchange(text_, {}); }
 
  private:
   void Separate();

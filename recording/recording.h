@@ -104,7 +104,7 @@ struct Recording {
   std::optional<EmStream> em0, em1;
   std::optional<StrainStream> strain0;
   std::optional<LoadStream> load0;
-  std::optional<CameraStream> cam0;
+  std::optional<CameraStream> cam0, cam1;  ///< cam1: a stereo laparoscope's other eye
   std::optional<TagCollar> tags0;
   std::optional<VisionStream> vision0;
 };

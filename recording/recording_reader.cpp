@@ -10,8 +10,9 @@
 namespace flextip {
 namespace {
 
-const std::set<std::string> kKnownFolders = {"wrist0", "command0", "em0",   "em1",     "strain0",
-                                             "load0",  "cam0",     "tags0", "vision0", "truth0"};
+const std::set<std::string> kKnownFolders = {"wrist0",  "command0", "em0",   "em1",
+                                             "strain0", "load0",    "cam0",  "cam1",
+                                             "tags0",   "vision0",  "truth0"};
 
 void WarnOfUnknownFolders(const std::filesystem::path& folder, ReadLog& log) {
   std::set<std::string> unknown;
@@ -39,6 +40,7 @@ void ReadStreams(const std::filesystem::path& folder, const ReadOptions& options
   if (has("strain0")) recording.strain0 = ReadStrain(folder / "strain0", length_m, log);
   if (has("load0")) recording.load0 = ReadLoad(folder / "load0", log);
   if (has("cam0")) recording.cam0 = ReadCamera(folder / "cam0", options.check_frames, log);
+  if (has("cam1")) recording.cam1 = ReadCamera(folder / "cam1", options.check_frames, log);
   if (has("tags0")) recording.tags0 = ReadTags(folder / "tags0", log);
   if (has("vision0")) recording.vision0 = ReadVision(folder / "vision0", log);
 }

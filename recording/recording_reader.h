@@ -18,7 +18,7 @@ struct ReadResult {
 };
 
 struct ReadOptions {
-  bool check_frames = true;  ///< that the frames of cam0 exist and have the stated size
+  bool check_frames = true;  ///< that the frames of cam0 and cam1 exist and have the stated size
 };
 
 /// Reads every stream present in `folder` (docs/formats.md). Throws InputError with file and line

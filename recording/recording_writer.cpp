@@ -13,6 +13,7 @@ void WriteRecording(const std::filesystem::path& folder, const Recording& record
   if (recording.strain0) WriteStrain(folder / "strain0", *recording.strain0);
   if (recording.load0) WriteLoad(folder / "load0", *recording.load0);
   if (recording.cam0) WriteCamera(folder / "cam0", *recording.cam0);
+  if (recording.cam1) WriteCamera(folder / "cam1", *recording.cam1);
   if (recording.tags0) WriteTags(folder / "tags0", *recording.tags0);
   if (recording.vision0) WriteVision(folder / "vision0", *recording.vision0);
   // Last, since a folder without it does not read as a recording.

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "recording/csv.h"
 #include "recording/read_log.h"
 #include "recording/recording.h"
 
@@ -30,10 +31,17 @@ void WriteLoad(const std::filesystem::path& folder, const LoadStream& stream);
 CameraStream ReadCamera(const std::filesystem::path& folder, bool check_frames, ReadLog& log);
 void WriteCamera(const std::filesystem::path& folder, const CameraStream& stream);
 
+/// A collar's sensor.yaml, alone.
+TagCollar ReadCollarFile(const std::filesystem::path& file, ReadLog& log);
 TagCollar ReadTags(const std::filesystem::path& folder, ReadLog& log);
 void WriteTags(const std::filesystem::path& folder, const TagCollar& collar);
 
 VisionStream ReadVision(const std::filesystem::path& folder, ReadLog& log);
 void WriteVision(const std::filesystem::path& folder, const VisionStream& stream);
+
+/// The parts of WriteVision, for a table that is written as its rows come.
+const std::vector<std::string>& VisionColumns();  ///< without the time
+void AddVisionRow(CsvWriter& csv, const Sample<TipObservation>& tip);
+void WriteVisionSettings(const std::filesystem::path& folder, const VisionStream& stream);
 
 }  // namespace flextip

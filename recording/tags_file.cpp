@@ -8,7 +8,11 @@
 namespace flextip {
 
 TagCollar ReadTags(const std::filesystem::path& folder, ReadLog& log) {
-  const auto yaml = YamlMap::Load(folder / "sensor.yaml");
+  return ReadCollarFile(folder / "sensor.yaml", log);
+}
+
+TagCollar ReadCollarFile(const std::filesystem::path& file, ReadLog& log) {
+  const auto yaml = YamlMap::Load(file);
   for (const char* usual : {"sensor_type", "comment", "rate_hz"}) (void)yaml.Has(usual);
   TagCollar collar{yaml.Text("family"), {}};
   std::set<std::int64_t> ids;

@@ -92,8 +92,20 @@ VisionStream ReadVision(const std::filesystem::path& folder, ReadLog& log) {
   return stream;
 }
 
+const std::vector<std::string>& VisionColumns() { return kColumns; }
+
+void AddVisionRow(CsvWriter& csv, const Sample<TipObservation>& tip) {
+  csv.Add(tip.t_ns);
+  AddRow(csv, tip.value);
+  csv.EndRow();
+}
+
 void WriteVision(const std::filesystem::path& folder, const VisionStream& stream) {
   WriteSeries(folder / "data.csv", kColumns, stream.tips, AddRow);
+  WriteVisionSettings(folder, stream);
+}
+
+void WriteVisionSettings(const std::filesystem::path& folder, const VisionStream& stream) {
   std::string text = HeadText("vision", stream.comment, stream.rate_hz);
   text += fmt::format("camera: {}\n", YamlText(stream.camera));
   text += fmt::format("direction_noise_rad: {}\n", YamlNumber(stream.direction_noise_rad));

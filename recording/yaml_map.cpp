@@ -197,24 +197,24 @@ std::vector<YamlMap> YamlMap::Maps(const std::string& key) const {
   return maps;
 }
 
-Pose YamlMap::Transform(const std::string& key) const {
-  const YamlMap matrix = Map(key);
-  if (matrix.Integer("rows") != 4 || matrix.Integer("cols") != 4) {
-    throw matrix.Error("rows", "expected 4 rows and 4 cols");
-  }
-  const auto data = matrix.Numbers("data", 16);
+namespace {
+
+// The pose of a 4x4 matrix, row by row; `error` makes an error of what is wrong with it.
+template <class MakeError>
+Pose RigidPose(const std::vector<double>& data, const MakeError& error) {
   const Eigen::Matrix4d T =
       Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(&data[0]);
   if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    throw matrix.Error("data", "expected 0, 0, 0, 1 as the last row");
+    throw error("expected 0, 0, 0, 1 as the last row");
   }
   Pose pose = Pose::FromMatrix(T);
   const double off =
       (pose.R.transpose() * pose.R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (off > 1e-3 || pose.R.determinant() < 0) {
-    throw matrix.Error("data", fmt::format("R'R is off the identity by {:.3g} and det R is {:.3g}, "
-                                           "expected a rotation (1e-3, 1)",
-                                           off, pose.R.determinant()));
+    throw error(
+        fmt::format("R'R is off the identity by {:.3g} and det R is {:.3g}, "
+                    "expected a rotation (1e-3, 1)",
+                    off, pose.R.determinant()));
   }
   if (off > 1e-12) {
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(pose.R, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -223,13 +223,48 @@ Pose YamlMap::Transform(const std::string& key) const {
   return pose;
 }
 
+}  // namespace
+
+Pose YamlMap::Transform(const std::string& key) const {
+  const YamlMap matrix = Map(key);
+  if (matrix.Integer("rows") != 4 || matrix.Integer("cols") != 4) {
+    throw matrix.Error("rows", "expected 4 rows and 4 cols");
+  }
+  return RigidPose(matrix.Numbers("data", 16),
+                   [&](const std::string& what) { return matrix.Error("data", what); });
+}
+
+Pose YamlMap::TransformRows(const std::string& key) const {
+  const auto& node = impl_->Node(key);
+  std::vector<double> data;
+  for (const auto& row : node) {
+    if (!node.IsSequence() || !row.IsSequence() || row.size() != 4) break;
+    for (const auto& item : row) {
+      const auto value = item.IsScalar() ? ParseFinite(item.Scalar()) : std::nullopt;
+      if (value) data.push_back(*value);
+    }
+  }
+  if (node.size() != 4 || data.size() != 16) {
+    throw impl_->Unexpected(key, node, "four lists of four finite numbers");
+  }
+  return RigidPose(data, [&](const std::string& what) { return Error(key, what); });
+}
+
+std::vector<std::string> YamlMap::Unasked() const {
+  std::vector<std::string> keys;
+  for (const auto& [key, line] : impl_->lines) {
+    if (!impl_->asked.contains(key)) keys.push_back(key);
+  }
+  return keys;
+}
+
 InputError YamlMap::Error(const std::string& key, const std::string& what) const {
   return impl_->Error(key, what);
 }
 
 void YamlMap::WarnUnknown(ReadLog& log) const {
-  for (const auto& [key, line] : impl_->lines) {
-    if (impl_->asked.contains(key)) continue;
+  for (const auto& key : Unasked()) {
+    const long line = impl_->LineOf(key);
     log.warnings.emplace_back(
         InputError::At(impl_->file, line,
                        fmt::format("unknown key \"{}{}\" ignored", impl_->prefix, key))

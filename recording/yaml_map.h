@@ -47,9 +47,14 @@ class YamlMap {
   /// orthonormal within 1e-3; where it is not to 1e-12 (printed with few digits), the nearest
   /// rotation is taken.
   Pose Transform(const std::string& key) const;
+  /// The same as a list of four lists of four.
+  Pose TransformRows(const std::string& key) const;
 
   /// An error at the line of `key`, or of the mapping where there is no such key.
   InputError Error(const std::string& key, const std::string& what) const;
+
+  /// Every key that nothing above has asked for, in alphabetical order.
+  std::vector<std::string> Unasked() const;
 
   /// Warns of every key that nothing above has asked for.
   void WarnUnknown(ReadLog& log) const;

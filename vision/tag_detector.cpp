@@ -5,6 +5,7 @@
 #include <apriltag/tag25h9.h>
 #include <apriltag/tag36h10.h>
 #include <apriltag/tag36h11.h>
+#include <apriltag/tagCircle21h7.h>
 #include <apriltag/tagStandard41h12.h>
 #include <apriltag/tagStandard52h13.h>
 
@@ -28,6 +29,7 @@ constexpr FamilyEntry kFamilies[] = {
     {"tag36h10", tag36h10_create, tag36h10_destroy},
     {"tag25h9", tag25h9_create, tag25h9_destroy},
     {"tag16h5", tag16h5_create, tag16h5_destroy},
+    {"tagCircle21h7", tagCircle21h7_create, tagCircle21h7_destroy},
     {"tagStandard41h12", tagStandard41h12_create, tagStandard41h12_destroy},
     {"tagStandard52h13", tagStandard52h13_create, tagStandard52h13_destroy},
 };
@@ -41,8 +43,19 @@ const FamilyEntry& FindFamily(const std::string& name) {
   }
   throw InputError(
       fmt::format("tag family '{}' is not known; expected tag36h11, tag36h10, tag25h9, tag16h5, "
-                  "tagStandard41h12 or tagStandard52h13",
+                  "tagCircle21h7, tagStandard41h12 or tagStandard52h13",
                   name));
+}
+
+// The library keeps a table of every code with up to `bits` of its bits wrong, three places of 16
+// bytes for each entry: 3 GB and ten seconds for two bits of tagStandard52h13.
+constexpr double kMaxTableEntries = 1e7;
+
+int AffordableBits(const apriltag_family_t& family, int bits) {
+  const double n = family.nbits, codes = family.ncodes;
+  const double entries[] = {codes, codes * (1 + n), codes * (1 + n + n * (n - 1) / 2)};
+  while (bits > 0 && entries[bits] > kMaxTableEntries) --bits;
+  return bits;
 }
 
 void CheckOptions(const TagDetectorOptions& o) {
@@ -89,7 +102,7 @@ struct TagDetector::Impl {
     entry = &FindFamily(o.family);
     family = entry->create();
     detector = apriltag_detector_create();
-    apriltag_detector_add_family_bits(detector, family, o.max_hamming);
+    apriltag_detector_add_family_bits(detector, family, AffordableBits(*family, o.max_hamming));
     detector->quad_decimate = static_cast<float>(o.quad_decimate);
     detector->quad_sigma = static_cast<float>(o.quad_sigma_px);
     detector->refine_edges = o.refine_edges;

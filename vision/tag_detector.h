@@ -14,9 +14,11 @@ namespace flextip {
 
 using TagCorners = std::array<Eigen::Vector2d, 4>;
 
-/// A tag seen in an image. The corners are those of the black border's outer edge (tag36h11), in
-/// the order (-,+), (+,+), (+,-), (-,-) of the tag frame G (x right, y down as it is read): bottom
-/// left, bottom right, top right, top left of the upright tag.
+/// A tag seen in an image. The corners are those of the edge that the library finds: the black
+/// border's outer edge (tag36h11, 25h9, 16h5), or its inner one where cells lie outside the border
+/// too (tagStandard, tagCircle: white within, black without). They are in the order (-,+), (+,+),
+/// (+,-), (-,-) of the tag frame G (x right, y down as it is read): bottom left, bottom right, top
+/// right, top left of the upright tag.
 struct TagDetection {
   int id = 0;
   int hamming = 0;                      ///< corrected bits
@@ -33,13 +35,14 @@ struct TagDetection {
 };
 
 struct TagDetectorOptions {
-  std::string family = "tag36h11";  ///< or tag25h9, tag16h5, tagStandard41h12
-  double quad_decimate = 1.0;       ///< quads are searched at 1/this of the resolution; >= 1
-  double quad_sigma_px = 0.0;       ///< Gaussian blur before the search
-  bool refine_edges = false;        ///< the library's own refinement; with it a few are not read
+  /// Or tag36h10, tag25h9, tag16h5, tagCircle21h7, tagStandard41h12, tagStandard52h13.
+  std::string family = "tag36h11";
+  double quad_decimate = 1.0;  ///< quads are searched at 1/this of the resolution; >= 1
+  double quad_sigma_px = 0.0;  ///< Gaussian blur before the search
+  bool refine_edges = false;   ///< the library's own refinement; with it a few are not read
   double decode_sharpening = 0.25;
   int threads = 1;
-  int max_hamming = 2;                ///< detections with more corrected bits are dropped
+  int max_hamming = 2;  ///< more corrected bits are not accepted; 1 at most in tagStandard52h13
   double min_decision_margin = 10.0;  ///< and those with less contrast
   bool refine_corners = true;         ///< fit the four edges to the image again (edge_refiner.h)
 };

@@ -122,6 +122,7 @@ TEST(Frames, OnlyTheCalibrationMayBeThere) {
 
 Recording WithVideo(const std::vector<int>& frames) {
   Recording recording = flextip::testing::MakeRecording();
+  recording.cam1.reset();
   auto& camera = *recording.cam0;
   camera.filenames.clear();
   camera.video = "frames.avi";

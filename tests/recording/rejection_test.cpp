@@ -99,6 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
         FieldCase{"truth0/data.csv", 4, 2, "nan", kFinite},
         FieldCase{"truth0/data.csv", 4, 5, "3", "quaternion has length"},
         FieldCase{"cam0/data.csv", 4, 1, "none.png", "is missing"},
+        FieldCase{"cam1/data.csv", 4, 1, "none.png", "is missing"},
         FieldCase{"cam0/data.csv", 4, 1, "../data/2.png", "expected the name of a file"}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -234,6 +235,7 @@ INSTANTIATE_TEST_SUITE_P(
         YamlCase{"cam0/sensor.yaml", "radial-tangential", "fov",
                  "expected radial-tangential, open"},
         YamlCase{"cam0/sensor.yaml", "pinhole", "omni", "expected pinhole"},
+        YamlCase{"cam1/sensor.yaml", "pinhole", "omni", "expected pinhole"},
         YamlCase{"cam0/sensor.yaml", "[32, 24]", "[32]", "expected 2 numbers"},
         YamlCase{"cam0/sensor.yaml", "[32, 24]", "[32.5, 24]", "in whole pixels"},
         YamlCase{"cam0/sensor.yaml", "[32, 24]", "[0, 24]", "in whole pixels"},

@@ -134,6 +134,10 @@ TEST_F(RoundTrip, CameraAndTags) {
   EXPECT_EQ(read.cam0->video, "");
   ExpectSameCamera(read.cam0->calibration, wrote.cam0->calibration);
   EXPECT_EQ(read.cam0->filenames, wrote.cam0->filenames);
+  ASSERT_TRUE(read.cam1);
+  EXPECT_EQ(read.cam1->comment, "right");
+  ExpectSameCamera(read.cam1->calibration, wrote.cam1->calibration);
+  EXPECT_EQ(read.cam1->filenames, wrote.cam1->filenames);
   ASSERT_EQ(read.tags0->tags.size(), wrote.tags0->tags.size());
   EXPECT_EQ(read.tags0->family, wrote.tags0->family);
   for (std::size_t i = 0; i < read.tags0->tags.size(); ++i) {
@@ -179,7 +183,7 @@ TEST_F(RoundTrip, WritingWhatWasReadGivesTheSameBytes) {
     EXPECT_EQ(ReadText(entry.path()), ReadText(folder.path() / relative)) << relative;
     ++files;
   }
-  EXPECT_EQ(files, 18);  // recording.yaml, tags0/sensor.yaml, two for each of the eight others
+  EXPECT_EQ(files, 20);  // recording.yaml, tags0/sensor.yaml, two for each of the nine others
 }
 
 TEST(Writer, RefusesWhatTheReaderWouldReject) {

@@ -105,6 +105,10 @@ Recording MakeRecording() {
   }
   r.cam0 = MakeCamera(numbers);
   r.vision0 = MakeVision(numbers);
+  r.cam1 = r.cam0;  // the other eye
+  r.cam1->comment = "right";
+  r.cam1->calibration.cu_px = 17.25;
+  for (auto& frame : r.cam1->filenames) frame.value = "right" + frame.value;
   r.tags0 = TagCollar{};
   for (int id : {3, 0}) {
     r.tags0->tags.push_back(
@@ -126,10 +130,13 @@ void WriteSample(const std::filesystem::path& folder) {
   const Recording recording = MakeRecording();
   WriteRecording(folder, recording);
   WriteTruth(folder, MakeTruth());
-  std::filesystem::create_directories(folder / "cam0/data");
   const cv::Mat image(kHeight, kWidth, CV_8UC1, cv::Scalar(80));
-  for (const auto& frame : recording.cam0->filenames) {
-    ASSERT_TRUE(cv::imwrite((folder / "cam0/data" / frame.value).string(), image));
+  for (const auto& [name, camera] :
+       {std::pair("cam0/data", &recording.cam0), std::pair("cam1/data", &recording.cam1)}) {
+    std::filesystem::create_directories(folder / name);
+    for (const auto& frame : (*camera)->filenames) {
+      ASSERT_TRUE(cv::imwrite((folder / name / frame.value).string(), image));
+    }
   }
 }
 

@@ -29,7 +29,7 @@ inline constexpr int kWidth = 32, kHeight = 24;
 Recording MakeRecording();
 Series<TruthSample> MakeTruth();
 
-/// Writes MakeRecording(), MakeTruth() and a PNG for each frame of cam0.
+/// Writes MakeRecording(), MakeTruth() and a PNG for each frame of cam0 and cam1.
 void WriteSample(const std::filesystem::path& folder);
 
 std::string ReadText(const std::filesystem::path& file);

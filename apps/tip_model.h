@@ -1,0 +1,75 @@
+// Where wrist and shaft model expect the tip at a frame's time, before the frame has been looked
+// at and while the tip hides.
+#pragma once
+
+#include <Eigen/Dense>
+#include <optional>
+
+#include "core/pose.h"
+#include "core/time_series.h"
+#include "estimation/shaft_estimator.h"
+#include "recording/recording.h"
+#include "vision/tip_prediction.h"
+
+namespace flextip {
+
+struct TipModelOptions {
+  double force_prior_units = 0.5;  ///< sd of an unknown tip force, in EI / L^2
+  double port_prior_m = 0.0005;
+  /// The load's own wandering, a random walk: sd in EI / L^2 after one second.
+  double force_drift_units = 0.1;
+  /// Sd of the tip's way by the model's error, over the way itself.
+  double way_error = 0.05;
+};
+
+/// Two sources, joined by their covariances: what the sensors of the instant say without vision
+/// (ShaftEstimator; the unloaded shaft with a wide covariance where they do not see the load), and
+/// the last seen pose carried on by how far the model has moved since, with the port and the load
+/// that the seen tip told. The second is sharp at first and loses to load drift and distance.
+class TipModel {
+ public:
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+  /// `recording` must outlive this; its vision0 is not looked at.
+  explicit TipModel(const Recording& recording, const TipModelOptions& options = {});
+
+  /// Empty where the wrist was not sampled around `t_ns` or the shaft has no equilibrium there.
+  /// The roll about the shaft follows the wrist's quaternion without twist; where that was not
+  /// measured, it stays where it was seen, and nothing is known of it before.
+  std::optional<TipPrediction> Predict(TimeNs t_ns);
+
+  /// The tip was seen; `covariance` of (dw, dp) in R as in TipPrediction.
+  void Seen(TimeNs t_ns, const Pose& T_RE, const Matrix6& covariance);
+
+ private:
+  using Matrix6x9 = Eigen::Matrix<double, 6, 9>;
+  /// The tip by the rod, and its derivative (dw, dp) by wrist, port and tip force.
+  struct RodTip {
+    Pose T_RE;
+    Matrix6x9 J;
+    bool has_roll = false;
+  };
+  struct Sight {
+    TimeNs t_ns;
+    Pose T_RE;
+    Matrix6 covariance;
+    RodTip rod;  // by the model, with this port and load
+    Eigen::Vector3d p_RP, f_tip_N;
+    Matrix9d parameters;  // covariance of wrist, port and tip force
+  };
+
+  std::optional<Measurements> MeasuredAt(TimeNs t_ns) const;
+  std::optional<RodTip> SolveRod(const Measurements& z, const Eigen::Vector3d& p_RP,
+                                 const Eigen::Vector3d& f_tip_N);
+  std::optional<TipPrediction> FromSensors(const Measurements& z);
+  std::optional<TipPrediction> FromSight(TimeNs t_ns, const Measurements& z);
+
+  const Recording& recording_;
+  TipModelOptions options_;
+  EstimatorOptions estimator_options_;
+  ShaftEstimator blind_, seeing_;
+  ShaftRod rod_;
+  std::optional<Sight> sight_;
+};
+
+}  // namespace flextip

@@ -1,0 +1,59 @@
+#include "apps/track_input.h"
+
+#include "core/error.h"
+#include "recording/camera_formats.h"
+#include "recording/recording_reader.h"
+#include "recording/sensor_streams.h"
+
+namespace flextip {
+namespace {
+
+TrackInput OpenRecording(const TrackInputOptions& options) {
+  const auto& source = options.source;
+  const auto refuse = [&](const std::string& what) {
+    throw InputError::At(source.string(), 0, what);
+  };
+  if (!options.camera.empty() || !options.collar.empty() || options.rate_hz) {
+    refuse(
+        "a recording has its own camera, collar and times: --camera, --collar and --rate are "
+        "for plain pictures and videos");
+  }
+  ReadResult read = ReadRecording(source);
+  if (!read.recording.cam0) refuse("no cam0/, tracking needs it");
+  if (!read.recording.tags0) refuse("no tags0/, tracking needs it");
+  TrackInput input{std::move(read.recording), true, nullptr, std::move(read.warnings)};
+  input.frames = OpenRecordedFrames(source, "cam0", *input.recording.cam0, options.range);
+  return input;
+}
+
+}  // namespace
+
+TrackInput OpenTrackInput(const TrackInputOptions& options) {
+  const bool live = !options.live.empty();
+  if (live == !options.source.empty()) {
+    throw InputError(live ? "track: found a recording and --live, expected one of them"
+                          : "track: expected a recording, pictures, a video or --live SOURCE");
+  }
+  const bool plain =
+      live || std::filesystem::is_regular_file(options.source) ||
+      (!options.camera.empty() && !std::filesystem::exists(options.source / "recording.yaml"));
+  if (!plain) return OpenRecording(options);
+  if (options.camera.empty() || options.collar.empty()) {
+    throw InputError::At(live ? options.live : options.source.string(), 0,
+                         "is no recording, expected --camera FILE and --collar FILE with it");
+  }
+  TrackInput input;
+  ReadLog log;
+  CameraStream& camera = input.recording.cam0.emplace();
+  const auto format = GuessCameraFormat(options.camera);
+  camera.calibration = ReadCameraDescription(options.camera, format).calibration;
+  input.recording.tags0 = ReadCollarFile(options.collar, log);
+  if (options.rate_hz) camera.calibration.rate_hz = *options.rate_hz;
+  input.frames =
+      live ? OpenLiveFrames(options.live, camera.calibration)
+           : OpenPlainFrames(options.source, camera.calibration, options.rate_hz, options.range);
+  input.warnings = std::move(log.warnings);
+  return input;
+}
+
+}  // namespace flextip

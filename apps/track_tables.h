@@ -1,0 +1,55 @@
+// The tables of flextip track, written as the frames come, so that memory does not grow with their
+// number and an interrupted run can go on.
+#pragma once
+
+#include <chrono>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "apps/tip_score.h"
+#include "core/tag_collar.h"
+#include "recording/csv.h"
+#include "recording/recording.h"
+#include "vision/tip_tracker.h"
+
+namespace flextip {
+
+/// What the summary needs of all frames so far.
+struct TrackSums {
+  long frames = 0, ok = 0, predicted = 0, lost = 0, tags = 0;
+  double squared_direction_noise = 0.0, squared_rms_px = 0.0;  ///< over ok
+  double seconds = 0.0;                                        ///< reading and tracking
+  TipScore score;
+};
+
+/// FOLDER/vision0 and FOLDER/tags0. Rows reach the disk at least once a second, and with them
+/// FOLDER/unfinished.json: how far both tables are whole, and the sums up to there.
+class TrackTables {
+ public:
+  /// Goes on where `resume` finds an unfinished run of the same `input`, else from the beginning.
+  /// Throws InputError where the unfinished run was of another input, WorkError where the disk
+  /// refuses.
+  TrackTables(const std::filesystem::path& folder, const std::string& input, bool resume);
+
+  TrackSums sums;
+
+  void Add(TimeNs t_ns, const TipTrack& track);
+  /// Twice a second; after the frame's part of `sums` is complete.
+  void SaveWhenDue();
+  /// Writes both sensor.yaml beside the tables and takes unfinished.json away.
+  void Finish(const TagCollar& collar, double rate_hz);
+
+ private:
+  void Resume();
+  void Save();
+
+  std::filesystem::path folder_, mark_;
+  std::string input_;
+  std::ofstream vision_, tags_;
+  CsvWriter vision_rows_, tag_rows_;
+  std::chrono::steady_clock::time_point saved_;
+};
+
+}  // namespace flextip
