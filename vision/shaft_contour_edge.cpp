@@ -79,7 +79,7 @@ ScanEdgeFinder::Model ScanEdgeFinder::MakeModel(TubeRim rim, int inside, int out
   for (int k = 0; k < kPhases; ++k) {
     Eigen::Matrix<double, kSamples, kTerms> A = Eigen::Matrix<double, kSamples, kTerms>::Zero();
     for (int i = model.first; i <= model.last; ++i) {
-      const double d = i - kInside - (k - kPhases / 2) * kPhaseStep_px, z = d / blur_px_;
+      const double d = i - kInside - (k - kMiddle) * kPhaseStep_px, z = d / blur_px_;
       const double behind = Phi(z);
       const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
       const double ramp = d * behind + blur_px_ * density;
@@ -114,7 +114,7 @@ bool ScanEdgeFinder::Sample(const Image& grey, const Eigen::Vector2d& px,
       px.y() + reach_y >= grey.height_px - 1) {
     return false;
   }
-  light.assign(static_cast<std::size_t>(2 * half_px + 1), 0.0f);
+  light.assign(2 * half_px + 1, 0.0f);
   const auto weight = static_cast<float>(1.0 / (2 * aside + 1));
   for (int a = -aside; a <= aside; ++a) {
     Eigen::Vector2d at = px + a * along - half_px * outward;
@@ -136,10 +136,10 @@ void ScanEdgeFinder::Evidence(const std::vector<float>& light, TubeRim rim, doub
                               std::vector<float>& evidence) const {
   const int half = static_cast<int>(light.size()) / 2, search = half - kMargin;
   const Model& model = ModelFor(rim, radius_px);
-  evidence.resize(static_cast<std::size_t>(2 * search + 1));
+  evidence.resize(2 * search + 1);
   for (int d = -search; d <= search; ++d) {
     const Window y = model.Cut(light.data() + half + d - kInside);
-    evidence[d + search] = LogRatio(Left(model.smooth, y), Left(model.step[kPhases / 2], y));
+    evidence[d + search] = LogRatio(Left(model.smooth, y), Left(model.step[kMiddle], y));
   }
 }
 
@@ -160,7 +160,7 @@ std::optional<ScanEdge> ScanEdgeFinder::Refine(const std::vector<float>& light, 
   const double second = below - 2 * here + above;
   if (!(second > 0)) return {};
   ScanEdge edge;
-  edge.offset_px = at + (best - kPhases / 2 + 0.5 * (below - above) / second) * kPhaseStep_px;
+  edge.offset_px = at + (best - kMiddle + 0.5 * (below - above) / second) * kPhaseStep_px;
   edge.per_noise_px2 = 2 * kPhaseStep_px * kPhaseStep_px / second;
   constexpr int kUnknowns = kTerms + 1;
   edge.noise = here / (model.last - model.first + 1 - kUnknowns);

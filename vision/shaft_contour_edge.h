@@ -48,7 +48,7 @@ class ScanEdgeFinder {
 
  private:
   static constexpr int kSamples = kInside + kOutside + 1, kTerms = 4;
-  static constexpr int kPhases = 25;  // of an eighth of a pixel
+  static constexpr int kMiddle = 12, kPhases = 2 * kMiddle + 1;  // of an eighth of a pixel
   using Basis = Eigen::Matrix<float, kSamples, kTerms>;
   using Window = Eigen::Matrix<float, kSamples, 1>;
 

@@ -185,7 +185,7 @@ std::vector<ContourPoint> TubeContour(const CameraModel& camera, const TubeShape
   const CameraCalibration& c = camera.Calibration();
   const View view{camera, tube, T_CE, bend, 0.5 * (c.fu_px + c.fv_px)};
   std::vector<ContourPoint> points;
-  points.reserve(static_cast<std::size_t>(2 * per_side + at_end));
+  points.reserve(2 * per_side + at_end);
   AddSides(view, per_side, points);
   if (T_CE.p.z() <= tube.diameter_m) return points;
   tube.round_end ? AddRoundEnd(view, at_end, points) : AddFlatEnd(view, at_end, points);
