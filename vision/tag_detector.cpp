@@ -1,51 +1,17 @@
 #include "vision/tag_detector.h"
 
-#include <apriltag/apriltag.h>
-#include <apriltag/tag16h5.h>
-#include <apriltag/tag25h9.h>
-#include <apriltag/tag36h10.h>
-#include <apriltag/tag36h11.h>
-#include <apriltag/tagCircle21h7.h>
-#include <apriltag/tagStandard41h12.h>
-#include <apriltag/tagStandard52h13.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
 #include "vision/edge_refiner.h"
+#include "vision/tag_families.h"
 
 namespace flextip {
 namespace {
 
-struct FamilyEntry {
-  const char* name;
-  apriltag_family_t* (*create)();
-  void (*destroy)(apriltag_family_t*);
-};
-
-constexpr FamilyEntry kFamilies[] = {
-    {"tag36h11", tag36h11_create, tag36h11_destroy},
-    {"tag36h10", tag36h10_create, tag36h10_destroy},
-    {"tag25h9", tag25h9_create, tag25h9_destroy},
-    {"tag16h5", tag16h5_create, tag16h5_destroy},
-    {"tagCircle21h7", tagCircle21h7_create, tagCircle21h7_destroy},
-    {"tagStandard41h12", tagStandard41h12_create, tagStandard41h12_destroy},
-    {"tagStandard52h13", tagStandard52h13_create, tagStandard52h13_destroy},
-};
-
 // The library thresholds tiles of 4x4 pixels and needs a few of them.
 constexpr int kMinSide_px = 16;
-
-const FamilyEntry& FindFamily(const std::string& name) {
-  for (const FamilyEntry& f : kFamilies) {
-    if (name == f.name) return f;
-  }
-  throw InputError(
-      fmt::format("tag family '{}' is not known; expected tag36h11, tag36h10, tag25h9, tag16h5, "
-                  "tagCircle21h7, tagStandard41h12 or tagStandard52h13",
-                  name));
-}
 
 // The library keeps a table of every code with up to `bits` of its bits wrong, three places of 16
 // bytes for each entry: 3 GB and ten seconds for two bits of tagStandard52h13.
@@ -93,16 +59,13 @@ Image ToGrey(const Image& image) {
 
 struct TagDetector::Impl {
   TagDetectorOptions options;
-  const FamilyEntry* entry = nullptr;
-  apriltag_family_t* family = nullptr;
+  TagFamily family;
   apriltag_detector_t* detector = nullptr;
 
-  explicit Impl(const TagDetectorOptions& o) : options(o) {
+  explicit Impl(const TagDetectorOptions& o) : options(o), family(MakeTagFamily(o.family)) {
     CheckOptions(o);
-    entry = &FindFamily(o.family);
-    family = entry->create();
     detector = apriltag_detector_create();
-    apriltag_detector_add_family_bits(detector, family, AffordableBits(*family, o.max_hamming));
+    apriltag_detector_add_family_bits(detector, family.get(), AffordableBits(*family, o.max_hamming));
     detector->quad_decimate = static_cast<float>(o.quad_decimate);
     detector->quad_sigma = static_cast<float>(o.quad_sigma_px);
     detector->refine_edges = o.refine_edges;
@@ -111,10 +74,7 @@ struct TagDetector::Impl {
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
-  ~Impl() {
-    apriltag_detector_destroy(detector);
-    entry->destroy(family);
-  }
+  ~Impl() { apriltag_detector_destroy(detector); }
 
   TagDetection Convert(const apriltag_detection_t& d, const Image& grey) const;
 };
@@ -143,9 +103,11 @@ TagDetector::~TagDetector() = default;
 TagDetector::TagDetector(TagDetector&&) noexcept = default;
 TagDetector& TagDetector::operator=(TagDetector&&) noexcept = default;
 
-std::vector<TagDetection> TagDetector::Detect(const Image& image) {
+std::vector<TagDetection> TagDetector::Detect(const Image& image, double min_decimate) {
+  const double decimate = std::max(impl_->options.quad_decimate, min_decimate);
+  impl_->detector->quad_decimate = static_cast<float>(decimate);
   Image grey = ToGrey(image);
-  const double smaller = std::min(grey.width_px, grey.height_px) / impl_->options.quad_decimate;
+  const double smaller = std::min(grey.width_px, grey.height_px) / decimate;
   if (smaller < kMinSide_px) return {};
   image_u8_t view = {grey.width_px, grey.height_px, grey.width_px, grey.data.data()};
   zarray_t* found = apriltag_detector_detect(impl_->detector, &view);

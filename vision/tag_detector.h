@@ -56,9 +56,10 @@ class TagDetector {
   TagDetector(TagDetector&&) noexcept;
   TagDetector& operator=(TagDetector&&) noexcept;
 
+  /// `min_decimate`: the options' quad_decimate is not less than this.
   /// Tags in a grey or colour image, sorted by id; none is an ordinary result. Throws InputError
   /// for an empty image or one that has neither 1 nor 3 channels.
-  std::vector<TagDetection> Detect(const Image& image);
+  std::vector<TagDetection> Detect(const Image& image, double min_decimate = 1.0);
 
  private:
   struct Impl;

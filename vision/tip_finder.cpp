@@ -17,9 +17,8 @@ constexpr double kCornerFallback_px = 0.2;  // what corners alone may be wrong b
 constexpr double kFirstBlurSd_px2 = 3.0;
 constexpr int kDetectMargin_px = 12;
 
-TagDetectorOptions DetectorFor(const TagCollar& collar, TagDetectorOptions options, bool quick) {
+TagDetectorOptions DetectorFor(const TagCollar& collar, TagDetectorOptions options) {
   options.family = collar.family;
-  if (quick) options.quad_decimate = std::max(2.0, options.quad_decimate);
   return options;
 }
 
@@ -56,8 +55,7 @@ TipFinder::TipFinder(const std::vector<CameraCalibration>& cameras, const TagCol
                      const TrackerOptions& options)
     : collar_(collar),
       options_(options),
-      detector_(DetectorFor(collar, options.detector, false)),
-      quick_detector_(DetectorFor(collar, options.detector, true)),
+      detector_(DetectorFor(collar, options.detector)),
       fit_(cameras, collar, options.photometric) {
   for (const CameraCalibration& camera : cameras) {
     models_.push_back(std::make_unique<CameraModel>(camera));
@@ -192,7 +190,7 @@ Sight TipFinder::FindAnywhere(const Images& images, const std::optional<Pose>& n
                               bool thorough) {
   std::vector<std::vector<TagDetection>> tags(images.size());
   for (std::size_t i = 0; i < images.size(); ++i) {
-    if (images[i] != nullptr) tags[i] = (thorough ? detector_ : quick_detector_).Detect(*images[i]);
+    if (images[i] != nullptr) tags[i] = detector_.Detect(*images[i], thorough ? 1.0 : 2.0);
   }
   Sight sight = BestOf(tags, near_T_RE);
   if (!sight.Found() || !options_.photometric_fit) return sight;

@@ -67,7 +67,7 @@ class TipFinder {
   TrackerOptions options_;
   std::vector<std::unique_ptr<CameraModel>> models_;
   std::vector<CollarSearch> searches_;
-  TagDetector detector_, quick_detector_;
+  TagDetector detector_;
   PhotometricFit fit_;
   std::vector<OpticsPrior> priors_;
 };

@@ -1,0 +1,85 @@
+// The bound is what an estimate that knows everything else attains on noisy frames.
+#include <gtest/gtest.h>
+
+#include "bench/tip_bound_fisher.h"
+#include "simulation/render_film.h"
+#include "vision/reprojection.h"
+
+namespace flextip {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+struct Bounded {
+  TagCollar collar = BoundCollar(0.005);
+  TubeShape tube = BoundTube(collar);
+  LaparoscopeOptions options = BoundScope(0.7);
+  Laparoscope laparoscope{BoundCamera(), collar, options};
+  BoundScene scene = DrawScenes(1, 5).front();
+  PixelModels models = ModelPixels(laparoscope, options, collar, tube, scene);
+};
+
+const Bounded& OneScene() {
+  static const Bounded bounded;
+  return bounded;
+}
+
+TEST(TipBound, IsAttainedFromTheTrueDerivatives) {
+  constexpr int kFrames = 25;
+  const Bounded& b = OneScene();
+  const LinearImage light = b.laparoscope.RenderLinear(CurveOf(b.scene, b.tube), 0);
+  const render::Film film(b.options, b.laparoscope.Gamma());
+  double collar = 0, all = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    LinearImage copy = light;
+    const Image frame = film.Develop(copy, i);
+    const auto normalised = [&](const PixelModel& model) {
+      const Vector6 e = model.Step(frame);
+      return e.dot(model.Bound(true).covariance.ldlt().solve(e)) / kFrames;
+    };
+    collar += normalised(b.models.collar);
+    all += normalised(b.models.all);
+  }
+  // 6 expected; the mean of 25 scatters by 0.7.
+  EXPECT_NEAR(collar, 6, 2.1);
+  EXPECT_NEAR(all, 6, 2.1);
+}
+
+// Noise-free frames a tenth of a pixel apart differ by what the derivatives (taken over half a
+// pixel) say, up to rounding to 8 bit.
+TEST(TipBound, DerivativesFollowTheFrame) {
+  const Bounded& b = OneScene();
+  LaparoscopeOptions noise_free = b.options;
+  noise_free.full_well_electrons = 0;
+  const render::Film film(noise_free, b.laparoscope.Gamma());
+  const PixelModel& model = b.models.all;
+  const auto frame_at = [&](const Vector6& move) {
+    const BoundScene moved = {MovePose(b.scene.T_CE, move), b.scene.bend};
+    LinearImage light = b.laparoscope.RenderLinear(CurveOf(moved, b.tube), 0);
+    const Image frame = film.Develop(light, 0);
+    Eigen::VectorXd value(model.mean.size());
+    for (Eigen::Index r = 0; r < value.size(); ++r) {
+      value[r] = model.per_code[r] * frame.data[model.pixels[r]];
+    }
+    return value;
+  };
+  const double step_m = 0.1 * b.scene.T_CE.p.z() / BoundCamera().fu_px;
+  for (int k = 0; k < 6; ++k) {
+    const Vector6 move = (k < 3 ? step_m / 0.03 : (k == 5 ? 5 : 1) * step_m) * Vector6::Unit(k);
+    const Eigen::VectorXd change = frame_at(move) - frame_at(-move);
+    const Eigen::VectorXd said = 2 * model.J.leftCols<6>() * move;
+    EXPECT_NEAR(change.dot(said) / said.squaredNorm(), 1, 0.06) << k;
+    EXPECT_GT(change.dot(said), 0.95 * change.norm() * said.norm()) << k;
+  }
+}
+
+TEST(TipBound, MoreKnownOrMoreSeenBoundsLower) {
+  const TipBounds b = BoundTip(OneScene().models);
+  EXPECT_LT(b.collar_known.TipRms(), b.collar.TipRms());
+  EXPECT_LT(b.all_known.TipRms(), b.all.TipRms());
+  EXPECT_LT(b.all_known.TipRms(), b.collar_known.TipRms());
+  EXPECT_LT(b.all.TipRms(), b.collar.TipRms());
+}
+
+}  // namespace
+}  // namespace flextip

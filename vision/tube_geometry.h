@@ -1,0 +1,60 @@
+// The outline of a bent tube with a round section as a camera sees it, with its derivatives.
+#pragma once
+
+#include <Eigen/Dense>
+#include <optional>
+#include <vector>
+
+#include "core/pose.h"
+#include "vision/camera_model.h"
+
+namespace flextip {
+
+/// A tube that ends at E (x along it toward the tip, E its foremost point).
+struct TubeShape {
+  /// A wider body on the tube, x in E (m), from < to; what it may cover is left out.
+  struct Collar {
+    double from_m = 0.0, to_m = 0.0, radius_m = 0.0;
+  };
+  double diameter_m = 0.0;
+  double length_m = 0.15;  ///< behind E; what is out of view is not used
+  bool round_end = true;   ///< a half sphere within the length; else a flat disc at E
+  std::optional<Collar> collar;
+};
+
+/// A point of the centre line at the distance `s_m` behind E, and the tangent there, toward the tip
+/// (both in E). `bend` (1/m^2) is c_y, c_z: the curvature about E's axes grows as kappa = c s, as
+/// that of a shaft loaded at its tip, so that y = c_y s^3 / 6 at first order (the next is kept).
+struct CentreLinePoint {
+  Eigen::Vector3d x_E, t_E;
+};
+CentreLinePoint TubeCentre(const Eigen::Vector2d& bend, double s_m);
+
+/// How the tube's surface ends at its outline.
+enum class TubeRim {
+  kRound,  ///< turns away from the eye: lit from there it darkens as the root of the depth inside
+  kFlat,   ///< is cut off
+};
+
+enum class ContourPart { kLeft, kRight, kEnd };
+
+/// One point of the outline. `offset`, how far the outline stands outward along `outward`, has the
+/// derivatives J_pose by (dw, dp) as in MovePose (px/rad, px/m) and J_bend (px m^2).
+struct ContourPoint {
+  Eigen::Vector2d px, outward;  ///< outward: unit, in the image
+  Eigen::Matrix<double, 1, 6> J_pose;
+  Eigen::RowVector2d J_bend;
+  double radius_px = 0.0;  ///< the tube's, in the picture
+  double place = 0.0;      ///< on its part, -1 (toward the tip) to 1
+  ContourPart part = ContourPart::kEnd;
+  TubeRim rim = TubeRim::kRound;
+};
+
+/// `per_side` points along each side, evenly spaced in the picture over the tube's stretch in view,
+/// and up to `at_end` around its end; fewer where the collar covers them or the lens does not
+/// see them. A tube seen nearly from its end has an end only.
+std::vector<ContourPoint> TubeContour(const CameraModel& camera, const TubeShape& tube,
+                                      const Pose& T_CE, const Eigen::Vector2d& bend, int per_side,
+                                      int at_end);
+
+}  // namespace flextip
