@@ -10,7 +10,9 @@ namespace {
 
 constexpr double kMinCosine = 0.3;
 constexpr int kMaxSteps = 20;  // either way
-constexpr int kMaxPlaces = 150;
+constexpr std::size_t kMaxPlaces = 150, kMinPlaces = 10;
+constexpr double kMaxExtent_px = 4000;
+constexpr float kMinVariance_grey2 = 25.0f;
 
 // A part of the picture at 1/step of its resolution.
 struct Reduced {
@@ -58,10 +60,79 @@ float Smoothed(const TagCells& tag, int column, int row) {
   return sum / weight;
 }
 
+using Place = CollarSearch::Place;
+
+// A face's places in the reduced picture with values of mean 0 and square sum 1.
+struct Template {
+  std::vector<int> offsets;
+  std::vector<float> values;
+};
+
+Template MakeTemplate(const std::vector<Place>& places, std::size_t every,
+                      const Eigen::Vector2i& corner, const Reduced& reduced) {
+  Template t;
+  float mean = 0, square = 0;
+  for (std::size_t i = 0; i < places.size(); i += every) {
+    const Eigen::Vector2d at = (places[i].px - corner.cast<double>()) / reduced.step;
+    t.offsets.push_back(static_cast<int>(at.y()) * reduced.width + static_cast<int>(at.x()));
+    t.values.push_back(places[i].white);
+    mean += places[i].white;
+  }
+  mean /= static_cast<float>(t.values.size());
+  for (float& v : t.values) {
+    v -= mean;
+    square += v * v;
+  }
+  for (float& v : t.values) v /= std::sqrt(std::max(square, 1e-6f));
+  return t;
+}
+
+float Correlation(const Template& t, const float* at) {
+  float sum = 0, squares = 0, product = 0;
+  for (std::size_t i = 0; i < t.values.size(); ++i) {
+    const float grey = at[t.offsets[i]];
+    sum += grey;
+    squares += grey * grey;
+    product += t.values[i] * grey;
+  }
+  const auto n = static_cast<float>(t.values.size());
+  return product / std::sqrt(std::max(squares - sum * sum / n, kMinVariance_grey2 * n));
+}
+
+// Mean correlation of the faces at all shifts, rows from the top.
+std::vector<double> Correlate(const std::vector<Template>& templates, const Reduced& reduced,
+                              int steps) {
+  std::vector<double> scores;
+  scores.reserve(static_cast<std::size_t>(2 * steps + 1) * (2 * steps + 1));
+  for (int dy = -steps; dy <= steps; ++dy) {
+    for (int dx = -steps; dx <= steps; ++dx) {
+      double sum = 0;
+      const float* at = reduced.grey.data() + dy * reduced.width + dx;
+      for (const Template& t : templates) sum += Correlation(t, at);
+      scores.push_back(sum / static_cast<double>(templates.size()));
+    }
+  }
+  return scores;
+}
+
 // The offset of a parabola's top through values at -1, 0, 1.
 double Peak(double before, double at, double after) {
   const double bend = before - 2 * at + after;
   return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
+}
+
+// In steps, between them by parabolas.
+CollarSearch::Match BestShift(const std::vector<double>& scores, int steps) {
+  const int across = 2 * steps + 1;
+  const int best =
+      static_cast<int>(std::max_element(scores.begin(), scores.end()) - scores.begin());
+  const int dx = best % across - steps, dy = best / across - steps;
+  CollarSearch::Match match{Eigen::Vector2d(dx, dy), scores[best]};
+  if (std::max(std::abs(dx), std::abs(dy)) < steps) {
+    match.shift_px.x() += Peak(scores[best - 1], scores[best], scores[best + 1]);
+    match.shift_px.y() += Peak(scores[best - across], scores[best], scores[best + across]);
+  }
+  return match;
 }
 
 }  // namespace
@@ -70,7 +141,7 @@ CollarSearch::CollarSearch(const CameraModel& camera, const TagCollar& collar) :
   for (const CollarTag& tag : collar.tags) {
     const TagCells cells = ReadTagCells(collar.family, tag.id);
     const double cell_m = tag.size_m / cells.border_cells;
-    Face face{tag, {}, {}};
+    Face face{tag, cells.border_cells, {}, {}};
     for (int row = 0; row < cells.cells; ++row) {
       for (int column = 0; column < cells.cells; ++column) {
         if (cells.At(column, row) == TagCells::kUnknown) continue;
@@ -84,96 +155,48 @@ CollarSearch::CollarSearch(const CameraModel& camera, const TagCollar& collar) :
   }
 }
 
-CollarSearch::Match CollarSearch::Find(const Image& image, const Pose& T_CE,
-                                       double radius_px) const {
-  struct Place {
-    Eigen::Vector2d px;
-    float white;
-  };
-  std::vector<std::vector<Place>> seen;
-  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
-  double cell_px = 0;
+// The places of the faces that are seen from T_CE.
+CollarSearch::Seen CollarSearch::Look(const Pose& T_CE) const {
+  Seen seen;
   for (const Face& face : faces_) {
     const Pose T_CG = T_CE * face.tag.T_EG;
     Eigen::Matrix<double, 2, 3> J;
-    if (T_CG.R.col(2).dot(T_CG.p) < kMinCosine * T_CG.p.norm() || !camera_.Project(T_CG.p, &J)) {
-      continue;
-    }
-    cell_px = std::max(cell_px, J(0, 0) * face.tag.size_m / 9);
+    const bool faces_camera = T_CG.R.col(2).dot(T_CG.p) > kMinCosine * T_CG.p.norm();
+    if (!faces_camera || !camera_.Project(T_CG.p, &J)) continue;
+    seen.cell_px = std::max(seen.cell_px, J(0, 0) * face.tag.size_m / face.border_cells);
     std::vector<Place> places;
     for (std::size_t i = 0; i < face.x_E.size(); ++i) {
       const auto px = camera_.Project(T_CE * face.x_E[i]);
       if (!px) continue;
       places.push_back({*px, face.white[i]});
-      low = low.cwiseMin(*px);
-      high = high.cwiseMax(*px);
+      seen.low = seen.low.cwiseMin(*px);
+      seen.high = seen.high.cwiseMax(*px);
     }
-    if (places.size() > 10) seen.push_back(std::move(places));
+    if (places.size() < kMinPlaces) continue;
+    seen.places += places.size();
+    seen.faces.push_back(std::move(places));
   }
-  Match match;
-  if (seen.empty() || (high - low).maxCoeff() > 4000) return match;
-  const int step = std::max({1, static_cast<int>(cell_px / 2),
+  return seen;
+}
+
+CollarSearch::Match CollarSearch::Find(const Image& image, const Pose& T_CE,
+                                       double radius_px) const {
+  const Seen seen = Look(T_CE);
+  if (seen.faces.empty() || (seen.high - seen.low).maxCoeff() > kMaxExtent_px) return {};
+  const int step = std::max({1, static_cast<int>(seen.cell_px / 2),
                              static_cast<int>(std::ceil(radius_px / kMaxSteps))});
   const int steps = static_cast<int>(std::ceil(radius_px / step));
-  const int reach = steps * step + step;
-  const Eigen::Vector2i corner = low.cast<int>() - Eigen::Vector2i(reach, reach);
-  const Reduced r = Reduce(image, corner, high.cast<int>() + Eigen::Vector2i(reach + step, reach + step), step);
-
+  const int reach = (steps + 1) * step;
+  const Eigen::Vector2i corner = seen.low.cast<int>() - Eigen::Vector2i::Constant(reach);
+  const Reduced reduced =
+      Reduce(image, corner, seen.high.cast<int>() + Eigen::Vector2i::Constant(reach + step), step);
   std::vector<Template> templates;
-  std::size_t total = 0;
-  for (const auto& places : seen) total += places.size();
-  const std::size_t every = std::max<std::size_t>(1, total / kMaxPlaces);
-  for (const auto& places : seen) {
-    Template t;
-    float mean = 0, square = 0;
-    for (std::size_t i = 0; i < places.size(); i += every) {
-      const Eigen::Vector2d at = (places[i].px - corner.cast<double>()) / step;
-      t.offsets.push_back(static_cast<int>(at.y()) * r.width + static_cast<int>(at.x()));
-      t.values.push_back(places[i].white);
-      mean += places[i].white;
-    }
-    mean /= static_cast<float>(t.values.size());
-    for (float& v : t.values) {
-      v -= mean;
-      square += v * v;
-    }
-    for (float& v : t.values) v /= std::sqrt(std::max(square, 1e-6f));
-    templates.push_back(std::move(t));
+  const std::size_t every = std::max<std::size_t>(1, seen.places / kMaxPlaces);
+  for (const auto& places : seen.faces) {
+    templates.push_back(MakeTemplate(places, every, corner, reduced));
   }
-
-  const int across = 2 * steps + 1;
-  std::vector<double> scores(static_cast<std::size_t>(across) * across);
-  const auto score = [&](int dx, int dy) -> double& {
-    return scores[static_cast<std::size_t>(dy + steps) * across + dx + steps];
-  };
-  Eigen::Vector2i best(0, 0);
-  for (int dy = -steps; dy <= steps; ++dy) {
-    for (int dx = -steps; dx <= steps; ++dx) {
-      double sum = 0;
-      for (const Template& t : templates) {
-        const float* at = r.grey.data() + dy * r.width + dx;
-        float s = 0, s2 = 0, st = 0;
-        for (std::size_t i = 0; i < t.values.size(); ++i) {
-          const float grey = at[t.offsets[i]];
-          s += grey;
-          s2 += grey * grey;
-          st += t.values[i] * grey;
-        }
-        const float variance = s2 - s * s / static_cast<float>(t.values.size());
-        sum += st / std::sqrt(std::max(variance, 25.0f * static_cast<float>(t.values.size())));
-      }
-      score(dx, dy) = sum / static_cast<double>(templates.size());
-      if (score(dx, dy) > score(best.x(), best.y())) best = {dx, dy};
-    }
-  }
-  match.correlation = score(best.x(), best.y());
-  Eigen::Vector2d fine = best.cast<double>();
-  if (best.cwiseAbs().maxCoeff() < steps) {
-    const double at = match.correlation;
-    fine.x() += Peak(score(best.x() - 1, best.y()), at, score(best.x() + 1, best.y()));
-    fine.y() += Peak(score(best.x(), best.y() - 1), at, score(best.x(), best.y() + 1));
-  }
-  match.shift_px = fine * step;
+  Match match = BestShift(Correlate(templates, reduced, steps), steps);
+  match.shift_px *= step;
   return match;
 }
 

@@ -27,17 +27,26 @@ class CollarSearch {
   /// T_CE moved across the line of sight so that the collar is seen `shift_px` away.
   Pose Shifted(const Pose& T_CE, const Eigen::Vector2d& shift_px) const;
 
+  /// A place on a tag where it would be seen, and how white it is, smoothed over about a cell.
+  struct Place {
+    Eigen::Vector2d px;
+    float white;
+  };
+
  private:
   struct Face {
     CollarTag tag;
-    std::vector<Eigen::Vector3d> x_E;  // places on the tag
-    std::vector<float> white;          // their whiteness, smoothed over about a cell
+    int border_cells;
+    std::vector<Eigen::Vector3d> x_E;
+    std::vector<float> white;
   };
-  /// A face's template: places in the reduced picture, values of mean 0 and square sum 1.
-  struct Template {
-    std::vector<int> offsets;
-    std::vector<float> values;
+  struct Seen {
+    std::vector<std::vector<Place>> faces;
+    std::size_t places = 0;
+    Eigen::Vector2d low{1e9, 1e9}, high{-1e9, -1e9};  // their bounding box
+    double cell_px = 0;
   };
+  Seen Look(const Pose& T_CE) const;
 
   const CameraModel& camera_;
   std::vector<Face> faces_;

@@ -9,10 +9,9 @@ namespace {
 constexpr double kMinCosine = 0.105;        // of the angle between normal and view: 84 degrees
 constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
 constexpr float kReachOfUnknown = 2.0f;     // sigmas kept from what is not known
-constexpr float kFlatPart = 0.004f;         // whiteness nearer to 0 or 1 than this says nothing
+constexpr float kFlatPart = 0.02f;         // whiteness nearer to 0 or 1 than this says nothing
 constexpr int kFlatEvery = 7;               // of flat pixels so many are left out for one taken
 constexpr double kHiddenRim_cells = 0.5;    // of a tag's rim that a neighbour may hide
-constexpr int kBlock = 64;
 
 // Rec. 601, as ToGrey.
 float GreyAt(const Image& image, int x, int y) {
@@ -160,94 +159,78 @@ bool PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE,
   return white > black + 4;
 }
 
+// Black and white at a place on the tag, in light.
+struct PhotometricFace::Light {
+  Eigen::Matrix<float, 6, 1> level;
+  float half;
+  float black, white, fu, fv;
+  Light(const FaceLevels& levels, int cells)
+      : level(levels.cast<float>()), half(0.5f * static_cast<float>(cells)) {}
+  void At(float u, float v) {
+    fu = u / half - 1;
+    fv = v / half - 1;
+    black = level[0] + level[1] * fu + level[2] * fv;
+    white = level[3] + level[4] * fu + level[5] * fv;
+  }
+};
+
+// By pose, print offset and blur; `by_c`: the grey value by the pattern's whiteness.
+void PhotometricFace::DifferentiatePlace(const Pixel& pixel, const Geometry& g,
+                                         const PatternValue& p, const Eigen::Vector3f& pivot,
+                                         float by_c, Row& row) {
+  const auto at = g.At(pixel.mx, pixel.my);
+  // By the ray, and by the point of the tag that is seen there.
+  const Eigen::Matrix3f& T = g.to_tag;
+  const float gx = by_c * (p.c_u * (T(0, 0) - at.u * T(2, 0)) + p.c_v * (T(1, 0) - at.v * T(2, 0)));
+  const float gy = by_c * (p.c_u * (T(0, 1) - at.u * T(2, 1)) + p.c_v * (T(1, 1) - at.v * T(2, 1)));
+  const Eigen::Vector3f h(-gx, -gy, gx * pixel.mx + gy * pixel.my);
+  const Eigen::Vector3f q = Eigen::Vector3f(pixel.mx * at.z, pixel.my * at.z, at.z) - pivot;
+  row.segment<3>(0) = q.cross(h);
+  row.segment<3>(3) = h;
+  row[FaceColumns::kOffset] = -h.dot(g.normal);
+  // Spreading is diffusion: the derivative by a variance is half the second derivative.
+  const Eigen::Matrix2f& B = g.uv_of_px;
+  const float a = B(0, 0), b = B(0, 1), c = B(1, 0), d = B(1, 1);
+  row[FaceColumns::kBlur] = 0.5f * by_c * (a * a * p.c_uu + 2 * a * c * p.c_uv + c * c * p.c_vv);
+  row[FaceColumns::kBlur + 1] =
+      by_c * (a * b * p.c_uu + (a * d + c * b) * p.c_uv + c * d * p.c_vv);
+  row[FaceColumns::kBlur + 2] =
+      0.5f * by_c * (b * b * p.c_uu + 2 * b * d * p.c_uv + d * d * p.c_vv);
+}
+
 void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
                                  const Eigen::Vector3d& pivot_C, const Optics& optics,
                                  const ToneCurve& tone, const RobustRule& rule,
                                  FaceSums& sums) const {
-  using Row = Eigen::Matrix<float, FaceSums::kSize, 1>;
   const Geometry g = Place(camera, T_CE, optics);
   if (!g.valid) return;
-  const Eigen::Matrix<float, 6, 1> level = levels.cast<float>();
   const Eigen::Vector3f pivot = pivot_C.cast<float>();
-  const Eigen::Matrix2f& B = g.uv_of_px;
-  const float half = 0.5f * static_cast<float>(pattern_.Cells());
-  const auto scale = static_cast<float>(rule.scale_grey), cut = static_cast<float>(rule.cut) * scale;
-  const float inverse_cut2 = 1 / (cut * cut);
-  Eigen::Matrix<float, FaceSums::kSize, kBlock> rows;
-  int filled = 0;
-  double n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
-  const auto flush = [&] {
-    const auto used = rows.leftCols(filled);
-    const Eigen::Matrix<float, FaceSums::kSize, FaceSums::kSize> part = used * used.transpose();
-    sums.A += part.cast<double>();
-    filled = 0;
-  };
+  Light light(levels, pattern_.Cells());
+  Row row;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
     const PatternValue p = pattern_.At(at.u, at.v, g.blur);
-    const float fu = at.u / half - 1, fv = at.v / half - 1;
-    const float black = level[0] + level[1] * fu + level[2] * fv;
-    const float white = level[3] + level[4] * fu + level[5] * fv;
-    const ToneCurve::Value film = tone.At(black + p.c * (white - black));
-    const float r = pixel.grey - film.grey, size = std::abs(r);
-    ++sums.errors[std::min(static_cast<int>(size * FaceSums::kBinsPerGrey), FaceSums::kBins - 1)];
-    float weight;
-    if (rule.redescending) {
-      const float t = 1 - r * r * inverse_cut2;
-      weight = size < cut ? t * t : 0.0f;
-      sums.robust_cost += size < cut ? cut * cut / 6 * (1 - t * t * t) * 2 : cut * cut / 3;
-    } else {
-      weight = size < scale ? 1.0f : scale / size;
-      sums.robust_cost += size < scale ? r * r : scale * (2 * size - scale);
-    }
-    sums.weight += weight;
-    n += weight, sx += weight * film.grey, sy += weight * pixel.grey;
-    sxx += weight * film.grey * film.grey, syy += weight * pixel.grey * pixel.grey;
-    sxy += weight * film.grey * pixel.grey;
+    light.At(at.u, at.v);
+    const float contrast = light.white - light.black;
+    const ToneCurve::Value film = tone.At(light.black + p.c * contrast);
+    const float residual = pixel.grey - film.grey;
+    sums.CountError(residual);
+    const float weight = rule.Weight(residual);
     if (weight == 0) continue;
-    const float root = std::sqrt(weight);
-    const float by_light = root * film.by_light;
-    Row row;
-    row[11] = by_light * (1 - p.c), row[12] = row[11] * fu, row[13] = row[11] * fv;
-    row[14] = by_light * p.c, row[15] = row[14] * fu, row[16] = row[14] * fv;
-    row[9] = root * film.by_gamma;
-    row[10] = 0;
-    row[17] = root * r;
+    const float root = std::sqrt(weight), by_light = root * film.by_light;
     if (p.flat) {
-      row.head<9>().setZero();
+      row.head<FaceColumns::kLevels>().setZero();
     } else {
-      const float by_c = by_light * (white - black);
-      // By the place on the tag, by the ray, and by the point that moves with the tag.
-      const float z = at.z;
-      const float u_x = g.to_tag(0, 0) - at.u * g.to_tag(2, 0);
-      const float u_y = g.to_tag(0, 1) - at.u * g.to_tag(2, 1);
-      const float v_x = g.to_tag(1, 0) - at.v * g.to_tag(2, 0);
-      const float v_y = g.to_tag(1, 1) - at.v * g.to_tag(2, 1);
-      const float gx = (p.c_u * u_x + p.c_v * v_x) * by_c, gy = (p.c_u * u_y + p.c_v * v_y) * by_c;
-      const Eigen::Vector3f h(-gx, -gy, gx * pixel.mx + gy * pixel.my);
-      const Eigen::Vector3f q = Eigen::Vector3f(pixel.mx * z, pixel.my * z, z) - pivot;
-      row.segment<3>(0) = q.cross(h);
-      row.segment<3>(3) = h;
-      row[10] = -h.dot(g.normal);
-      // Spreading is diffusion: the derivative by a variance is half the second derivative.
-      const float xx = B(0, 0) * B(0, 0) * p.c_uu + 2 * B(0, 0) * B(1, 0) * p.c_uv +
-                       B(1, 0) * B(1, 0) * p.c_vv;
-      const float yy = B(0, 1) * B(0, 1) * p.c_uu + 2 * B(0, 1) * B(1, 1) * p.c_uv +
-                       B(1, 1) * B(1, 1) * p.c_vv;
-      const float xy = B(0, 0) * B(0, 1) * p.c_uu +
-                       (B(0, 0) * B(1, 1) + B(1, 0) * B(0, 1)) * p.c_uv +
-                       B(1, 0) * B(1, 1) * p.c_vv;
-      row[6] = 0.5f * by_c * xx, row[7] = by_c * xy, row[8] = 0.5f * by_c * yy;
+      DifferentiatePlace(pixel, g, p, pivot, by_light * contrast, row);
     }
-    rows.col(filled++) = row;
-    if (filled == kBlock) flush();
+    row[FaceColumns::kGamma] = root * film.by_gamma;
+    const float by_black = by_light * (1 - p.c), by_white = by_light * p.c;
+    row.segment<6>(FaceColumns::kLevels) << by_black, by_black * light.fu, by_black * light.fv,
+        by_white, by_white * light.fu, by_white * light.fv;
+    row[FaceColumns::kResidual] = root * residual;
+    sums.Add(row, weight, pixel.grey, film.grey);
   }
-  if (filled > 0) flush();
-  sums.pixels += Pixels();
-  if (n > 0) {
-    const double vx = sxx - sx * sx / n, vy = syy - sy * sy / n;
-    sums.correlation = vx > 0 && vy > 0 ? (sxy - sx * sy / n) / std::sqrt(vx * vy) : 0.0;
-  }
+  sums.Finish();
 }
 
 }  // namespace flextip

@@ -12,6 +12,7 @@
 #include "vision/blurred_pattern.h"
 #include "vision/camera_model.h"
 #include "vision/lens_map.h"
+#include "vision/photometric_sums.h"
 #include "vision/tone_curve.h"
 
 namespace flextip {
@@ -27,28 +28,6 @@ struct Optics {
 
 /// A face's light: black and white, each level + slope times the place on the tag (-1..1).
 using FaceLevels = Eigen::Matrix<double, 6, 1>;  // black, black_u, black_v, white, white_u, white_v
-
-/// How a face's pixels are counted: beyond `cut` times `scale_grey` a residual counts nothing
-/// (Tukey's biweight), or, where not `redescending`, ever less (Huber).
-struct RobustRule {
-  double scale_grey = 20.0;
-  double cut = 4.7;
-  bool redescending = false;
-};
-
-/// Sums over a face's pixels, in grey values. Parameters: pose (dw, dc) about a pivot in C, blur,
-/// gamma, print offset, levels; the last row and column are the residuals'.
-struct FaceSums {
-  static constexpr int kBlur = 6, kGamma = 9, kOffset = 10, kLevels = 11, kResidual = 17;
-  static constexpr int kSize = 18;
-  Eigen::Matrix<double, kSize, kSize> A = Eigen::Matrix<double, kSize, kSize>::Zero();
-  int pixels = 0;
-  double weight = 0;          ///< sum of the weights
-  double robust_cost = 0;     ///< sum of the rule's cost
-  double correlation = 0;     ///< of measured and predicted grey values, weighted
-  static constexpr int kBinsPerGrey = 8, kBins = 256;
-  std::array<int, kBins> errors{};  ///< how many |measured - predicted| fall into each bin
-};
 
 class PhotometricFace {
  public:
@@ -78,7 +57,8 @@ class PhotometricFace {
   bool GuessLevels(const CameraModel& camera, const Pose& T_CE, const Optics& optics,
                    const ToneCurve& tone);
 
-  /// `pivot_C`: the point about which the pose turns.
+  /// Adds the pixels' residuals and derivatives at T_CE. `pivot_C`: the point about which the pose
+  /// turns.
   void Accumulate(const CameraModel& camera, const Pose& T_CE, const Eigen::Vector3d& pivot_C,
                   const Optics& optics, const ToneCurve& tone, const RobustRule& rule,
                   FaceSums& sums) const;
@@ -90,6 +70,10 @@ class PhotometricFace {
     float mx, my, grey;
   };
   struct Geometry;
+  struct Light;
+  using Row = FaceSums::Row;
+  static void DifferentiatePlace(const Pixel& pixel, const Geometry& g, const PatternValue& p,
+                                 const Eigen::Vector3f& pivot, float by_c, Row& row);
   Geometry Place(const CameraModel& camera, const Pose& T_CE, const Optics& optics) const;
 
   CollarTag tag_;

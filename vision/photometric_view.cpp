@@ -81,8 +81,9 @@ std::vector<FaceFit> PhotometricView::FaceFits() const {
     const FaceLevels& level = faces_[s.face].levels;
     const double contrast = tone_.At(static_cast<float>(level[3])).grey -
                             tone_.At(static_cast<float>(level[0])).grey;
-    fits.push_back({faces_[s.face].Tag().id, s.sums.pixels,
-                    s.sums.weight / std::max(1, s.sums.pixels), s.sums.correlation, contrast});
+    const int pixels = s.sums.Pixels();
+    fits.push_back({faces_[s.face].Tag().id, pixels, s.sums.Weight() / std::max(1, pixels),
+                    s.sums.Correlation(), contrast});
   }
   return fits;
 }
@@ -108,11 +109,12 @@ std::vector<Eigen::Vector3d> PhotometricView::Normals() const {
 
 // From the median size of the residuals.
 void PhotometricView::LearnNoise() {
-  std::array<int, FaceSums::kBins> errors{};
+  FaceSums::Histogram errors{};
   int count = 0, below = 0;
   for (const SeenFace& s : seen_) {
-    for (int i = 0; s.active && i < FaceSums::kBins; ++i) errors[i] += s.sums.errors[i];
-    count += s.active ? s.sums.pixels : 0;
+    if (!s.active) continue;
+    s.sums.AddErrorsTo(errors);
+    count += s.sums.Pixels();
   }
   if (count == 0) return;
   int bin = 0;
@@ -122,9 +124,9 @@ void PhotometricView::LearnNoise() {
 }
 
 PoseTerm PhotometricView::Linearise(const Pose& T_CE, bool redescending) {
-  RobustRule rule;
-  rule.scale_grey = noise_grey_ > 0 ? noise_grey_ * (redescending ? 1.0 : 1.5) : kFirstScale_grey;
-  rule.redescending = redescending && noise_grey_ > 0;
+  const bool known = noise_grey_ > 0;
+  const RobustRule rule(known ? noise_grey_ * (redescending ? 1.0 : 1.5) : kFirstScale_grey,
+                        redescending && known);
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
   for (const SeenFace& s : seen_) pivot += T_CE * faces_[s.face].Tag().T_EG.p;
   if (!seen_.empty()) pivot /= static_cast<double>(seen_.size());
@@ -139,23 +141,21 @@ PoseTerm PhotometricView::Linearise(const Pose& T_CE, bool redescending) {
     s.sums = FaceSums();
     faces_[s.face].Accumulate(camera_, T_CE, pivot, Widened(), tone_, rule, s.sums);
     EliminateLevels(s, A, b);
-    totals.robust_cost += s.sums.robust_cost;
-    totals.weight += s.sums.weight;
-    totals.pixels += s.sums.pixels;
+    totals.weight += s.sums.Weight();
+    totals.pixels += s.sums.Pixels();
   }
   LearnNoise();
   PoseTerm term = EliminateOptics(A, b);
-  term.robust_cost = totals.robust_cost;
   term.weight = totals.weight;
   term.pixels = totals.pixels;
   return term;
 }
 
 void PhotometricView::EliminateLevels(SeenFace& s, Matrix11& A, Vector11& b) const {
-  constexpr int kL = FaceSums::kLevels, kR = FaceSums::kResidual;
+  constexpr int kL = FaceColumns::kLevels, kR = FaceColumns::kResidual;
   const FaceLevels& level = faces_[s.face].levels;
-  Eigen::Matrix<double, 6, 6> H = s.sums.A.block<6, 6>(kL, kL);
-  Eigen::Matrix<double, 6, 1> r = s.sums.A.block<6, 1>(kL, kR);
+  Eigen::Matrix<double, 6, 6> H = s.sums.A().block<6, 6>(kL, kL);
+  Eigen::Matrix<double, 6, 1> r = s.sums.A().block<6, 1>(kL, kR);
   const double noise2 = std::pow(std::max(noise_grey_, kMinNoise_grey), 2);
   const double slope = kSlopeOfContrast * std::max(0.02, level[3]);
   for (const int i : {1, 2, 4, 5}) {
@@ -163,12 +163,12 @@ void PhotometricView::EliminateLevels(SeenFace& s, Matrix11& A, Vector11& b) con
     r[i] -= noise2 / (slope * slope) * level[i];
   }
   for (const int i : {0, 3}) H(i, i) += 1e-3 * noise2;
-  const Eigen::Matrix<double, 6, 11> C = s.sums.A.block<6, 11>(kL, 0);
+  const Eigen::Matrix<double, 6, 11> C = s.sums.A().block<6, 11>(kL, 0);
   const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(H);
   s.levels.constant = solver.solve(r);
   s.levels.by_rest = solver.solve(C);
-  A += s.sums.A.topLeftCorner<11, 11>() - C.transpose() * s.levels.by_rest;
-  b += s.sums.A.block<11, 1>(0, kR) - C.transpose() * s.levels.constant;
+  A += s.sums.A().topLeftCorner<11, 11>() - C.transpose() * s.levels.by_rest;
+  b += s.sums.A().block<11, 1>(0, kR) - C.transpose() * s.levels.constant;
 }
 
 PoseTerm PhotometricView::EliminateOptics(Matrix11 A, Vector11 b) {

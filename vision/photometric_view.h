@@ -14,8 +14,7 @@ namespace flextip {
 struct PoseTerm {
   Eigen::Matrix<double, 6, 6> JtJ = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> Jtr = Eigen::Matrix<double, 6, 1>::Zero();
-  double robust_cost = 0;  ///< of all pixels
-  double weight = 0;       ///< sum of the pixels' weights
+  double weight = 0;  ///< sum of the pixels' weights
   int pixels = 0;
 };
 

@@ -16,8 +16,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 constexpr int kMaxIterations = 12, kWideIterations = 2;
 constexpr int kWideSearch_px = 8;  // after the vote
 // Squared step over the covariance. Scan lines move with the pose and see another bit of the
-// background: below one there is only that.
-constexpr double kSettled = 1e-2, kNearlySettled = 1.0;
+// background: six would be another draw of all errors.
+constexpr double kSettled = 1e-2, kNearlySettled = 3.0;
 constexpr int kLeastOfPart = 3;
 
 void CheckGrey(const Image& image) {

@@ -48,7 +48,7 @@ std::vector<Voter> Voters(const ScanEdgeFinder& finder, const Image& grey,
 double NearlyAsGood(const std::vector<double>& votes, double best) {
   const double mean =
       std::accumulate(votes.begin(), votes.end(), 0.0) / static_cast<double>(votes.size());
-  return mean + 0.8 * (best - mean);
+  return mean + 0.9 * (best - mean);
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+#include "vision/photometric_sums.h"
+
+namespace flextip {
+
+void FaceSums::Flush() {
+  if (filled_ == 0) return;
+  const auto used = rows_.leftCols(filled_);
+  const Eigen::Matrix<float, FaceColumns::kSize, FaceColumns::kSize> part = used * used.transpose();
+  A_ += part.cast<double>();
+  filled_ = 0;
+}
+
+double FaceSums::Correlation() const {
+  const auto& m = moments_;
+  if (m[0] <= 0) return 0.0;
+  const double x2 = m[3] - m[1] * m[1] / m[0], y2 = m[4] - m[2] * m[2] / m[0];
+  return x2 > 0 && y2 > 0 ? (m[5] - m[1] * m[2] / m[0]) / std::sqrt(x2 * y2) : 0.0;
+}
+
+void FaceSums::AddErrorsTo(Histogram& histogram) const {
+  for (int i = 0; i < kBins; ++i) histogram[i] += errors_[i];
+}
+
+}  // namespace flextip
