@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr int kOtherIds = 10;  // the other instrument's first id
 
 // The place of the collar's middle (in C) in a frame.
-Vector3d CollarAt_C(const VisionSequence& s, double frame) {
+Vector3d CollarMiddle(const VisionSequence& s, double frame) {
   const Pose T_CE = s.motion.T_RC.Inverse() * s.motion.TipAt(frame / VisionSequence::kRate_hz);
   return T_CE * Vector3d(s.collar.tags[0].T_EG.p.x(), 0, 0);
 }
@@ -40,7 +40,7 @@ std::vector<int> TagsSeen(const VisionSequence& s, FrameRange frames) {
 // Another shaft before the collar, which it crosses.
 void AddPassingInstrument(FrameRange frames, Draw& draw, VisionSequence& s) {
   const Pose& T_RC = s.camera.T_RC;
-  const Vector3d at_C = draw.Between(0.55, 0.9) * CollarAt_C(s, Middle(frames));
+  const Vector3d at_C = draw.Between(0.55, 0.9) * CollarMiddle(s, Middle(frames));
   const double angle = draw.Between(0, 2 * std::numbers::pi);
   const Vector3d along(std::cos(angle), std::sin(angle), draw.Between(-0.3, 0.3));
   const Vector3d across(-std::sin(angle), std::cos(angle), 0);
@@ -103,7 +103,7 @@ void AddDirt(FrameRange frames, Draw& draw, VisionSequence& s) {
 // A second instrument beside the collar, with tags of the same family and size.
 void AddOtherTags(FrameRange frames, Draw& draw, VisionSequence& s) {
   if (!s.options.hazards.others.empty()) return;
-  const Vector3d at_C = CollarAt_C(s, Middle(frames));
+  const Vector3d at_C = CollarMiddle(s, Middle(frames));
   const double angle = draw.Between(0, 2 * std::numbers::pi);
   const double size_m = s.collar.tags[0].size_m;
   OtherInstrument other;

@@ -28,6 +28,11 @@ double Apart2(const TagCorners& a, const TagCorners& b, bool any_order) {
   return least;
 }
 
+// A dash where there was nothing to measure.
+std::string Cell(const char* format, double value, bool measured) {
+  return measured ? fmt::format(fmt::runtime(format), value) : "–";
+}
+
 }  // namespace
 
 void PeerScore::Add(const PeerAnswer& answer, const PictureTruth& truth, bool any_order) {
@@ -109,17 +114,18 @@ std::string CompareTable(const CompareRow& row, bool with_pose) {
                   "|---|---|---|---|---|\n";
   for (const PeerFigures& f : row.peers) {
     const std::string found = fmt::format("{} of {}", f.tags_found, f.tags);
+    const auto corner = [&](double v) { return Cell("{:.3f}", v, f.tags_found > 0); };
+    const auto pose = [&](double v) { return Cell("{:.3f}", v, f.poses > f.false_poses); };
     if (with_pose) {
-      table += fmt::format(
-          "| {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:+.3f} | {:.3f} | {} | {} of {} | "
-          "{} | "
-          "{:.1f} |\n",
-          f.name, f.corner_rms_px, f.pose_corner_rms_px, f.tip_rms_mm, f.tip_median_mm,
-          f.tip_largest_mm, f.depth_bias_mm, f.turn_rms_deg, found, f.poses, f.pictures,
-          f.false_poses, f.ms);
+      table +=
+          fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} | {} | {:.1f} |\n",
+                      f.name, corner(f.corner_rms_px), pose(f.pose_corner_rms_px),
+                      pose(f.tip_rms_mm), pose(f.tip_median_mm), pose(f.tip_largest_mm),
+                      Cell("{:+.3f}", f.depth_bias_mm, f.poses > f.false_poses),
+                      pose(f.turn_rms_deg), found, f.poses, f.pictures, f.false_poses, f.ms);
     } else {
-      table += fmt::format("| {} | {:.3f} | {} | {} | {:.1f} |\n", f.name, f.corner_rms_px, found,
-                           f.false_tags, f.ms);
+      table += fmt::format("| {} | {} | {} | {} | {:.1f} |\n", f.name, corner(f.corner_rms_px),
+                           found, f.false_tags, f.ms);
     }
   }
   return table;
@@ -130,13 +136,18 @@ std::string CompareJson(const std::vector<CompareRow>& rows) {
   for (const CompareRow& row : rows) {
     nlohmann::json one = {{"sweep", row.sweep}, {"value", row.value}, {"unit", row.unit}};
     for (const PeerFigures& f : row.peers) {
-      one["peers"][f.name] = {{"corner_rms_px", f.corner_rms_px},
-                              {"pose_corner_rms_px", f.pose_corner_rms_px},
-                              {"tip_rms_mm", f.tip_rms_mm},
-                              {"tip_median_mm", f.tip_median_mm},
-                              {"tip_largest_mm", f.tip_largest_mm},
-                              {"depth_bias_mm", f.depth_bias_mm},
-                              {"turn_rms_deg", f.turn_rms_deg},
+      const auto measured = [](double v, bool is) {
+        return is ? nlohmann::json(v) : nlohmann::json();
+      };
+      const auto corner = [&](double v) { return measured(v, f.tags_found > 0); };
+      const auto pose = [&](double v) { return measured(v, f.poses > f.false_poses); };
+      one["peers"][f.name] = {{"corner_rms_px", corner(f.corner_rms_px)},
+                              {"pose_corner_rms_px", pose(f.pose_corner_rms_px)},
+                              {"tip_rms_mm", pose(f.tip_rms_mm)},
+                              {"tip_median_mm", pose(f.tip_median_mm)},
+                              {"tip_largest_mm", pose(f.tip_largest_mm)},
+                              {"depth_bias_mm", pose(f.depth_bias_mm)},
+                              {"turn_rms_deg", pose(f.turn_rms_deg)},
                               {"pictures", f.pictures},
                               {"tags", f.tags},
                               {"tags_found", f.tags_found},

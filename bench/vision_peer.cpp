@@ -31,8 +31,8 @@ class AprilTagPeer : public VisionPeer {
       for (const TagDetection& tag : detector_.Detect(grey)) {
         if (InCollar(collar_, tag.id)) answer.corners_px.emplace(tag.id, tag.corners_px);
       }
-      answer.T_CE = PoseByPnp(camera_, collar_, answer.corners_px);
     });
+    answer.T_CE = PoseByPnp(camera_, collar_, answer.corners_px);
     return answer;
   }
 
@@ -90,8 +90,8 @@ class ArucoPeer : public VisionPeer {
         }
         answer.corners_px.emplace(ids[i], ordered);
       }
-      answer.T_CE = PoseByPnp(camera_, collar_, answer.corners_px);
     });
+    answer.T_CE = PoseByPnp(camera_, collar_, answer.corners_px);
     return answer;
   }
 

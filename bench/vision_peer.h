@@ -23,7 +23,9 @@ struct PeerAnswer {
   /// Tags of the collar alone.
   TagsFound corners_px;
   std::optional<Pose> T_CE;
-  double ms = 0;  ///< of the search and the pose, conversion of the image's type left out
+  /// Of the search for tags alone where the pose is PnP's or ViSP's from corners; of all where it
+  /// is the tracker's. Conversion of the image's type is left out.
+  double ms = 0;
 };
 
 class VisionPeer {

@@ -61,8 +61,8 @@ class VispPeer : public VisionPeer {
       const auto corners = detector_.getTagsCorners();
       const auto ids = detector_.getTagsId();
       for (std::size_t i = 0; i < ids.size(); ++i) AddTag(ids[i], corners[i], answer);
-      answer.T_CE = PoseOf(answer);
     });
+    answer.T_CE = PoseOf(answer);
     return answer;
   }
 

@@ -10,9 +10,20 @@ namespace flextip {
 namespace {
 
 constexpr int kWidth = 430, kHeight = 300, kLeft = 66, kRight = 14, kTop = 40, kBottom = 48;
-constexpr int kHead = 74;
-constexpr std::array<const char*, 8> kColours = {"#c2491d", "#7a5195", "#2b6cb0", "#d99a00",
-                                                 "#1b7f5c", "#555555", "#b03060", "#4aa3a2"};
+constexpr const char* kOwnColour = "#1b7f5c";
+constexpr std::array<const char*, 7> kColours = {"#c2491d", "#7a5195", "#2b6cb0", "#d99a00",
+                                                 "#b03060", "#4aa3a2", "#555555"};
+
+// flextip has its own; the others take theirs in turn.
+const char* ColourOf(const std::string& name, const std::vector<std::string>& names) {
+  if (name == "flextip") return kOwnColour;
+  std::size_t before = 0;
+  for (const std::string& other : names) {
+    if (other == name) break;
+    before += other != "flextip";
+  }
+  return kColours[before % kColours.size()];
+}
 
 class Axis {
  public:
@@ -112,8 +123,7 @@ std::string Panel(const Plot& plot, const std::vector<std::string>& names, int x
   const Axis y(in_y.low, in_y.high, plot.log_y, y0 + kHeight - kBottom, y0 + kTop);
   std::string svg = Frame(plot, x, y, x0, y0);
   for (const PlotLine& line : plot.lines) {
-    const auto index = std::find(names.begin(), names.end(), line.name) - names.begin();
-    const char* colour = kColours[static_cast<std::size_t>(index) % kColours.size()];
+    const char* colour = ColourOf(line.name, names);
     std::string path, dots;
     for (const auto& p : line.points) {
       if (!Shown(plot, p)) continue;
@@ -140,23 +150,31 @@ std::string PlotsSvg(const std::vector<Plot>& plots, const std::string& title, i
     }
   }
   const int rows = (static_cast<int>(plots.size()) + columns - 1) / columns;
+  const int width = columns * kWidth;
+  int x = 12, y = 50;
+  std::string legend;
+  for (const std::string& name : names) {
+    const int wide = 42 + 8 * static_cast<int>(name.size());
+    if (x + wide > width && x > 12) {
+      x = 12;
+      y += 22;
+    }
+    legend += fmt::format(
+        "<rect x='{}' y='{}' width='18' height='5' fill='{}'/><text x='{}' y='{}' "
+        "font-size='13'>{}</text>\n",
+        x, y - 4, ColourOf(name, names), x + 24, y + 4, name);
+    x += wide;
+  }
+  const int head = y + 20;
   std::string svg = fmt::format(
       "<svg xmlns='http://www.w3.org/2000/svg' width='{0}' height='{1}' viewBox='0 0 {0} {1}' "
       "font-family='DejaVu Sans, Arial, sans-serif' fill='#222'>\n"
       "<rect width='{0}' height='{1}' fill='#fff'/>\n"
-      "<text x='12' y='28' font-size='19' font-weight='bold'>{2}</text>\n",
-      columns * kWidth, kHead + rows * kHeight, title);
-  int x = 12;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    svg += fmt::format(
-        "<rect x='{}' y='46' width='18' height='5' fill='{}'/><text x='{}' y='54' "
-        "font-size='13'>{}</text>\n",
-        x, kColours[i % kColours.size()], x + 24, names[i]);
-    x += 44 + 8 * static_cast<int>(names[i].size());
-  }
+      "<text x='12' y='28' font-size='19' font-weight='bold'>{2}</text>\n{3}",
+      width, head + rows * kHeight, title, legend);
   for (std::size_t i = 0; i < plots.size(); ++i) {
     const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-    svg += Panel(plots[i], names, column * kWidth, kHead + row * kHeight);
+    svg += Panel(plots[i], names, column * kWidth, head + row * kHeight);
   }
   return svg + "</svg>\n";
 }
