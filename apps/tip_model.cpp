@@ -34,6 +34,16 @@ void AddRoll(const Eigen::Vector3d& axis, double sd_rad, Matrix6& covariance) {
   covariance.topLeftCorner<3, 3>() += sd_rad * sd_rad * axis * axis.transpose();
 }
 
+/// Errors in any direction, a part of those stated.
+void Loosen(const TipModelOptions& options, Matrix6& covariance) {
+  const double square = options.loose * options.loose;
+  const double turn = square * covariance.topLeftCorner<3, 3>().trace() +
+                      options.direction_error_rad * options.direction_error_rad;
+  const double shift = square * covariance.bottomRightCorner<3, 3>().trace();
+  covariance.topLeftCorner<3, 3>() += turn * Eigen::Matrix3d::Identity();
+  covariance.bottomRightCorner<3, 3>() += shift * Eigen::Matrix3d::Identity();
+}
+
 /// What two independent predictions say together.
 TipPrediction Join(const TipPrediction& a, const TipPrediction& b) {
   Vector6 difference;
@@ -88,8 +98,9 @@ std::optional<TipModel::RodTip> TipModel::SolveRod(const Measurements& z,
   return tip;
 }
 
-std::optional<TipPrediction> TipModel::FromSensors(const Measurements& z) {
+std::optional<TipPrediction> TipModel::FromSensors(const Measurements& z, bool& sees_load) {
   const ShaftEstimate estimate = blind_.Update(z);
+  sees_load = estimate.status == EstimateStatus::kOk;
   const bool fits =
       estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
   const auto tip = SolveRod(z, estimate.model.p_RP, estimate.model.f_tip_N);
@@ -103,6 +114,7 @@ std::optional<TipPrediction> TipModel::FromSensors(const Measurements& z) {
     parameters = sd.cwiseAbs2().asDiagonal();
   }
   TipPrediction prediction{tip->T_RE, tip->J * parameters * tip->J.transpose()};
+  Loosen(options_, prediction.covariance);
   AddRoll(
       tip->T_RE.R.col(0),
       tip->has_roll ? std::hypot(z.wrist_orientation_noise_rad, kRollModel_rad) : kUnknownRoll_rad,
@@ -160,7 +172,9 @@ std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements
   }
   const double seconds = 1e-9 * std::abs(static_cast<double>(t_ns - sight_->t_ns));
   const double drift_N = options_.force_drift_units * ForceUnit(recording_.instrument);
-  P += drift_N * drift_N * seconds * now->J.rightCols<3>() * now->J.rightCols<3>().transpose();
+  Matrix6 drift = drift_N * drift_N * seconds * now->J.rightCols<3>() *
+                  now->J.rightCols<3>().transpose();
+  P += drift;
   const double turned = options_.way_error * LogRotation(turn).norm();
   const double gone = options_.way_error * way.norm();
   P.topLeftCorner<3, 3>() += turned * turned * Eigen::Matrix3d::Identity();
@@ -173,9 +187,10 @@ std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements
 std::optional<TipPrediction> TipModel::Predict(TimeNs t_ns) {
   const auto z = MeasuredAt(t_ns);
   if (!z) return {};
-  const auto by_sensors = FromSensors(*z);
+  bool sees_load = false;
+  const auto by_sensors = FromSensors(*z, sees_load);
   const auto by_sight = sight_ ? FromSight(t_ns, *z) : std::nullopt;
-  if (by_sight && by_sensors) return Join(*by_sight, *by_sensors);
+  if (by_sight && by_sensors && sees_load) return Join(*by_sight, *by_sensors);
   return by_sight ? by_sight : by_sensors;
 }
 

@@ -19,13 +19,18 @@ struct TipModelOptions {
   /// The load's own wandering, a random walk: sd in EI / L^2 after one second.
   double force_drift_units = 0.1;
   /// Sd of the tip's way by the model's error, over the way itself.
-  double way_error = 0.05;
+  double way_error = 0.1;
+  /// Part of the stated position and direction errors that the rod's law does not tie together: it
+  /// bends by more than the linearised covariance knows, and not exactly as the true shaft.
+  double loose = 0.2;
+  double direction_error_rad = 0.005;  ///< of a shaft that is not quite straight
 };
 
-/// Two sources, joined by their covariances: what the sensors of the instant say without vision
-/// (ShaftEstimator; the unloaded shaft with a wide covariance where they do not see the load), and
-/// the last seen pose carried on by how far the model has moved since, with the port and the load
-/// that the seen tip told. The second is sharp at first and loses to load drift and distance.
+/// Before the tip was seen: what the other sensors say (ShaftEstimator; the unloaded shaft with a
+/// wide covariance where they do not see the load). After it: the last seen pose carried on by how
+/// far the model has moved since, with the port and the load that the seen tip told, joined by the
+/// covariances with what the other sensors say where those see the load. The carried pose is sharp
+/// at first and loses to load drift and distance.
 class TipModel {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -61,7 +66,8 @@ class TipModel {
   std::optional<Measurements> MeasuredAt(TimeNs t_ns) const;
   std::optional<RodTip> SolveRod(const Measurements& z, const Eigen::Vector3d& p_RP,
                                  const Eigen::Vector3d& f_tip_N);
-  std::optional<TipPrediction> FromSensors(const Measurements& z);
+  /// `sees_load`: the sensors narrow the load down.
+  std::optional<TipPrediction> FromSensors(const Measurements& z, bool& sees_load);
   std::optional<TipPrediction> FromSight(TimeNs t_ns, const Measurements& z);
 
   const Recording& recording_;

@@ -35,7 +35,7 @@ HiddenRecording Make(LoadKind load, std::uint64_t seed, std::vector<std::string>
   return MakeHidden(options, seed);
 }
 
-struct Sum { double nees = 0, p2 = 0, sd2 = 0; int n = 0; double worst = 0; };
+struct Sum { double np = 0, nd = 0, nees = 0, p2 = 0, sd2 = 0; int n = 0; double worst = 0; };
 
 TEST(TipModel, Study) {
   for (const LoadKind load : {LoadKind::kNone, LoadKind::kHungMass, LoadKind::kTissue, LoadKind::kVarying}) {
@@ -51,7 +51,7 @@ TEST(TipModel, Study) {
       const auto pose = [&](std::size_t i) { return Pose::FromQuaternion(truth[i].value.q_RE, truth[i].value.p_RE); };
       for (std::size_t i = 20; i + 120 < truth.size(); i += 23) {
         if (const auto p = never.Predict(truth[i].t_ns)) {
-          auto& s = sums[-1]; const double e = Nees(*p, pose(i)); s.nees += e; s.worst = std::max(s.worst, e); s.p2 += (p->T_RE.p - pose(i).p).squaredNorm(); s.sd2 += p->covariance.bottomRightCorner<3,3>().trace(); ++s.n;
+          auto& s = sums[-1]; const double e = Nees(*p, pose(i)); s.nees += e; { const Vector6 d = Error(p->T_RE, pose(i)); s.np += d.tail<3>().dot(p->covariance.bottomRightCorner<3,3>().ldlt().solve(d.tail<3>())); s.nd += d.head<3>().dot(p->covariance.topLeftCorner<3,3>().ldlt().solve(d.head<3>())); } s.worst = std::max(s.worst, e); s.p2 += (p->T_RE.p - pose(i).p).squaredNorm(); s.sd2 += p->covariance.bottomRightCorner<3,3>().trace(); ++s.n;
         }
         TipModel model(hidden.recording);
         for (std::size_t k = i - 10; k <= i; k += 2) {
@@ -64,11 +64,11 @@ TEST(TipModel, Study) {
           const std::size_t j = i + static_cast<std::size_t>(ms / 20);
           const auto p = model.Predict(truth[j].t_ns);
           if (!p) continue;
-          auto& s = sums[ms]; const double e = Nees(*p, pose(j)); s.nees += e; s.worst = std::max(s.worst, e); s.p2 += (p->T_RE.p - pose(j).p).squaredNorm(); s.sd2 += p->covariance.bottomRightCorner<3,3>().trace(); ++s.n;
+          auto& s = sums[ms]; const double e = Nees(*p, pose(j)); s.nees += e; { const Vector6 d = Error(p->T_RE, pose(j)); s.np += d.tail<3>().dot(p->covariance.bottomRightCorner<3,3>().ldlt().solve(d.tail<3>())); s.nd += d.head<3>().dot(p->covariance.topLeftCorner<3,3>().ldlt().solve(d.head<3>())); } s.worst = std::max(s.worst, e); s.p2 += (p->T_RE.p - pose(j).p).squaredNorm(); s.sd2 += p->covariance.bottomRightCorner<3,3>().trace(); ++s.n;
         }
       }
     }
-    for (const auto& [ms, s] : sums) std::printf("%-9s exact %d bare %d %5d ms: nees %.2f worst %.0f, rms %.2f mm, stated %.2f mm (%d)\n", Name(load), exact, bare, ms, s.nees / s.n, s.worst, 1e3*std::sqrt(s.p2/s.n), 1e3*std::sqrt(s.sd2/s.n), s.n);
+    for (const auto& [ms, s] : sums) std::printf("%-9s exact %d bare %d %5d ms: nees %.2f (p %.2f, w %.2f) worst %.0f, rms %.2f mm, stated %.2f mm (%d)\n", Name(load), exact, bare, ms, s.nees / s.n, s.np/s.n, s.nd/s.n, s.worst, 1e3*std::sqrt(s.p2/s.n), 1e3*std::sqrt(s.sd2/s.n), s.n);
    }
   }
 }
