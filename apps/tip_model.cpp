@@ -65,7 +65,9 @@ TipModel::TipModel(const Recording& recording, const TipModelOptions& options)
       options_(options),
       estimator_options_(Options(recording, options)),
       blind_(estimator_options_),
-      seeing_(estimator_options_) {}
+      seeing_(estimator_options_),
+      drift_variance_N2_s_(
+          std::pow(options.force_drift_units * ForceUnit(recording.instrument), 2)) {}
 
 std::optional<Measurements> TipModel::MeasuredAt(TimeNs t_ns) const {
   auto z = MeasurementsAt(recording_, t_ns);
@@ -149,6 +151,22 @@ void TipModel::Seen(TimeNs t_ns, const Pose& T_RE, const Matrix6& covariance) {
                  estimate.model.p_RP,
                  estimate.model.f_tip_N,
                  estimate.covariance};
+  LearnDrift();
+}
+
+// How far the load has wandered in the last third of a second, by what that does to the tip: the
+// force along the shaft, which hardly moves it, is hardly known.
+void TipModel::LearnDrift() {
+  constexpr double kStep_s = 0.3, kMemory = 0.8;
+  const double seconds = earlier_ ? 1e-9 * static_cast<double>(sight_->t_ns - earlier_->t_ns) : 0.0;
+  if (earlier_ && seconds >= 0.0 && seconds < kStep_s) return;
+  if (earlier_ && seconds > 0.0 && seconds < 3 * kStep_s) {
+    const Eigen::Matrix3d J = sight_->rod.J.bottomRightCorner<3, 3>();
+    const double square = (J * (sight_->f_tip_N - earlier_->f_tip_N)).squaredNorm();
+    const double variance_s = square / std::max(J.squaredNorm(), 1e-18) / seconds;
+    drift_variance_N2_s_ = kMemory * drift_variance_N2_s_ + (1 - kMemory) * variance_s;
+  }
+  earlier_ = sight_;
 }
 
 std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements& z) {
@@ -171,10 +189,9 @@ std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements
     P += wrist_variance * tip->J.leftCols<3>() * tip->J.leftCols<3>().transpose();
   }
   const double seconds = 1e-9 * std::abs(static_cast<double>(t_ns - sight_->t_ns));
-  const double drift_N = options_.force_drift_units * ForceUnit(recording_.instrument);
-  Matrix6 drift = drift_N * drift_N * seconds * now->J.rightCols<3>() *
-                  now->J.rightCols<3>().transpose();
-  P += drift;
+  const double least_N = options_.least_force_drift_units * ForceUnit(recording_.instrument);
+  const double drift_N2 = std::max(drift_variance_N2_s_, least_N * least_N) * seconds;
+  P += drift_N2 * now->J.rightCols<3>() * now->J.rightCols<3>().transpose();
   const double turned = options_.way_error * LogRotation(turn).norm();
   const double gone = options_.way_error * way.norm();
   P.topLeftCorner<3, 3>() += turned * turned * Eigen::Matrix3d::Identity();

@@ -224,12 +224,13 @@ void KillOnceItHasWritten(const std::vector<std::string>& arguments, const fs::p
       marked |= fs::exists(entry.path() / "unfinished.json");
     }
   }
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
 }
 
 TEST_F(TrackCommand, AKilledRunIsResumedToTheSameTables) {
-  constexpr int kFrames = 600;
+  constexpr int kFrames = 150;
   fs::create_directory(folder_ / "many");
   for (int i = 0; i < kFrames; ++i) {  // to and fro
     const int at = i % (2 * kPictures - 2), picture = at < kPictures ? at : 2 * kPictures - 2 - at;
