@@ -34,6 +34,16 @@ void AddRoll(const Eigen::Vector3d& axis, double sd_rad, Matrix6& covariance) {
   covariance.topLeftCorner<3, 3>() += sd_rad * sd_rad * axis * axis.transpose();
 }
 
+/// Errors in any direction, a part of those stated.
+void Loosen(const TipModelOptions& options, Matrix6& covariance) {
+  const double square = options.loose * options.loose;
+  const double turn = square * covariance.topLeftCorner<3, 3>().trace() +
+                      options.direction_error_rad * options.direction_error_rad;
+  const double shift = square * covariance.bottomRightCorner<3, 3>().trace();
+  covariance.topLeftCorner<3, 3>() += turn * Eigen::Matrix3d::Identity();
+  covariance.bottomRightCorner<3, 3>() += shift * Eigen::Matrix3d::Identity();
+}
+
 /// What two independent predictions say together.
 TipPrediction Join(const TipPrediction& a, const TipPrediction& b) {
   Vector6 difference;
@@ -55,7 +65,9 @@ TipModel::TipModel(const Recording& recording, const TipModelOptions& options)
       options_(options),
       estimator_options_(Options(recording, options)),
       blind_(estimator_options_),
-      seeing_(estimator_options_) {}
+      seeing_(estimator_options_),
+      drift_variance_N2_s_(
+          std::pow(options.force_drift_units * ForceUnit(recording.instrument), 2)) {}
 
 std::optional<Measurements> TipModel::MeasuredAt(TimeNs t_ns) const {
   auto z = MeasurementsAt(recording_, t_ns);
@@ -88,8 +100,9 @@ std::optional<TipModel::RodTip> TipModel::SolveRod(const Measurements& z,
   return tip;
 }
 
-std::optional<TipPrediction> TipModel::FromSensors(const Measurements& z) {
+std::optional<TipPrediction> TipModel::FromSensors(const Measurements& z, bool& sees_load) {
   const ShaftEstimate estimate = blind_.Update(z);
+  sees_load = estimate.status == EstimateStatus::kOk;
   const bool fits =
       estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
   const auto tip = SolveRod(z, estimate.model.p_RP, estimate.model.f_tip_N);
@@ -103,6 +116,7 @@ std::optional<TipPrediction> TipModel::FromSensors(const Measurements& z) {
     parameters = sd.cwiseAbs2().asDiagonal();
   }
   TipPrediction prediction{tip->T_RE, tip->J * parameters * tip->J.transpose()};
+  Loosen(options_, prediction.covariance);
   AddRoll(
       tip->T_RE.R.col(0),
       tip->has_roll ? std::hypot(z.wrist_orientation_noise_rad, kRollModel_rad) : kUnknownRoll_rad,
@@ -137,6 +151,22 @@ void TipModel::Seen(TimeNs t_ns, const Pose& T_RE, const Matrix6& covariance) {
                  estimate.model.p_RP,
                  estimate.model.f_tip_N,
                  estimate.covariance};
+  LearnDrift();
+}
+
+// How far the load has wandered in the last third of a second, by what that does to the tip: the
+// force along the shaft, which hardly moves it, is hardly known.
+void TipModel::LearnDrift() {
+  constexpr double kStep_s = 0.3, kMemory = 0.8;
+  const double seconds = earlier_ ? 1e-9 * static_cast<double>(sight_->t_ns - earlier_->t_ns) : 0.0;
+  if (earlier_ && seconds >= 0.0 && seconds < kStep_s) return;
+  if (earlier_ && seconds > 0.0 && seconds < 3 * kStep_s) {
+    const Eigen::Matrix3d J = sight_->rod.J.bottomRightCorner<3, 3>();
+    const double square = (J * (sight_->f_tip_N - earlier_->f_tip_N)).squaredNorm();
+    const double variance_s = square / std::max(J.squaredNorm(), 1e-18) / seconds;
+    drift_variance_N2_s_ = kMemory * drift_variance_N2_s_ + (1 - kMemory) * variance_s;
+  }
+  earlier_ = sight_;
 }
 
 std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements& z) {
@@ -159,8 +189,9 @@ std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements
     P += wrist_variance * tip->J.leftCols<3>() * tip->J.leftCols<3>().transpose();
   }
   const double seconds = 1e-9 * std::abs(static_cast<double>(t_ns - sight_->t_ns));
-  const double drift_N = options_.force_drift_units * ForceUnit(recording_.instrument);
-  P += drift_N * drift_N * seconds * now->J.rightCols<3>() * now->J.rightCols<3>().transpose();
+  const double least_N = options_.least_force_drift_units * ForceUnit(recording_.instrument);
+  const double drift_N2 = std::max(drift_variance_N2_s_, least_N * least_N) * seconds;
+  P += drift_N2 * now->J.rightCols<3>() * now->J.rightCols<3>().transpose();
   const double turned = options_.way_error * LogRotation(turn).norm();
   const double gone = options_.way_error * way.norm();
   P.topLeftCorner<3, 3>() += turned * turned * Eigen::Matrix3d::Identity();
@@ -173,9 +204,10 @@ std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements
 std::optional<TipPrediction> TipModel::Predict(TimeNs t_ns) {
   const auto z = MeasuredAt(t_ns);
   if (!z) return {};
-  const auto by_sensors = FromSensors(*z);
+  bool sees_load = false;
+  const auto by_sensors = FromSensors(*z, sees_load);
   const auto by_sight = sight_ ? FromSight(t_ns, *z) : std::nullopt;
-  if (by_sight && by_sensors) return Join(*by_sight, *by_sensors);
+  if (by_sight && by_sensors && sees_load) return Join(*by_sight, *by_sensors);
   return by_sight ? by_sight : by_sensors;
 }
 

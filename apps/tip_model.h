@@ -16,16 +16,22 @@ namespace flextip {
 struct TipModelOptions {
   double force_prior_units = 0.5;  ///< sd of an unknown tip force, in EI / L^2
   double port_prior_m = 0.0005;
-  /// The load's own wandering, a random walk: sd in EI / L^2 after one second.
-  double force_drift_units = 0.1;
+  /// The load's own wandering, a random walk: sd in EI / L^2 after one second. What the seen tips
+  /// say of it takes over, but for a floor.
+  double force_drift_units = 0.1, least_force_drift_units = 0.03;
   /// Sd of the tip's way by the model's error, over the way itself.
   double way_error = 0.05;
+  /// Part of the stated position and direction errors that the rod's law does not tie together: it
+  /// bends by more than the linearised covariance knows, and not exactly as the true shaft.
+  double loose = 0.3;
+  double direction_error_rad = 0.005;  ///< of a shaft that is not quite straight
 };
 
-/// Two sources, joined by their covariances: what the sensors of the instant say without vision
-/// (ShaftEstimator; the unloaded shaft with a wide covariance where they do not see the load), and
-/// the last seen pose carried on by how far the model has moved since, with the port and the load
-/// that the seen tip told. The second is sharp at first and loses to load drift and distance.
+/// Before the tip was seen: what the other sensors say (ShaftEstimator; the unloaded shaft with a
+/// wide covariance where they do not see the load). After it: the last seen pose carried on by how
+/// far the model has moved since, with the port and the load that the seen tip told, joined by the
+/// covariances with what the other sensors say where those see the load. The carried pose is sharp
+/// at first and loses to load drift and distance.
 class TipModel {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -58,10 +64,12 @@ class TipModel {
     Matrix9d parameters;  // covariance of wrist, port and tip force
   };
 
+  void LearnDrift();
   std::optional<Measurements> MeasuredAt(TimeNs t_ns) const;
   std::optional<RodTip> SolveRod(const Measurements& z, const Eigen::Vector3d& p_RP,
                                  const Eigen::Vector3d& f_tip_N);
-  std::optional<TipPrediction> FromSensors(const Measurements& z);
+  /// `sees_load`: the sensors narrow the load down.
+  std::optional<TipPrediction> FromSensors(const Measurements& z, bool& sees_load);
   std::optional<TipPrediction> FromSight(TimeNs t_ns, const Measurements& z);
 
   const Recording& recording_;
@@ -69,7 +77,8 @@ class TipModel {
   EstimatorOptions estimator_options_;
   ShaftEstimator blind_, seeing_;
   ShaftRod rod_;
-  std::optional<Sight> sight_;
+  std::optional<Sight> sight_, earlier_;  // earlier_: what the drift is learnt against
+  double drift_variance_N2_s_;            // of each component, gained in a second
 };
 
 }  // namespace flextip

@@ -76,8 +76,7 @@ TrackTables::TrackTables(const fs::path& folder, const std::string& input, bool 
       mark_(folder / "unfinished.json"),
       input_(input),
       vision_rows_(TimedColumns(VisionColumns())),
-      tag_rows_(TimedColumns(kTagColumns)),
-      saved_(Clock::now()) {
+      tag_rows_(TimedColumns(kTagColumns)) {
   if (resume && fs::exists(mark_)) Resume();
   if (sums.frames == 0) {
     std::error_code ignored;

@@ -36,7 +36,7 @@ class TrackTables {
   TrackSums sums;
 
   void Add(TimeNs t_ns, const TipTrack& track);
-  /// Twice a second; after the frame's part of `sums` is complete.
+  /// After the first frame and twice a second; after the frame's part of `sums` is complete.
   void SaveWhenDue();
   /// Writes both sensor.yaml beside the tables and takes unfinished.json away.
   void Finish(const TagCollar& collar, double rate_hz);
@@ -49,7 +49,7 @@ class TrackTables {
   std::string input_;
   std::ofstream vision_, tags_;
   CsvWriter vision_rows_, tag_rows_;
-  std::chrono::steady_clock::time_point saved_;
+  std::chrono::steady_clock::time_point saved_ = {};  // long ago: the first frame is saved at once
 };
 
 }  // namespace flextip

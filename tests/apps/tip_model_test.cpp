@@ -1,4 +1,5 @@
-// The predicted tip against the truth of simulated recordings.
+// The predicted tip against the truth of simulated recordings, whose plant shares no code with the
+// model and is a little off its data sheet in everything.
 #include "apps/tip_model.h"
 
 #include <gtest/gtest.h>
@@ -13,64 +14,129 @@ namespace flextip {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = TipModel::Matrix6;
 
-Vector6 Error(const Pose& T_RE, const Pose& truth) {
-  Vector6 e;
-  e << LogRotation(truth.R * T_RE.R.transpose()), truth.p - T_RE.p;
-  return e;
-}
-double Nees(const TipPrediction& p, const Pose& truth) {
-  const Vector6 e = Error(p.T_RE, truth);
-  return e.dot(p.covariance.ldlt().solve(e));
-}
+constexpr std::size_t kTick_ms = 20;  // of the wrist and of the truth
 
-HiddenRecording Make(LoadKind load, std::uint64_t seed, std::vector<std::string> left_out, bool exact) {
+HiddenRecording Make(LoadKind load, std::uint64_t seed, bool orientation) {
   HiddenOptions options;
-  options.exact = exact;
   options.with_load = false;
-  options.left_out = std::move(left_out);
+  options.left_out = {"em0", "strain0", "vision0"};
+  if (!orientation) options.left_out.emplace_back("wrist0_orientation");
   options.scene.load = load;
-  options.scene.duration_s = 10.0;
+  options.scene.duration_s = 8.0;
   options.tick_rate_hz = 50;
   return MakeHidden(options, seed);
 }
 
-struct Sum { double nees = 0, p2 = 0, sd2 = 0; int n = 0; double worst = 0; };
+Pose Truth(const HiddenRecording& hidden, std::size_t i) {
+  return Pose::FromQuaternion(hidden.truth[i].value.q_RE, hidden.truth[i].value.p_RE);
+}
 
-TEST(TipModel, Study) {
-  for (const LoadKind load : {LoadKind::kNone, LoadKind::kHungMass, LoadKind::kTissue, LoadKind::kVarying}) {
-   for (const bool exact : {true, false}) for (const bool bare : {true, false}) {
-    std::map<int, Sum> sums;  // by time hidden in ms; -1 never seen
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-      const auto hidden = Make(load, seed, bare ? std::vector<std::string>{"em0", "strain0", "vision0", "wrist0_orientation"} : std::vector<std::string>{"em0", "strain0", "vision0"}, exact);
-      std::mt19937 rng(3); std::normal_distribution<double> n01;
-      Vector6 sd; sd << 0.002, 0.002, 0.002, 1e-4, 1e-4, 3e-4;
-      const Eigen::Matrix<double, 6, 6> cov = sd.cwiseAbs2().asDiagonal();
-      TipModel never(hidden.recording);
-      const auto& truth = hidden.truth;
-      const auto pose = [&](std::size_t i) { return Pose::FromQuaternion(truth[i].value.q_RE, truth[i].value.p_RE); };
-      for (std::size_t i = 20; i + 120 < truth.size(); i += 23) {
-        if (const auto p = never.Predict(truth[i].t_ns)) {
-          auto& s = sums[-1]; const double e = Nees(*p, pose(i)); s.nees += e; s.worst = std::max(s.worst, e); s.p2 += (p->T_RE.p - pose(i).p).squaredNorm(); s.sd2 += p->covariance.bottomRightCorner<3,3>().trace(); ++s.n;
-        }
-        TipModel model(hidden.recording);
-        for (std::size_t k = i - 10; k <= i; k += 2) {
-          Pose seen = pose(k);
-          Vector6 noise; for (int j = 0; j < 6; ++j) noise[j] = sd[j] * n01(rng);
-          seen.R = ExpRotation(noise.head<3>()) * seen.R; seen.p += noise.tail<3>();
-          model.Seen(truth[k].t_ns, seen, cov);
-        }
-        for (const int ms : {20, 100, 200, 500, 1000, 2000}) {
-          const std::size_t j = i + static_cast<std::size_t>(ms / 20);
-          const auto p = model.Predict(truth[j].t_ns);
-          if (!p) continue;
-          auto& s = sums[ms]; const double e = Nees(*p, pose(j)); s.nees += e; s.worst = std::max(s.worst, e); s.p2 += (p->T_RE.p - pose(j).p).squaredNorm(); s.sd2 += p->covariance.bottomRightCorner<3,3>().trace(); ++s.n;
-        }
+/// A tracker's noise: 2 mrad, 0.1 mm across and 0.3 mm in depth.
+class Tracker {
+ public:
+  Tracker() { sd_ << 0.002, 0.002, 0.002, 1e-4, 1e-4, 3e-4; }
+  void Show(const HiddenRecording& hidden, std::size_t i, TipModel& model) {
+    Vector6 e;
+    for (int k = 0; k < 6; ++k) e[k] = sd_[k] * normal_(random_);
+    const Pose truth = Truth(hidden, i);
+    model.Seen(hidden.truth[i].t_ns, {ExpRotation(e.head<3>()) * truth.R, truth.p + e.tail<3>()},
+               sd_.cwiseAbs2().asDiagonal());
+  }
+
+ private:
+  Vector6 sd_;
+  std::mt19937 random_{3};
+  std::normal_distribution<double> normal_;
+};
+
+struct Sum {
+  double nees = 0.0, squared_m2 = 0.0, stated_m2 = 0.0;
+  int n = 0;
+  void Add(const TipPrediction& prediction, const Pose& truth) {
+    Vector6 e;
+    e << LogRotation(truth.R * prediction.T_RE.R.transpose()), truth.p - prediction.T_RE.p;
+    nees += e.dot(prediction.covariance.ldlt().solve(e));
+    squared_m2 += e.tail<3>().squaredNorm();
+    stated_m2 += prediction.covariance.bottomRightCorner<3, 3>().trace();
+    ++n;
+  }
+  double MeanNees() const { return nees / n; }
+  double Rms() const { return std::sqrt(squared_m2 / n); }
+  double Stated() const { return std::sqrt(stated_m2 / n); }
+};
+
+class TipModelUnder : public testing::TestWithParam<LoadKind> {};
+
+// Six components: 6 on the average where the covariance is right. Under loads that stay it is too
+// wide, for the load might change; it must not be too narrow under those that do.
+TEST_P(TipModelUnder, AHiddenTipStaysWithinTheStatedErrors) {
+  std::map<std::size_t, Sum> hidden_ms, never_seen;
+  for (const bool orientation : {false, true}) {
+    const auto hidden = Make(GetParam(), 2, orientation);
+    TipModel never(hidden.recording);
+    for (std::size_t i = 100; i + 110 < hidden.truth.size(); i += 19) {
+      const auto blind = never.Predict(hidden.truth[i].t_ns);
+      ASSERT_TRUE(blind);
+      never_seen[0].Add(*blind, Truth(hidden, i));
+      TipModel model(hidden.recording);
+      Tracker tracker;
+      for (std::size_t k = i - 100; k <= i; k += 2) tracker.Show(hidden, k, model);
+      for (const std::size_t ms : {100U, 200U, 500U, 1000U, 2000U}) {
+        const std::size_t j = i + ms / kTick_ms;
+        const auto prediction = model.Predict(hidden.truth[j].t_ns);
+        ASSERT_TRUE(prediction);
+        hidden_ms[ms].Add(*prediction, Truth(hidden, j));
       }
     }
-    for (const auto& [ms, s] : sums) std::printf("%-9s exact %d bare %d %5d ms: nees %.2f worst %.0f, rms %.2f mm, stated %.2f mm (%d)\n", Name(load), exact, bare, ms, s.nees / s.n, s.worst, 1e3*std::sqrt(s.p2/s.n), 1e3*std::sqrt(s.sd2/s.n), s.n);
-   }
   }
+  double stated = 0.0;
+  for (const auto& [ms, sum] : hidden_ms) {
+    EXPECT_LT(sum.MeanNees(), 6.0 + 4.0 * std::sqrt(12.0 / sum.n)) << ms << " ms";
+    EXPECT_GT(sum.Stated(), stated) << ms << " ms";  // it grows
+    stated = sum.Stated();
+    EXPECT_LT(sum.Stated(), never_seen[0].Stated()) << ms << " ms";
+  }
+  EXPECT_LT(hidden_ms[100].Stated(), 0.004);
+  EXPECT_LT(hidden_ms[100].Rms(), 0.003);
+}
+
+INSTANTIATE_TEST_SUITE_P(Loads, TipModelUnder,
+                         testing::Values(LoadKind::kNone, LoadKind::kHungMass, LoadKind::kTissue,
+                                         LoadKind::kVarying),
+                         [](const auto& load) { return std::string(Name(load.param)); });
+
+TEST(TipModel, SaysNothingWhereTheWristIsNotKnown) {
+  auto hidden = Make(LoadKind::kNone, 2, true);
+  TipModel model(hidden.recording);
+  const TimeNs first = hidden.recording.wrist0->samples.front().t_ns;
+  EXPECT_FALSE(model.Predict(first - 1));
+  EXPECT_TRUE(model.Predict(first));
+  model.Seen(first - 1, Pose(), Matrix6::Identity());  // nothing to carry it on with
+  EXPECT_FALSE(model.Predict(first - 1));
+  EXPECT_FALSE(model.Predict(hidden.recording.wrist0->samples.back().t_ns + 1'000'000'000));
+  hidden.recording.wrist0.reset();
+  EXPECT_FALSE(model.Predict(first));
+}
+
+// A collar turns with the instrument: a full turn of the shaft is in the wrist's quaternion only.
+TEST(TipModel, TheRollFollowsTheWrist) {
+  auto hidden = Make(LoadKind::kNone, 2, true);
+  auto& samples = hidden.recording.wrist0->samples;
+  const std::size_t i = 20, j = 30;
+  const auto time = [&](std::size_t k) { return samples[k].t_ns; };
+  samples[j].value = samples[i].value;
+  samples[j].value.q_RW =
+      *samples[i].value.q_RW * Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()));
+  TipModel model(hidden.recording);
+  const Pose seen = Truth(hidden, i);
+  model.Seen(time(i), seen, 1e-8 * Matrix6::Identity());
+  const auto turned = model.Predict(time(j));
+  ASSERT_TRUE(turned);
+  const Eigen::Vector3d roll = LogRotation(seen.R.transpose() * turned->T_RE.R);
+  EXPECT_NEAR(roll.x(), 0.7, 0.005);
+  EXPECT_LT(roll.tail<2>().norm(), 0.02);
 }
 
 }  // namespace

@@ -1,0 +1,262 @@
+// flextip track on what people have: pictures, videos, live sources, runs that were interrupted.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+#include <sstream>
+#include <thread>
+
+#include "core/rotation.h"
+#include "recording/recording_writer.h"
+#include "recording/sensor_streams.h"
+#include "simulation/laparoscope.h"
+#include "tests/apps/run_program.h"
+#include "tests/simulation/render_test_scene.h"
+
+namespace flextip {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr int kPictures = 5;
+
+/// Five rendered frames of a collar on its way, camera and collar beside them.
+class TrackCommand : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    Laparoscope scope(Camera(), Collar(), Options());
+    for (int i = 0; i < kPictures; ++i) {
+      const Image image = scope.Render(render_test::ArcShaft(Tip(i), 0.1, 0.9, 0.005), i);
+      pictures_.push_back(cv::Mat(image.height_px, image.width_px, CV_8UC3,
+                                  const_cast<std::uint8_t*>(image.data.data()))
+                              .clone());
+    }
+  }
+  static void TearDownTestSuite() { pictures_.clear(); }
+
+  void SetUp() override {
+    Recording recording;
+    recording.instrument = {0.6, 0.005, 0.3, 0.0};
+    recording.p_RP = {0.28, 0, 0};
+    recording.cam0.emplace().calibration = Camera();
+    recording.tags0 = Collar();
+    for (int i = 0; i < kPictures; ++i) {
+      recording.cam0->filenames.push_back({i * 40'000'000, fmt::format("{}.png", i)});
+    }
+    WriteRecording(folder_ / "rec", recording);
+    fs::create_directories(folder_ / "rec/cam0/data");
+    for (int i = 0; i < kPictures; ++i) Save(fmt::format("rec/cam0/data/{}.png", i), pictures_[i]);
+  }
+
+  static CameraCalibration Camera() {
+    CameraCalibration camera = render_test::SmallCamera();
+    camera.fu_px = camera.fv_px = 420;
+    camera.rate_hz = 25;
+    return camera;
+  }
+  static TagCollar Collar() { return render_test::HexagonCollar(); }
+  static Pose Tip(int i) {
+    Pose T_CE;
+    T_CE.R = ExpRotation({0.05, 0.3, -0.2}) * ExpRotation({-1.2, 0, 0});
+    T_CE.p = {0.03 + 0.0005 * i, 0.002, 0.055};
+    return T_CE;
+  }
+  static LaparoscopeOptions Options() {
+    LaparoscopeOptions o = render_test::PlainOptions();
+    o.blur_sigma_px = 0.7;
+    o.exposure = 0.2;
+    o.exposure_distance_m = 0.06;
+    return o;
+  }
+  void Save(const std::string& name, const cv::Mat& picture) const {
+    fs::create_directories((folder_ / name).parent_path());
+    ASSERT_TRUE(cv::imwrite((folder_ / name).string(), picture));
+  }
+  std::vector<std::string> Arguments(const std::string& source, const std::string& out,
+                                     const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"track",    (folder_ / source).string(),
+                                          "-o",       (folder_ / out).string(),
+                                          "--camera", (folder_ / "rec/cam0/sensor.yaml").string(),
+                                          "--collar", (folder_ / "rec/tags0/sensor.yaml").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  std::string Rows(const std::string& out) const {
+    return ReadText(folder_ / (out + "/vision0/data.csv"));
+  }
+  /// Without the times.
+  std::string Tips(const std::string& out) const {
+    std::istringstream lines(Rows(out));
+    std::string tips;
+    for (std::string line; std::getline(lines, line);) tips += line.substr(line.find(',')) + "\n";
+    return tips;
+  }
+  std::vector<long> Times(const std::string& out) const {
+    std::istringstream lines(Rows(out));
+    std::vector<long> times;
+    std::string line;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) times.push_back(std::stol(line));
+    return times;
+  }
+  nlohmann::json Summary(const std::string& out) const {
+    return nlohmann::json::parse(ReadText(folder_ / (out + "/summary.json")));
+  }
+
+  static std::vector<cv::Mat> pictures_;
+  TestFolder folder_;
+};
+std::vector<cv::Mat> TrackCommand::pictures_;
+
+TEST_F(TrackCommand, PlainPicturesGiveTheRecordingsTips) {
+  const auto recorded =
+      RunProgram({"track", (folder_ / "rec").string(), "-o", (folder_ / "a").string()});
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  EXPECT_EQ(Summary("a")["ok"], kPictures);
+  std::istringstream last(Rows("a").substr(Rows("a").rfind('\n', Rows("a").size() - 2) + 1));
+  double time = 0, x = 0;
+  char comma = 0;
+  last >> time >> comma >> x;
+  EXPECT_NEAR(x, Tip(kPictures - 1).p.x(), 5e-4);  // the tip is where it was rendered
+
+  const auto plain = RunProgram(Arguments("rec/cam0/data", "b", {"--rate", "25"}));
+  ASSERT_EQ(plain.exit_code, 0) << plain.err;
+  EXPECT_EQ(Rows("b"), Rows("a"));
+  // Names in nanoseconds are the times; as numbers they are in another order than as texts.
+  for (int i = 0; i < kPictures; ++i) {
+    Save(fmt::format("ns/{}.tiff", 980'000'000 + i * 10'000'000), pictures_[i]);
+  }
+  const auto named = RunProgram(Arguments("ns", "c"));
+  ASSERT_EQ(named.exit_code, 0) << named.err;
+  EXPECT_THAT(Times("c"), testing::ElementsAre(980'000'000, 990'000'000, 1'000'000'000,
+                                               1'010'000'000, 1'020'000'000));
+  EXPECT_EQ(Tips("c"), Tips("a"));
+  const auto first = RunProgram(Arguments("ns", "d", {"--rate", "10", "--frames", "2"}));
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(Times("d"), testing::ElementsAre(0, 100'000'000));
+}
+
+TEST_F(TrackCommand, SixteenBitsAndGreyGiveTheSameTips) {
+  for (int i = 0; i < kPictures; ++i) {
+    cv::Mat grey, deep, dim;
+    cv::extractChannel(pictures_[i], grey, 1);
+    grey.convertTo(deep, CV_16U, 257);     // 255 becomes 65535
+    grey.convertTo(dim, CV_16U, 16, 200);  // a 12-bit camera's
+    Save(fmt::format("grey/{}.png", i), grey);
+    Save(fmt::format("deep/{}.png", i), deep);
+    Save(fmt::format("dim/{}.tif", i), dim);
+  }
+  ASSERT_EQ(RunProgram(Arguments("grey", "a")).exit_code, 0);
+  ASSERT_EQ(RunProgram(Arguments("deep", "b")).exit_code, 0);
+  const auto dim = RunProgram(Arguments("dim", "c", {"--black-white", "200,4280"}));
+  ASSERT_EQ(dim.exit_code, 0) << dim.err;
+  EXPECT_EQ(Summary("a")["ok"], kPictures);
+  EXPECT_EQ(Rows("b"), Rows("a"));
+  EXPECT_EQ(Rows("c"), Rows("a"));
+  EXPECT_TRUE(IsRefused(RunProgram(Arguments("dim", "d", {"--black-white", "9,9"})), {"9,9"}));
+}
+
+TEST_F(TrackCommand, VideosAndLiveSourcesAreTracked) {
+  const auto file = (folder_ / "v.avi").string();
+  cv::VideoWriter video(file, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 20, pictures_[0].size());
+  for (const auto& picture : pictures_) video.write(picture);
+  video.release();
+  const auto plain = RunProgram(Arguments("v.avi", "a", {"--overlay"}));
+  ASSERT_EQ(plain.exit_code, 0) << plain.err;
+  EXPECT_EQ(plain.err, "");
+  EXPECT_EQ(Summary("a")["ok"], kPictures);
+  EXPECT_THAT(Times("a"),
+              testing::ElementsAre(0, 50'000'000, 100'000'000, 150'000'000, 200'000'000));
+  EXPECT_TRUE(fs::exists(folder_ / "a/overlay.mp4"));
+
+  auto arguments = Arguments("v.avi", "b", {"--frames", "3"});
+  arguments.insert(arguments.begin() + 1, "--live");
+  const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                       std::chrono::system_clock::now().time_since_epoch())
+                       .count();
+  const auto live = RunProgram(arguments);
+  ASSERT_EQ(live.exit_code, 0) << live.err;
+  ASSERT_EQ(Times("b").size(), 3U);
+  EXPECT_GE(Times("b")[0], now);
+  EXPECT_LT(Times("b")[2], now + 60'000'000'000);
+  EXPECT_LT(Times("b")[0], Times("b")[1]);
+}
+
+TEST_F(TrackCommand, RefusesWhatItCannotTrack) {
+  const auto out = (folder_ / "out").string();
+  const auto rec = (folder_ / "rec").string();
+  EXPECT_TRUE(IsRefused(RunProgram({"track", "-o", out}), {"--live"}));
+  EXPECT_TRUE(IsRefused(RunProgram(Arguments("none", "out")), {"none"}));
+  EXPECT_TRUE(IsRefused(RunProgram(Arguments("rec", "out")), {"rec", "--camera"}));
+  EXPECT_TRUE(IsRefused(RunProgram({"track", rec + "/cam0/sensor.yaml", "-o", out}),
+                        {"--camera FILE and --collar FILE"}));
+  EXPECT_TRUE(IsRefused(RunProgram(Arguments("rec/cam0/sensor.yaml", "out")), {"video"}));
+  fs::create_directory(folder_ / "empty");
+  EXPECT_TRUE(IsRefused(RunProgram(Arguments("empty", "out")), {"empty", "PNG"}));
+  Save("small/0.png", cv::Mat(10, 20, CV_8UC1, cv::Scalar(9)));
+  EXPECT_TRUE(IsRefused(RunProgram(Arguments("small", "out")), {"0.png", "20 x 10", "320 x 240"}));
+  auto live = Arguments("no-such-stream", "out");
+  live.insert(live.begin() + 1, "--live");
+  EXPECT_TRUE(IsRefused(RunProgram(live), {"live source"}));
+  EXPECT_FALSE(fs::exists(out));
+}
+
+/// Starts the program and kills it as soon as it has marked a part of its work as done.
+void KillOnceItHasWritten(const std::vector<std::string>& arguments, const fs::path& folder) {
+  const pid_t child = fork();
+  if (child == 0) {
+    std::vector<std::string> copies = arguments;
+    std::vector<char*> argv{const_cast<char*>("flextip")};
+    for (auto& copy : copies) argv.push_back(copy.data());
+    argv.push_back(nullptr);
+    execv(FLEXTIP_PROGRAM, argv.data());
+    _exit(127);
+  }
+  for (bool marked = false; !marked && waitpid(child, nullptr, WNOHANG) == 0;) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      marked |= fs::exists(entry.path() / "unfinished.json");
+    }
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+}
+
+TEST_F(TrackCommand, AKilledRunIsResumedToTheSameTables) {
+  constexpr int kFrames = 150;
+  fs::create_directory(folder_ / "many");
+  for (int i = 0; i < kFrames; ++i) {  // to and fro
+    const int at = i % (2 * kPictures - 2), picture = at < kPictures ? at : 2 * kPictures - 2 - at;
+    fs::create_hard_link(folder_ / fmt::format("rec/cam0/data/{}.png", picture),
+                         folder_ / fmt::format("many/{}.png", i));
+  }
+  const auto whole = RunProgram(Arguments("many", "whole"));
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  KillOnceItHasWritten(Arguments("many", "out", {"--quiet"}), folder_ / "");
+  ASSERT_FALSE(fs::exists(folder_ / "out"));
+  const auto resumed = RunProgram(Arguments("many", "out", {"--resume"}));
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_EQ(Rows("out"), Rows("whole"));
+  EXPECT_EQ(ReadText(folder_ / "out/tags0/data.csv"), ReadText(folder_ / "whole/tags0/data.csv"));
+  EXPECT_EQ(ReadText(folder_ / "out/vision0/sensor.yaml"),
+            ReadText(folder_ / "whole/vision0/sensor.yaml"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/unfinished.json"));
+  for (const char* key : {"frames", "ok", "predicted", "lost", "tags_per_frame"}) {
+    EXPECT_EQ(Summary("out")[key], Summary("whole")[key]) << key;
+  }
+  EXPECT_THAT(Summary("out")["warnings"].dump(), HasSubstr("resumed"));
+  EXPECT_THAT(Summary("whole")["warnings"], testing::IsEmpty());
+  for (const auto& entry : fs::directory_iterator(folder_ / "")) {
+    EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr("partial")));
+  }
+}
+
+}  // namespace
+}  // namespace flextip
