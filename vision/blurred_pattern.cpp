@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace flextip {
 namespace {
 
@@ -19,8 +18,7 @@ struct BlurredPattern::Lines {
   float weight[kMaxLines + 1];  // of the cells
   float sigma;
 
-  Lines(const NormalTable& table, float at, float spread, int low, int high)
-      : sigma(spread) {
+  Lines(const NormalTable& table, float at, float spread, int low, int high) : sigma(spread) {
     const float reach = NormalTable::kReach * spread;
     first = std::max(low, static_cast<int>(std::ceil(at - reach)));
     const int last = std::min(high, static_cast<int>(std::floor(at + reach)));
@@ -57,9 +55,7 @@ struct BlurredPattern::Lines {
 };
 
 BlurredPattern::BlurredPattern(const TagCells& tag)
-    : cells_(tag.cells),
-      stride_(tag.cells + 2 * kPad),
-      last_(static_cast<float>(tag.cells) + 3) {
+    : cells_(tag.cells), stride_(tag.cells + 2 * kPad), last_(static_cast<float>(tag.cells) + 3) {
   white_.resize(static_cast<std::size_t>(stride_) * stride_);
   known_.resize(white_.size());
   for (int k = -kPad; k < cells_ + kPad; ++k) {
@@ -74,7 +70,8 @@ BlurredPattern::BlurredPattern(const TagCells& tag)
 
 PatternValue BlurredPattern::AtMany(float at_u, float at_v, const PatternBlur& blur) const {
   const int low = 1 - kPad, high = cells_ + kPad - 1;
-  const Lines u(*normal_, at_u, blur.sigma_u, low, high), v(*normal_, at_v, blur.sigma_v, low, high);
+  const Lines u(*normal_, at_u, blur.sigma_u, low, high),
+      v(*normal_, at_v, blur.sigma_v, low, high);
   PatternValue value{0, 0, 0, 0, 0, 0, false};
   if (u.n == 0 && v.n == 0) {
     value.c = Column(u.first - 1)[v.first - 1 + kPad];
@@ -110,8 +107,8 @@ void BlurredPattern::AddCorrelation(const Lines& u, const Lines& v, float rho,
       if (corner == 0) continue;
       const float density = corner * u.density[i] * v.density[j];
       const float x = u.x[i], y = v.x[j];
-      value.c += density * rho *
-                 (1 + 0.5f * rho * (x * y + rho * (x * x - 1) * (y * y - 1) * (1.0f / 3)));
+      value.c +=
+          density * rho * (1 + 0.5f * rho * (x * y + rho * (x * x - 1) * (y * y - 1) * (1.0f / 3)));
       value.c_uv += density;
     }
   }

@@ -69,7 +69,7 @@ class BlurredPattern {
   void AddCorrelation(const Lines& u, const Lines& v, float rho, PatternValue& value) const;
 
   int cells_, stride_;
-  float last_;  // three cells beyond the pattern
+  float last_;                // three cells beyond the pattern
   std::vector<float> white_;  // columns, padded
   std::vector<bool> known_;   // columns, padded
   const NormalTable* normal_ = &NormalTable::Get();
@@ -113,9 +113,9 @@ inline PatternValue BlurredPattern::AtOneCrossing(const Near& u, const Near& v,
   value.c_vv = v.x * value.c_v * sv;
   const float density = corner * nu.density * nv.density;
   const float xy = u.x * v.x;
-  value.c += density * blur.rho *
-             (1 + 0.5f * blur.rho *
-                      (xy + blur.rho * (u.x * u.x - 1) * (v.x * v.x - 1) * (1.0f / 3)));
+  value.c +=
+      density * blur.rho *
+      (1 + 0.5f * blur.rho * (xy + blur.rho * (u.x * u.x - 1) * (v.x * v.x - 1) * (1.0f / 3)));
   value.c_uv = density * su * sv;
   return value;
 }

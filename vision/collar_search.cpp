@@ -27,8 +27,8 @@ float GreyAt(const Image& image, int x, int y) {
 
 // Means over squares, of at most 2 x 2 pixels each; outside the picture its border goes on.
 Reduced Reduce(const Image& image, Eigen::Vector2i low, Eigen::Vector2i high, int step) {
-  Reduced r{low.x(), low.y(), step, (high.x() - low.x()) / step + 1, (high.y() - low.y()) / step + 1,
-            {}};
+  Reduced r{
+      low.x(), low.y(), step, (high.x() - low.x()) / step + 1, (high.y() - low.y()) / step + 1, {}};
   r.grey.resize(static_cast<std::size_t>(r.width) * r.height);
   const int second = step / 2;
   for (int j = 0; j < r.height; ++j) {
@@ -183,8 +183,8 @@ CollarSearch::Match CollarSearch::Find(const Image& image, const Pose& T_CE,
                                        double radius_px) const {
   const Seen seen = Look(T_CE);
   if (seen.faces.empty() || (seen.high - seen.low).maxCoeff() > kMaxExtent_px) return {};
-  const int step = std::max({1, static_cast<int>(seen.cell_px / 2),
-                             static_cast<int>(std::ceil(radius_px / kMaxSteps))});
+  const int step = std::max(
+      {1, static_cast<int>(seen.cell_px / 2), static_cast<int>(std::ceil(radius_px / kMaxSteps))});
   const int steps = static_cast<int>(std::ceil(radius_px / step));
   const int reach = (steps + 1) * step;
   const Eigen::Vector2i corner = seen.low.cast<int>() - Eigen::Vector2i::Constant(reach);

@@ -10,8 +10,8 @@ constexpr int kNodeStep_px = 8;
 
 // Cubic interpolation through four nodes at -1, 0, 1, 2 (Lagrange).
 std::array<double, 4> Weights(double t) {
-  return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2,
-          -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6};
+  return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
+          (t + 1) * t * (t - 1) / 6};
 }
 
 // Rays at nodes from one step left of and above the image to two beyond it.
@@ -31,8 +31,9 @@ Nodes ComputeNodes(const CameraModel& camera) {
     for (int i = -1; i < nodes.across - 1; ++i) {
       const auto ray = camera.Unproject(Eigen::Vector2d(i, j) * kNodeStep_px);
       const bool seen = ray && ray->z() > 0.05;
-      nodes.rays.push_back(seen ? Eigen::Vector2d(ray->head<2>() / ray->z())
-                                : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
+      nodes.rays.push_back(
+          seen ? Eigen::Vector2d(ray->head<2>() / ray->z())
+               : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
     }
   }
   return nodes;
@@ -44,7 +45,8 @@ LensMap::LensMap(const CameraModel& camera)
     : width_px_(camera.Calibration().width_px), height_px_(camera.Calibration().height_px) {
   const Nodes nodes = ComputeNodes(camera);
   std::array<std::array<double, 4>, kNodeStep_px> weights;
-  for (int k = 0; k < kNodeStep_px; ++k) weights[k] = Weights(static_cast<double>(k) / kNodeStep_px);
+  for (int k = 0; k < kNodeStep_px; ++k)
+    weights[k] = Weights(static_cast<double>(k) / kNodeStep_px);
   rays_.resize(static_cast<std::size_t>(width_px_) * height_px_);
   std::vector<Eigen::Vector2d> row(nodes.across);  // nodes interpolated to one row of pixels
   for (int y = 0; y < height_px_; ++y) {

@@ -6,12 +6,13 @@
 namespace flextip {
 namespace {
 
-constexpr double kMinCosine = 0.105;        // of the angle between normal and view: 84 degrees
+constexpr double kMinCosine = 0.105;         // of the angle between normal and view: 84 degrees
 constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
-constexpr float kReachOfUnknown = 2.0f;     // sigmas kept from what is not known
-constexpr float kFlatPart = 0.02f;         // whiteness nearer to 0 or 1 than this says nothing
-constexpr int kFlatEvery = 7;               // of flat pixels so many are left out for one taken
-constexpr double kHiddenRim_cells = 0.5;    // of a tag's rim that a neighbour may hide
+constexpr float kReachOfUnknown = 3.2f;      // sigmas kept from what is not known
+constexpr float kFlatPart = 0.02f;           // whiteness nearer to 0 or 1 than this says nothing
+constexpr int kFewestPixels = 30;
+constexpr int kFlatEvery = 7;             // of flat pixels so many are left out for one taken
+constexpr double kHiddenRim_cells = 0.5;  // of a tag's rim that a neighbour may hide
 
 // Rec. 601, as ToGrey.
 float GreyAt(const Image& image, int x, int y) {
@@ -114,16 +115,19 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
   const Pose T_CG = T_CE * tag_.T_EG;
   const double reach = 0.5 * cell_m_ * pattern_.Cells();
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
-  for (const auto& [x, y] : {std::pair{-1, -1}, std::pair{1, -1}, std::pair{1, 1}, std::pair{-1, 1}}) {
+  for (const auto& [x, y] :
+       {std::pair{-1, -1}, std::pair{1, -1}, std::pair{1, 1}, std::pair{-1, 1}}) {
     const auto px = camera.Project(T_CG * Eigen::Vector3d(x * reach, y * reach, 0));
     if (!px) return;
     low = low.cwiseMin(*px);
     high = high.cwiseMax(*px);
   }
-  const int x0 = std::max(0, static_cast<int>(low.x())), y0 = std::max(0, static_cast<int>(low.y()));
+  const int x0 = std::max(0, static_cast<int>(low.x())),
+            y0 = std::max(0, static_cast<int>(low.y()));
   const int x1 = std::min(lens.WidthPx() - 1, static_cast<int>(high.x()) + 1);
   const int y1 = std::min(lens.HeightPx() - 1, static_cast<int>(high.y()) + 1);
-  const float reach_u = kReachOfUnknown * g.blur.sigma_u, reach_v = kReachOfUnknown * g.blur.sigma_v;
+  const float reach_u = kReachOfUnknown * g.blur.sigma_u,
+              reach_v = kReachOfUnknown * g.blur.sigma_v;
   const Eigen::Vector4f limits =
       Limits(T_CE) + Eigen::Vector4f(reach_u, -reach_u, reach_v, -reach_v);
   int flat = 0;
@@ -131,7 +135,8 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
     for (int x = x0 + (y / stride) % stride; x <= x1; x += stride) {
       const LensMap::Ray& ray = lens.At(x, y);
       const auto at = g.At(ray.x, ray.y);
-      const bool within = at.u > limits[0] && at.u < limits[1] && at.v > limits[2] && at.v < limits[3];
+      const bool within =
+          at.u > limits[0] && at.u < limits[1] && at.v > limits[2] && at.v < limits[3];
       if (!within || !pattern_.Known(at.u, at.v, reach_u, reach_v)) continue;
       const PatternValue value = pattern_.At(at.u, at.v, g.blur);
       const float part = std::min(value.c, 1 - value.c);
@@ -141,22 +146,23 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
   }
 }
 
-bool PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE,
-                                  const Optics& optics, const ToneCurve& tone) {
+// A straight line through light against whiteness.
+bool PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE, const Optics& optics,
+                                  const ToneCurve& tone) {
   const Geometry g = Place(camera, T_CE, optics);
-  if (!g.valid) return false;
-  double sum[2] = {0, 0}, count[2] = {0, 0};
+  if (!g.valid || Pixels() < kFewestPixels) return false;
+  double n = 0, c1 = 0, c2 = 0, l1 = 0, cl = 0;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
-    const float c = pattern_.At(at.u, at.v, g.blur).c;
-    if (c > 0.2f && c < 0.8f) continue;
-    sum[c > 0.5f] += pixel.grey;
-    count[c > 0.5f] += 1;
+    const double c = pattern_.At(at.u, at.v, g.blur).c, light = tone.Light(pixel.grey);
+    n += 1, c1 += c, c2 += c * c, l1 += light, cl += c * light;
   }
-  if (count[0] < 5 || count[1] < 5) return false;
-  const double black = sum[0] / count[0], white = sum[1] / count[1];
-  levels << tone.Light(black), 0, 0, tone.Light(white), 0, 0;
-  return white > black + 4;
+  const double spread = c2 - c1 * c1 / n;
+  if (spread < 1e-3 * n) return false;
+  const double contrast = (cl - c1 * l1 / n) / spread;
+  const double black = std::max(0.0, (l1 - contrast * c1) / n);
+  levels << black, 0, 0, black + contrast, 0, 0;
+  return contrast > 0;
 }
 
 // Black and white at a place on the tag, in light.
@@ -192,8 +198,7 @@ void PhotometricFace::DifferentiatePlace(const Pixel& pixel, const Geometry& g,
   const Eigen::Matrix2f& B = g.uv_of_px;
   const float a = B(0, 0), b = B(0, 1), c = B(1, 0), d = B(1, 1);
   row[FaceColumns::kBlur] = 0.5f * by_c * (a * a * p.c_uu + 2 * a * c * p.c_uv + c * c * p.c_vv);
-  row[FaceColumns::kBlur + 1] =
-      by_c * (a * b * p.c_uu + (a * d + c * b) * p.c_uv + c * d * p.c_vv);
+  row[FaceColumns::kBlur + 1] = by_c * (a * b * p.c_uu + (a * d + c * b) * p.c_uv + c * d * p.c_vv);
   row[FaceColumns::kBlur + 2] =
       0.5f * by_c * (b * b * p.c_uu + 2 * b * d * p.c_uv + d * d * p.c_vv);
 }

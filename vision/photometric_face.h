@@ -33,12 +33,14 @@ class PhotometricFace {
  public:
   /// What borders on the tag toward -x, +x, -y and +y of G.
   struct Side {
-    double reach_m = 0;  ///< how far from the centre the tag's surroundings go on
+    double reach_m = 0;                  ///< how far from the centre the tag's surroundings go on
     std::optional<Pose> neighbour_T_EG;  ///< the tag that meets this one's plane there
   };
   PhotometricFace(const CollarTag& tag, const TagCells& cells, const std::array<Side, 4>& sides);
 
   const CollarTag& Tag() const { return tag_; }
+  /// A cell's side over the tag's size.
+  double CellPart() const { return cell_m_ / tag_.size_m; }
 
   /// Whether the face looks to the camera at T_CE, less aslant than 84 degrees, and lies in the
   /// picture at least in part.

@@ -15,7 +15,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // A stage ends with a step below so many pixels, the last with one whose square is below so
 // many of its own variances.
 constexpr double kCoarseStep_px = 0.8, kFineStep_px = 0.25;
-constexpr double kLastStep = 0.3;
+constexpr double kLastStep = 0.3, kGoodStep = 3.0;  // the second: where the iterations run out
 constexpr double kMaxTurn_rad = 0.2;
 constexpr double kParallel = 0.985;  // cosine of 10 degrees
 
@@ -113,6 +113,7 @@ struct PhotometricFit::Impl {
 
   // Gauss-Newton until a step is small.
   bool Iterate(Pose& T_RE, Sums& sums, int max_iterations, double small_px, bool redescending) {
+    double last_size = HUGE_VAL;
     for (int i = 0; i < max_iterations; ++i) {
       sums = Linearise(T_RE, redescending);
       if (sums.pixels == 0) return false;
@@ -125,9 +126,10 @@ struct PhotometricFit::Impl {
       const double moved_px = Moved_px(T_RE, moved);
       T_RE = moved;
       Step(step);
+      last_size = size;
       if (moved_px < small_px || (redescending && size < kLastStep)) return true;
     }
-    return false;
+    return last_size < kGoodStep;
   }
 
   bool OnePlane() const {
@@ -169,7 +171,8 @@ PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sum
   result.one_plane = OnePlane();
   const Eigen::LDLT<Matrix6> solver(sums.JtJ);
   const bool solvable = solver.info() == Eigen::Success && solver.isPositive();
-  const Matrix6 covariance = solvable ? Matrix6(solver.solve(Matrix6::Identity())) : Matrix6::Zero();
+  const Matrix6 covariance =
+      solvable ? Matrix6(solver.solve(Matrix6::Identity())) : Matrix6::Zero();
   for (std::size_t i = 0; i < views.size(); ++i) {
     ViewFit fit;
     const Matrix6 Q = Turn(cameras[i]->T_CR.R);

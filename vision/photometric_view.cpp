@@ -12,7 +12,8 @@ constexpr double kFirstScale_grey = 25.0, kMinNoise_grey = 0.7;
 constexpr double kSlopeOfContrast = 0.15;  // how much light may change over a face
 constexpr double kMinBlur_px2 = 0.01, kMaxBlur_px2 = 60.0;
 constexpr double kAslant = 0.3;  // cosine of 73 degrees
-constexpr double kBlurChange = 0.4;  // of the blur, from one picture to the next
+constexpr double kMaxExtraBlur_cells = 0.3;
+constexpr double kBlurChange = 0.4;                // of the blur, from one picture to the next
 constexpr double kKnown = 1e-6, kKnown_m = 1e-10;  // standard deviations of what is not fitted
 
 using Vector5 = Eigen::Matrix<double, 5, 1>;
@@ -56,7 +57,9 @@ void PhotometricView::Select(const Pose& T_CE, int pixels, double extra_blur_px2
     const Pose T_CG = T_CE * faces_[s.face].Tag().T_EG;
     if (!s.active || !camera_.Project(T_CG.p, &J)) continue;
     const double side = J(0, 0) * faces_[s.face].Tag().size_m;
-    area += side * side * T_CG.R.col(2).dot(T_CG.p) / T_CG.p.norm();
+    area += side * side * faces_[s.face].Cosine(T_CE);
+    const double cell = side * faces_[s.face].CellPart() * faces_[s.face].Cosine(T_CE);
+    extra_blur_px2_ = std::min(extra_blur_px2_, std::pow(kMaxExtraBlur_cells * cell, 2));
   }
   const int stride =
       pixels > 0 ? std::max(1, static_cast<int>(std::lround(std::sqrt(area / pixels)))) : 1;
@@ -79,8 +82,8 @@ std::vector<FaceFit> PhotometricView::FaceFits() const {
   for (const SeenFace& s : seen_) {
     if (!s.active) continue;
     const FaceLevels& level = faces_[s.face].levels;
-    const double contrast = tone_.At(static_cast<float>(level[3])).grey -
-                            tone_.At(static_cast<float>(level[0])).grey;
+    const double contrast =
+        tone_.At(static_cast<float>(level[3])).grey - tone_.At(static_cast<float>(level[0])).grey;
     const int pixels = s.sums.Pixels();
     fits.push_back({faces_[s.face].Tag().id, pixels, s.sums.Weight() / std::max(1, pixels),
                     s.sums.Correlation(), contrast});
@@ -201,8 +204,7 @@ PoseTerm PhotometricView::EliminateOptics(Matrix11 A, Vector11 b) {
 void PhotometricView::Step(const Eigen::Matrix<double, 6, 1>& step) {
   Vector11 rest;
   rest.head<6>() = to_pivot_ * step;
-  rest.tail<5>() =
-      optics_elimination_.constant - optics_elimination_.by_rest * rest.head<6>();
+  rest.tail<5>() = optics_elimination_.constant - optics_elimination_.by_rest * rest.head<6>();
   const double limit = std::max(0.3, 0.7 * std::max(optics_.blur_px2[0], optics_.blur_px2[2]));
   const Eigen::Vector3d moved =
       optics_.blur_px2 + rest.segment<3>(6).cwiseMax(-limit).cwiseMin(limit);
@@ -240,7 +242,8 @@ std::vector<Eigen::Vector3d> PhotometricView::Corners() const {
     if (!s.active) continue;
     const CollarTag& tag = faces_[s.face].Tag();
     const double h = 0.5 * tag.size_m;
-    for (const auto& [x, y] : {std::pair{-h, h}, std::pair{h, h}, std::pair{h, -h}, std::pair{-h, -h}}) {
+    for (const auto& [x, y] :
+         {std::pair{-h, h}, std::pair{h, h}, std::pair{h, -h}, std::pair{-h, -h}}) {
       corners.push_back(tag.T_EG * Eigen::Vector3d(x, y, 0));
     }
   }

@@ -31,7 +31,7 @@ struct FaceFit {
 struct OpticsPrior {
   Optics mean;
   double blur_sd_px2 = 1.0;  ///< in either direction; of one direction against the other, half
-  double gamma_sd = 0.0;  ///< 0: known
+  double gamma_sd = 0.0;     ///< 0: known
   double print_offset_sd_m = 0.0;  ///< 0: known
 };
 

@@ -65,7 +65,8 @@ struct TagDetector::Impl {
   explicit Impl(const TagDetectorOptions& o) : options(o), family(MakeTagFamily(o.family)) {
     CheckOptions(o);
     detector = apriltag_detector_create();
-    apriltag_detector_add_family_bits(detector, family.get(), AffordableBits(*family, o.max_hamming));
+    apriltag_detector_add_family_bits(detector, family.get(),
+                                      AffordableBits(*family, o.max_hamming));
     detector->quad_decimate = static_cast<float>(o.quad_decimate);
     detector->quad_sigma = static_cast<float>(o.quad_sigma_px);
     detector->refine_edges = o.refine_edges;

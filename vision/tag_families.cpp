@@ -37,8 +37,7 @@ TagFamily MakeTagFamily(const std::string& name) {
     if (name == f.name) return {f.create(), f.destroy};
     known += fmt::format("{}{}", known.empty() ? "" : ", ", f.name);
   }
-  throw InputError(
-      fmt::format("tag family '{}' is not known; expected one of {}", name, known));
+  throw InputError(fmt::format("tag family '{}' is not known; expected one of {}", name, known));
 }
 
 }  // namespace flextip

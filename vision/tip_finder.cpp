@@ -12,8 +12,9 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kMinSearchCorrelation = 0.35;
-constexpr double kAmbiguousRatio = 30.0;   // twice the log of the odds
-constexpr double kCornerFallback_px = 0.2;  // what corners alone may be wrong by: gamma, blur
+constexpr double kAmbiguousRatio = 30.0;     // twice the log of the odds
+constexpr double kCornerFallback_px = 0.35;  // what corners alone may be wrong by: gamma, blur
+constexpr double kMaxNoiseOfContrast = 0.12;
 constexpr double kFirstBlurSd_px2 = 3.0;
 constexpr int kDetectMargin_px = 12;
 
@@ -70,6 +71,7 @@ TipFinder::TipFinder(const std::vector<CameraCalibration>& cameras, const TagCol
 }
 
 void TipFinder::Forget() {
+  noise_grey_ = 0;
   for (OpticsPrior& prior : priors_) {
     prior.mean.blur_px2 = Optics().blur_px2;
     prior.blur_sd_px2 = kFirstBlurSd_px2;
@@ -78,6 +80,7 @@ void TipFinder::Forget() {
 
 void TipFinder::Learn(const Sight& sight) {
   if (sight.source != TrackSource::kPixels) return;
+  noise_grey_ = noise_grey_ > 0 ? 0.8 * noise_grey_ + 0.2 * sight.noise_grey : sight.noise_grey;
   for (std::size_t i = 0; i < priors_.size(); ++i) {
     if (sight.pixels.views[i].noise_grey > 0) priors_[i] = sight.pixels.views[i].learned;
   }
@@ -100,15 +103,23 @@ Sight TipFinder::FitPixels(const Images& images, const Pose& T_RE) {
   Sight sight;
   sight.pixels = fit_.Fit(images, T_RE, priors_);
   if (!sight.pixels.IsUsable()) return sight;
+  for (const ViewFit& view : sight.pixels.views) {
+    sight.noise_grey = std::max(sight.noise_grey, view.noise_grey);
+    for (const FaceFit& face : view.faces) {
+      if (view.noise_grey > kMaxNoiseOfContrast * face.contrast) return sight;
+    }
+  }
   sight.source = TrackSource::kPixels;
   sight.T_RE = sight.pixels.T_RE;
   sight.covariance = sight.pixels.covariance;
   sight.tags_used = sight.pixels.faces;
-  for (const ViewFit& view : sight.pixels.views) {
-    sight.noise_grey = std::max(sight.noise_grey, view.noise_grey);
-  }
   sight.tags = PredictedTags(sight.pixels);
   return sight;
+}
+
+// Another minimum leaves more than the noise of the pictures before.
+bool TipFinder::IsAsGoodAsBefore(const Sight& sight) const {
+  return sight.Found() && (noise_grey_ <= 0 || sight.noise_grey < 1.6 * noise_grey_ + 0.5);
 }
 
 std::vector<TagDetection> TipFinder::PredictedTags(const PhotometricResult& fit) const {
@@ -135,7 +146,7 @@ std::vector<TagDetection> TipFinder::PredictedTags(const PhotometricResult& fit)
 Sight TipFinder::FindNear(const Images& images, const Pose& T_RE, double radius_px) {
   if (options_.photometric_fit) {
     Sight sight = FitPixels(images, T_RE);
-    for (std::size_t i = 0; i < images.size() && !sight.Found(); ++i) {
+    for (std::size_t i = 0; i < images.size() && !IsAsGoodAsBefore(sight); ++i) {
       if (images[i] == nullptr) continue;
       const Pose& T_RC = models_[i]->Calibration().T_RC;
       const Pose T_CE = T_RC.Inverse() * T_RE;
@@ -143,7 +154,7 @@ Sight TipFinder::FindNear(const Images& images, const Pose& T_RE, double radius_
       if (match.correlation < kMinSearchCorrelation) continue;
       sight = FitPixels(images, T_RC * searches_[i].Shifted(T_CE, match.shift_px));
     }
-    if (sight.Found()) {
+    if (IsAsGoodAsBefore(sight)) {
       CheckOtherPlanarPose(images, T_RE, sight);
       return sight;
     }
@@ -209,8 +220,7 @@ Sight TipFinder::BestOf(const std::vector<std::vector<TagDetection>>& tags,
     if (near_T_RE) near_T_CE = T_RC.Inverse() * *near_T_RE;
     CollarPoseOptions corners = options_.pose;
     if (options_.photometric_fit) corners.corner_noise_floor_px = kCornerFallback_px;
-    const CollarPose pose =
-        EstimateCollarPose(*models_[i], collar_, tags[i], corners, near_T_CE);
+    const CollarPose pose = EstimateCollarPose(*models_[i], collar_, tags[i], corners, near_T_CE);
     if (!pose.IsUsable()) {
       if (i == 0) best.tags = tags[0];
       continue;
@@ -259,8 +269,11 @@ Sight TipFinder::FromTags(const std::vector<TagDetection>& tags,
 // What the corners say, made better by the pixels where those agree.
 Sight TipFinder::Refined(const Images& images, const Sight& corners) {
   Sight sight = FitPixels(images, corners.T_RE);
-  if (!sight.Found() && corners.alternative_T_RE) {
-    sight = FitPixels(images, *corners.alternative_T_RE);
+  if (corners.alternative_T_RE) {
+    const Sight other = FitPixels(images, *corners.alternative_T_RE);
+    const bool better =
+        other.Found() && (!sight.Found() || LogLikelihoodRatio2(other.pixels, sight.pixels) > 0);
+    if (better) sight = other;
   }
   if (!sight.Found()) return corners;
   sight.rms_px = corners.rms_px;
@@ -275,9 +288,9 @@ void TipFinder::CheckOtherPlanarPose(const Images& images, const std::optional<P
   if (sight.source != TrackSource::kPixels || !sight.pixels.one_plane) return;
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (images[i] == nullptr || sight.pixels.views[i].faces.empty()) continue;
-    const auto tag = std::find_if(collar_.tags.begin(), collar_.tags.end(), [&](const CollarTag& t) {
-      return t.id == sight.pixels.views[i].faces[0].tag_id;
-    });
+    const auto tag = std::find_if(
+        collar_.tags.begin(), collar_.tags.end(),
+        [&](const CollarTag& t) { return t.id == sight.pixels.views[i].faces[0].tag_id; });
     const Pose& T_RC = models_[i]->Calibration().T_RC;
     const Pose other = T_RC * OtherPlanarPose(T_RC.Inverse() * sight.T_RE, tag->T_EG);
     Sight second = FitPixels(images, other);

@@ -54,6 +54,7 @@ class TipFinder {
 
  private:
   Sight FitPixels(const Images& images, const Pose& T_RE);
+  bool IsAsGoodAsBefore(const Sight& sight) const;
   Sight Refined(const Images& images, const Sight& corners);
   void CheckOtherPlanarPose(const Images& images, const std::optional<Pose>& near_T_RE,
                             Sight& sight);
@@ -70,6 +71,7 @@ class TipFinder {
   TagDetector detector_;
   PhotometricFit fit_;
   std::vector<OpticsPrior> priors_;
+  double noise_grey_ = 0;  // of the fits so far, fading; 0: none
 };
 
 }  // namespace flextip

@@ -99,6 +99,7 @@ void TipTracker::Impl::ForgetIfStale(TimeNs t_ns) {
   filter.Reset();
   last_T_RE.reset();
   turn_rate.setZero();
+  finder.Forget();
 }
 
 // The better of what the model and the motion so far say.

@@ -28,11 +28,11 @@ struct TrackerOptions {
   bool background_detection = false;
   int max_predicted_frames = 3;  ///< then the tip is lost, unless a model is given
   TimeNs max_prediction_ns = 200'000'000;
-  double max_predicted_sd_m = 0.01;      ///< a prediction less certain than this is none
-  double max_ok_sd_m = 0.003;            ///< nor is what was seen (one tag, two poses)
-  double acceleration_noise_m_s2 = 1.0;  ///< how fast a prediction's covariance grows
+  double max_predicted_sd_m = 0.01;                ///< a prediction less certain than this is none
+  double max_ok_sd_m = 0.003;                      ///< nor is what was seen (one tag, two poses)
+  double acceleration_noise_m_s2 = 1.0;            ///< how fast a prediction's covariance grows
   double gamma_guess = 2.2, gamma_guess_sd = 0.4;  ///< where the camera's is not known
-  double print_offset_sd_m = 3e-5;       ///< how well the tags' places along their normals are known
+  double print_offset_sd_m = 3e-5;  ///< how well the tags' places along their normals are known
 };
 
 /// How a frame's pose was found.
@@ -40,18 +40,18 @@ enum class TrackSource { kNone, kCorners, kPixels };
 
 /// What one frame said.
 struct TipTrack {
-  TipObservation tip;                ///< in R; d_RE only where the tags were seen
-  std::vector<TagDetection> tags;    ///< in the first camera: detected, or where the fit puts them
+  TipObservation tip;              ///< in R; d_RE only where the tags were seen
+  std::vector<TagDetection> tags;  ///< in the first camera: detected, or where the fit puts them
   TrackSource source = TrackSource::kNone;
-  Pose T_RE;                         ///< means something where `tip.status` is kOk
+  Pose T_RE;  ///< means something where `tip.status` is kOk
   Eigen::Matrix<double, 6, 6> covariance =
       Eigen::Matrix<double, 6, 6>::Zero();  ///< of T_RE, (dw, dp) in R, where kOk
-  double rms_px = 0.0;               ///< corner distance of the fit, where kCorners
-  double noise_grey = 0.0;           ///< of a pixel about the fit, where kPixels
-  int tags_used = 0;                 ///< in all cameras
-  bool ambiguous = false;            ///< another pose fits nearly as well
-  std::optional<Pose> alternative_T_RE;  ///< that pose, or a clearly worse one
-  double direction_noise_rad = 0.0;  ///< of d_RE, per axis across it, where kOk
+  double rms_px = 0.0;                      ///< corner distance of the fit, where kCorners
+  double noise_grey = 0.0;                  ///< of a pixel about the fit, where kPixels
+  int tags_used = 0;                        ///< in all cameras
+  bool ambiguous = false;                   ///< another pose fits nearly as well
+  std::optional<Pose> alternative_T_RE;     ///< that pose, or a clearly worse one
+  double direction_noise_rad = 0.0;         ///< of d_RE, per axis across it, where kOk
 };
 
 /// Follows one collar. Frames must come in increasing time; a frame that goes back in time starts
