@@ -10,6 +10,7 @@ constexpr double kMinCosine = 0.105;         // of the angle between normal and 
 constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
 constexpr float kReachOfUnknown = 3.2f;      // sigmas kept from what is not known
 constexpr float kFlatPart = 0.02f;           // whiteness nearer to 0 or 1 than this says nothing
+constexpr float kSaturated_grey = 252.0f;
 constexpr int kFewestPixels = 30;
 constexpr int kFlatEvery = 7;             // of flat pixels so many are left out for one taken
 constexpr double kHiddenRim_cells = 0.5;  // of a tag's rim that a neighbour may hide
@@ -219,6 +220,7 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
     const float contrast = light.white - light.black;
     const ToneCurve::Value film = tone.At(light.black + p.c * contrast);
     const float residual = pixel.grey - film.grey;
+    if (film.by_light == 0 && pixel.grey > kSaturated_grey) continue;  // says nothing
     sums.CountError(residual);
     const float weight = rule.Weight(residual);
     if (weight == 0) continue;

@@ -156,10 +156,10 @@ Matrix6 PhotometricFit::Impl::ModelCovariance(const Pose& T_RE) const {
     for (const Eigen::Vector3d& x_E : views[i].Corners()) corners.push_back({x_E, {0, 0}});
     const auto sum = Reproject(cameras[i]->model, corners, cameras[i]->T_CR * T_RE);
     const Matrix6 Q = Turn(cameras[i]->T_CR.R.transpose());
-    if (sum) information += Q * sum->JtJ * Q.transpose();
+    const double noise_px = options.model_noise_px + views[i].ExcessNoise_px();
+    if (sum) information += Q * sum->JtJ * Q.transpose() / (noise_px * noise_px);
   }
-  return options.model_noise_px * options.model_noise_px *
-         information.ldlt().solve(Matrix6::Identity());
+  return information.ldlt().solve(Matrix6::Identity());
 }
 
 PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sums,

@@ -13,6 +13,7 @@ constexpr double kSlopeOfContrast = 0.15;  // how much light may change over a f
 constexpr double kMinBlur_px2 = 0.01, kMaxBlur_px2 = 60.0;
 constexpr double kAslant = 0.3;  // cosine of 73 degrees
 constexpr double kMaxExtraBlur_cells = 0.3;
+constexpr double kNoiseGrowth = 1.005;  // from one picture to the next
 constexpr double kBlurChange = 0.4;                // of the blur, from one picture to the next
 constexpr double kKnown = 1e-6, kKnown_m = 1e-10;  // standard deviations of what is not fitted
 
@@ -29,7 +30,7 @@ void PhotometricView::Begin(const Image& image, const Pose& T_CE, const OpticsPr
   prior_ = prior;
   optics_ = prior.mean;
   tone_ = ToneCurve(optics_.gamma);
-  noise_grey_ = 0;
+  noise_grey_ = extra_blur_px2_ = 0;
   seen_.clear();
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     if (faces_[i].IsSeen(camera_, T_CE)) seen_.push_back({i, true, false, {}, {}});
@@ -50,6 +51,7 @@ Optics PhotometricView::Widened() const {
 }
 
 void PhotometricView::Select(const Pose& T_CE, int pixels, double extra_blur_px2) {
+  const double before_px2 = extra_blur_px2_;
   extra_blur_px2_ = extra_blur_px2;
   double area = 0;  // of the seen faces' bounding boxes, roughly
   for (const SeenFace& s : seen_) {
@@ -60,6 +62,12 @@ void PhotometricView::Select(const Pose& T_CE, int pixels, double extra_blur_px2
     area += side * side * faces_[s.face].Cosine(T_CE);
     const double cell = side * faces_[s.face].CellPart() * faces_[s.face].Cosine(T_CE);
     extra_blur_px2_ = std::min(extra_blur_px2_, std::pow(kMaxExtraBlur_cells * cell, 2));
+  }
+  if (before_px2 > 0) {  // what was fitted is the blur with the extra
+    for (const int i : {0, 2}) {
+      optics_.blur_px2[i] =
+          std::max(kMinBlur_px2, optics_.blur_px2[i] + before_px2 - extra_blur_px2_);
+    }
   }
   const int stride =
       pixels > 0 ? std::max(1, static_cast<int>(std::lround(std::sqrt(area / pixels)))) : 1;
@@ -228,12 +236,24 @@ OpticsPrior PhotometricView::Learned(const Eigen::Matrix<double, 6, 6>& covarian
       (optics_variance_ + (by_pose * covariance * by_pose.transpose()).diagonal()).cwiseSqrt();
   OpticsPrior next = prior_;
   next.mean = optics_;
+  // The least seen so far, which may grow slowly.
+  next.noise_grey = prior_.noise_grey > 0 ? std::min(noise_grey_, kNoiseGrowth * prior_.noise_grey)
+                                          : noise_grey_;
   next.blur_sd_px2 = kBlurChange * (optics_.blur_px2[0] + optics_.blur_px2[2]) + 0.1;
   if (prior_.gamma_sd > 0) next.gamma_sd = std::min(prior_.gamma_sd, std::max(0.003, sd[3]));
   if (prior_.print_offset_sd_m > 0) {
     next.print_offset_sd_m = std::min(prior_.print_offset_sd_m, std::max(2e-6, sd[4]));
   }
   return next;
+}
+
+double PhotometricView::ExcessNoise_px() const {
+  if (prior_.noise_grey <= 0 || noise_grey_ <= prior_.noise_grey) return 0.0;
+  double contrast = 0;
+  for (const FaceFit& face : FaceFits()) contrast = std::max(contrast, face.contrast);
+  const double excess_grey = std::sqrt(std::pow(noise_grey_, 2) - std::pow(prior_.noise_grey, 2));
+  const double width_px = std::sqrt(2 * M_PI * (0.5 * (optics_.blur_px2[0] + optics_.blur_px2[2]) + 1.0 / 12));
+  return excess_grey * width_px / std::max(1.0, contrast);
 }
 
 std::vector<Eigen::Vector3d> PhotometricView::Corners() const {

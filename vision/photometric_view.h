@@ -33,6 +33,7 @@ struct OpticsPrior {
   double blur_sd_px2 = 1.0;  ///< in either direction; of one direction against the other, half
   double gamma_sd = 0.0;     ///< 0: known
   double print_offset_sd_m = 0.0;  ///< 0: known
+  double noise_grey = 0.0;         ///< of the film alone; 0: not known
 };
 
 class PhotometricView {
@@ -68,6 +69,9 @@ class PhotometricView {
   OpticsPrior Learned(const Eigen::Matrix<double, 6, 6>& covariance) const;
   /// The corners of the faces that take part, in E.
   std::vector<Eigen::Vector3d> Corners() const;
+
+  /// What residuals beyond the film's noise may move an edge by: light that the model lacks.
+  double ExcessNoise_px() const;
 
   /// Robust standard deviation of a pixel's residual (grey values) in the last Linearise.
   double NoiseGrey() const { return noise_grey_; }
