@@ -174,6 +174,7 @@ PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sum
   const Matrix6 covariance =
       solvable ? Matrix6(solver.solve(Matrix6::Identity())) : Matrix6::Zero();
   for (std::size_t i = 0; i < views.size(); ++i) {
+    if (present[i]) result.faces_in_view += views[i].FacesInView(cameras[i]->T_CR * T_RE);
     ViewFit fit;
     const Matrix6 Q = Turn(cameras[i]->T_CR.R);
     if (present[i]) {

@@ -45,6 +45,7 @@ struct PhotometricResult {
   /// Of (dw, dp), T_RE = (exp([dw]x) R, p + dp), both in R (rad, m).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int pixels = 0, faces = 0;
+  int faces_in_view = 0;   ///< that should be seen well; more than `faces` where some are covered
   bool one_plane = false;  ///< all faces seen are parallel: two poses may look alike
   std::vector<ViewFit> views;
 

@@ -11,9 +11,10 @@ namespace {
 constexpr double kFirstScale_grey = 25.0, kMinNoise_grey = 0.7;
 constexpr double kSlopeOfContrast = 0.15;  // how much light may change over a face
 constexpr double kMinBlur_px2 = 0.01, kMaxBlur_px2 = 60.0;
-constexpr double kAslant = 0.3;  // cosine of 73 degrees
+constexpr double kWellSeen = 0.45;  // cosine of 63 degrees
+constexpr double kAslant = 0.3;     // cosine of 73 degrees
 constexpr double kMaxExtraBlur_cells = 0.3;
-constexpr double kNoiseGrowth = 1.005;  // from one picture to the next
+constexpr double kNoiseGrowth = 1.005;             // from one picture to the next
 constexpr double kBlurChange = 0.4;                // of the blur, from one picture to the next
 constexpr double kKnown = 1e-6, kKnown_m = 1e-10;  // standard deviations of what is not fitted
 
@@ -83,6 +84,24 @@ void PhotometricView::Select(const Pose& T_CE, int pixels, double extra_blur_px2
 int PhotometricView::Faces() const {
   return static_cast<int>(
       std::count_if(seen_.begin(), seen_.end(), [](const SeenFace& s) { return s.active; }));
+}
+
+int PhotometricView::FacesInView(const Pose& T_CE) const {
+  const CameraCalibration& c = camera_.Calibration();
+  return static_cast<int>(
+      std::count_if(faces_.begin(), faces_.end(), [&](const PhotometricFace& face) {
+        const CollarTag& tag = face.Tag();
+        if (face.Cosine(T_CE) < kWellSeen) return false;
+        const double h = 0.6 * tag.size_m;
+        for (const auto& [x, y] :
+             {std::pair{-h, h}, std::pair{h, h}, std::pair{h, -h}, std::pair{-h, -h}}) {
+          const auto px = camera_.Project(T_CE * (tag.T_EG * Eigen::Vector3d(x, y, 0)));
+          const bool inside = px && px->x() >= 0 && px->y() >= 0 && px->x() <= c.width_px - 1 &&
+                              px->y() <= c.height_px - 1;
+          if (!inside) return false;
+        }
+        return true;
+      }));
 }
 
 std::vector<FaceFit> PhotometricView::FaceFits() const {
@@ -237,8 +256,8 @@ OpticsPrior PhotometricView::Learned(const Eigen::Matrix<double, 6, 6>& covarian
   OpticsPrior next = prior_;
   next.mean = optics_;
   // The least seen so far, which may grow slowly.
-  next.noise_grey = prior_.noise_grey > 0 ? std::min(noise_grey_, kNoiseGrowth * prior_.noise_grey)
-                                          : noise_grey_;
+  next.noise_grey =
+      prior_.noise_grey > 0 ? std::min(noise_grey_, kNoiseGrowth * prior_.noise_grey) : noise_grey_;
   next.blur_sd_px2 = kBlurChange * (optics_.blur_px2[0] + optics_.blur_px2[2]) + 0.1;
   if (prior_.gamma_sd > 0) next.gamma_sd = std::min(prior_.gamma_sd, std::max(0.003, sd[3]));
   if (prior_.print_offset_sd_m > 0) {
@@ -252,7 +271,8 @@ double PhotometricView::ExcessNoise_px() const {
   double contrast = 0;
   for (const FaceFit& face : FaceFits()) contrast = std::max(contrast, face.contrast);
   const double excess_grey = std::sqrt(std::pow(noise_grey_, 2) - std::pow(prior_.noise_grey, 2));
-  const double width_px = std::sqrt(2 * M_PI * (0.5 * (optics_.blur_px2[0] + optics_.blur_px2[2]) + 1.0 / 12));
+  const double width_px =
+      std::sqrt(2 * M_PI * (0.5 * (optics_.blur_px2[0] + optics_.blur_px2[2]) + 1.0 / 12));
   return excess_grey * width_px / std::max(1.0, contrast);
 }
 

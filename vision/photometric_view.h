@@ -55,6 +55,8 @@ class PhotometricView {
   /// Leaves faces out that do not look like their tags; returns how many are left.
   int DropFaces(double min_correlation, double min_contrast);
   int Faces() const;
+  /// Of the faces that look well enough toward the camera at T_CE and lie wholly in the picture.
+  int FacesInView(const Pose& T_CE) const;
   std::vector<FaceFit> FaceFits() const;
   /// The normals (toward the camera) of the faces that take part, in E.
   std::vector<Eigen::Vector3d> Normals() const;

@@ -14,6 +14,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 constexpr double kMinSearchCorrelation = 0.35;
 constexpr double kAmbiguousRatio = 30.0;     // twice the log of the odds
 constexpr double kCornerFallback_px = 0.35;  // what corners alone may be wrong by: gamma, blur
+constexpr double kMaxTurn_rad = 0.5, kMaxTurnCovered_rad = 0.25;  // from one picture to the next
 constexpr double kMaxNoiseOfContrast = 0.12;
 constexpr double kFirstBlurSd_px2 = 3.0;
 constexpr int kDetectMargin_px = 12;
@@ -117,9 +118,14 @@ Sight TipFinder::FitPixels(const Images& images, const Pose& T_RE) {
   return sight;
 }
 
-// Another minimum leaves more than the noise of the pictures before.
-bool TipFinder::IsAsGoodAsBefore(const Sight& sight) const {
-  return sight.Found() && (noise_grey_ <= 0 || sight.noise_grey < 1.6 * noise_grey_ + 0.5);
+// Another minimum leaves more than the noise of the pictures before, turns far from what was
+// expected, or would show tags that are not there.
+bool TipFinder::IsTrusted(const Sight& sight, const Pose& expected_T_RE) const {
+  if (!sight.Found()) return false;
+  const double turn = PoseDifference(expected_T_RE, sight.T_RE).head<3>().norm();
+  const bool complete = sight.pixels.faces >= sight.pixels.faces_in_view;
+  if (turn > (complete ? kMaxTurn_rad : kMaxTurnCovered_rad)) return false;
+  return noise_grey_ <= 0 || sight.noise_grey < 1.6 * noise_grey_ + 0.5;
 }
 
 std::vector<TagDetection> TipFinder::PredictedTags(const PhotometricResult& fit) const {
@@ -146,7 +152,7 @@ std::vector<TagDetection> TipFinder::PredictedTags(const PhotometricResult& fit)
 Sight TipFinder::FindNear(const Images& images, const Pose& T_RE, double radius_px) {
   if (options_.photometric_fit) {
     Sight sight = FitPixels(images, T_RE);
-    for (std::size_t i = 0; i < images.size() && !IsAsGoodAsBefore(sight); ++i) {
+    for (std::size_t i = 0; i < images.size() && !IsTrusted(sight, T_RE); ++i) {
       if (images[i] == nullptr) continue;
       const Pose& T_RC = models_[i]->Calibration().T_RC;
       const Pose T_CE = T_RC.Inverse() * T_RE;
@@ -154,9 +160,9 @@ Sight TipFinder::FindNear(const Images& images, const Pose& T_RE, double radius_
       if (match.correlation < kMinSearchCorrelation) continue;
       sight = FitPixels(images, T_RC * searches_[i].Shifted(T_CE, match.shift_px));
     }
-    if (IsAsGoodAsBefore(sight)) {
+    if (IsTrusted(sight, T_RE)) {
       CheckOtherPlanarPose(images, T_RE, sight);
-      return sight;
+      if (IsTrusted(sight, T_RE)) return sight;
     }
   }
   std::vector<std::vector<TagDetection>> tags(images.size());
