@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vision/grey.h"
 #include "vision/tag_cells.h"
 
 namespace flextip {
@@ -19,11 +20,6 @@ struct Reduced {
   int x0, y0, step, width, height;
   std::vector<float> grey;
 };
-
-float GreyAt(const Image& image, int x, int y) {
-  const std::uint8_t* at = image.Row(y) + static_cast<std::ptrdiff_t>(x) * image.channels;
-  return image.channels == 1 ? at[0] : 0.114f * at[0] + 0.587f * at[1] + 0.299f * at[2];
-}
 
 // Means over squares, of at most 2 x 2 pixels each; outside the picture its border goes on.
 Reduced Reduce(const Image& image, Eigen::Vector2i low, Eigen::Vector2i high, int step) {

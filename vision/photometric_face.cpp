@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vision/grey.h"
+
 namespace flextip {
 namespace {
 
@@ -14,13 +16,6 @@ constexpr float kSaturated_grey = 252.0f;
 constexpr int kFewestPixels = 30;
 constexpr int kFlatEvery = 7;             // of flat pixels so many are left out for one taken
 constexpr double kHiddenRim_cells = 0.5;  // of a tag's rim that a neighbour may hide
-
-// Rec. 601, as ToGrey.
-float GreyAt(const Image& image, int x, int y) {
-  const std::uint8_t* at = image.Row(y) + static_cast<std::ptrdiff_t>(x) * image.channels;
-  if (image.channels == 1) return at[0];
-  return 0.114f * at[0] + 0.587f * at[1] + 0.299f * at[2];
-}
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "vision/edge_refiner.h"
+#include "vision/grey.h"
 #include "vision/tag_families.h"
 
 namespace flextip {
@@ -51,7 +52,7 @@ Image ToGrey(const Image& image) {
   Image grey(image.width_px, image.height_px, 1);
   const std::uint8_t* from = image.data.data();
   for (std::uint8_t& to : grey.data) {
-    to = static_cast<std::uint8_t>((from[0] * 1868 + from[1] * 9617 + from[2] * 4899 + 8192) >> 14);
+    to = GreyOf(from);
     from += 3;
   }
   return grey;

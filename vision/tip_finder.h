@@ -19,7 +19,7 @@ struct Sight {
   std::vector<TagDetection> tags;
   double rms_px = 0.0, noise_grey = 0.0, squared_error_px2 = 0.0;
   int tags_used = 0, dof = 0;
-  bool ambiguous = false;
+  bool ambiguous = false, outline_used = false;
   std::optional<Pose> alternative_T_RE;
   PhotometricResult pixels;
 

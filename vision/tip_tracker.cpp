@@ -9,6 +9,7 @@
 #include "vision/reprojection.h"
 #include "vision/tip_filter.h"
 #include "vision/tip_finder.h"
+#include "vision/tip_outline.h"
 
 namespace flextip {
 namespace {
@@ -60,9 +61,10 @@ struct TipTracker::Impl {
   std::vector<CameraCalibration> cameras;
   TipFilter filter;
   std::optional<BackgroundDetector> background;
+  std::optional<TipOutline> outline;
 
   std::optional<Pose> last_T_RE;  // of the last frame in which the collar was seen
-  TimeNs last_ns = 0;
+  TimeNs last_ns = 0, last_seen_ns = 0;  // of last_T_RE, and of the last tags
   Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();  // rad/s
   int predicted_frames = 0, lost_frames = 0;
   double noise_sum_px2, noise_dof;  // squared corner errors so far, fading, and their freedom
@@ -74,6 +76,7 @@ struct TipTracker::Impl {
         filter(o.acceleration_noise_m_s2),
         noise_sum_px2(o.pose.prior_variance_px2 * o.pose.prior_dof),
         noise_dof(o.pose.prior_dof) {
+    if (o.tube) outline.emplace(c, *o.tube, o.outline);
     if (!o.background_detection) return;
     TagDetectorOptions detector = o.detector;
     detector.family = collar.family;
@@ -85,9 +88,12 @@ struct TipTracker::Impl {
   double SearchRadius(const TipPrediction& expected) const;
   Sight Find(const Images& images, TimeNs t_ns, const std::optional<TipPrediction>& expected);
   Sight FindLost(const Images& images, TimeNs t_ns, const std::optional<Pose>& near_T_RE);
+  void JoinOutline(const Images& images, Sight& sight);
+  std::optional<TipPrediction> FollowOutline(const Images& images, TimeNs t_ns,
+                                             const TipPrediction& expected);
   Sight FindFromTags(const std::vector<TagDetection>& tags);
   TipTrack Finish(const Sight& sight, TimeNs t_ns, const std::optional<TipPrediction>& expected,
-                  bool has_model);
+                  bool has_model, const Images& images);
   void Remember(const Sight& sight, TimeNs t_ns);
   void Report(const Sight& sight, TipTrack& track) const;
 };
@@ -156,6 +162,41 @@ Sight TipTracker::Impl::FindLost(const Images& images, TimeNs t_ns,
   return sight;
 }
 
+// d turns by dw x d: the standard deviation of that, per axis.
+double DirectionNoise(const Pose& T_RE, const Matrix6& covariance) {
+  const Eigen::Matrix3d turn = Skew(T_RE.R.col(0));
+  const Eigen::Matrix3d of_direction = turn * covariance.topLeftCorner<3, 3>() * turn.transpose();
+  return std::sqrt(0.5 * of_direction.trace());
+}
+
+// Where the tags leave the direction uncertain, the outline's long base line is worth its time.
+void TipTracker::Impl::JoinOutline(const Images& images, Sight& sight) {
+  if (!outline || sight.source != TrackSource::kPixels || sight.ambiguous) return;
+  if (DirectionNoise(sight.T_RE, sight.covariance) < options.outline_from_rad) return;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const Eigen::Vector3d& blur_px2 = sight.pixels.views[i].learned.mean.blur_px2;
+    if (images[i] != nullptr) outline->SetBlur(i, std::sqrt(0.5 * (blur_px2[0] + blur_px2[2])));
+  }
+  const TipPrediction joined = outline->Join(images, {sight.T_RE, sight.covariance});
+  sight.T_RE = joined.T_RE;
+  sight.covariance = joined.covariance;
+  sight.outline_used = true;
+}
+
+// The tags are covered: the outline keeps the prediction from growing.
+std::optional<TipPrediction> TipTracker::Impl::FollowOutline(const Images& images, TimeNs t_ns,
+                                                             const TipPrediction& expected) {
+  if (!outline || images.empty() || t_ns - last_seen_ns > options.max_outline_ns) return {};
+  auto found = outline->Find(images, expected);
+  if (!found || MaxSd(found->covariance.bottomRightCorner<3, 3>()) > options.max_predicted_sd_m) {
+    return {};
+  }
+  filter.Measure(t_ns, found->T_RE.p, found->covariance.bottomRightCorner<3, 3>());
+  last_T_RE = found->T_RE;
+  last_ns = t_ns;
+  return found;
+}
+
 Sight TipTracker::Impl::FindFromTags(const std::vector<TagDetection>& tags) {
   CollarPoseOptions pose = options.pose;
   pose.prior_variance_px2 = noise_dof > 0 ? noise_sum_px2 / noise_dof : 0.0;
@@ -175,7 +216,7 @@ void TipTracker::Impl::Remember(const Sight& sight, TimeNs t_ns) {
     turn_rate = LogRotation(sight.T_RE.R * last_T_RE->R.transpose()) / dt_s;
   }
   last_T_RE = sight.T_RE;
-  last_ns = t_ns;
+  last_ns = last_seen_ns = t_ns;
   predicted_frames = lost_frames = 0;
   finder.Learn(sight);
 }
@@ -187,21 +228,19 @@ void TipTracker::Impl::Report(const Sight& sight, TipTrack& track) const {
   track.tip.p_RE = sight.T_RE.p;
   track.tip.covariance_m2 = sight.covariance.bottomRightCorner<3, 3>();
   track.tip.d_RE = sight.T_RE.R.col(0);
-  // A rotation dw turns the direction d by dw x d.
-  const Eigen::Matrix3d turn = Skew(sight.T_RE.R.col(0));
-  const Eigen::Matrix3d of_direction =
-      turn * sight.covariance.topLeftCorner<3, 3>() * turn.transpose();
-  track.direction_noise_rad = std::sqrt(0.5 * of_direction.trace());
+  track.direction_noise_rad = DirectionNoise(sight.T_RE, sight.covariance);
 }
 
 TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
-                                  const std::optional<TipPrediction>& expected, bool has_model) {
+                                  const std::optional<TipPrediction>& expected, bool has_model,
+                                  const Images& images) {
   TipTrack track;
   track.tags = sight.tags;
   track.source = sight.source;
   track.rms_px = sight.rms_px;
   track.noise_grey = sight.noise_grey;
   track.tags_used = sight.tags_used;
+  track.outline_used = sight.outline_used;
   track.ambiguous = sight.ambiguous;
   track.alternative_T_RE = sight.alternative_T_RE;
   if (sight.Found() && MaxSd(sight.covariance.bottomRightCorner<3, 3>()) <= options.max_ok_sd_m) {
@@ -209,13 +248,16 @@ TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
     Remember(sight, t_ns);
     return track;
   }
-  const bool patient = has_model || predicted_frames < options.max_predicted_frames;
-  if (!expected || !patient) return track;
-  const Eigen::Matrix3d covariance = expected->covariance.bottomRightCorner<3, 3>();
-  if (MaxSd(covariance) > options.max_predicted_sd_m) return track;
-  ++predicted_frames;
+  if (!expected) return track;
+  const auto followed = FollowOutline(images, t_ns, *expected);
+  const TipPrediction& prediction = followed ? *followed : *expected;
+  const bool patient = followed || has_model || predicted_frames < options.max_predicted_frames;
+  const Eigen::Matrix3d covariance = prediction.covariance.bottomRightCorner<3, 3>();
+  if (!patient || MaxSd(covariance) > options.max_predicted_sd_m) return track;
+  if (!followed) ++predicted_frames;
+  track.outline_used = followed.has_value();
   track.tip.status = TipStatus::kPredicted;
-  track.tip.p_RE = expected->T_RE.p;
+  track.tip.p_RE = prediction.T_RE.p;
   track.tip.covariance_m2 = covariance;
   return track;
 }
@@ -246,14 +288,15 @@ TipTrack TipTracker::Track(const std::vector<const Image*>& images, TimeNs t_ns,
   }
   impl_->ForgetIfStale(t_ns);
   const std::optional<TipPrediction> expected = impl_->Expect(t_ns, model);
-  const Sight sight = impl_->Find(images, t_ns, expected);
-  return impl_->Finish(sight, t_ns, expected, model.has_value());
+  Sight sight = impl_->Find(images, t_ns, expected);
+  impl_->JoinOutline(images, sight);
+  return impl_->Finish(sight, t_ns, expected, model.has_value(), images);
 }
 
 TipTrack TipTracker::Track(const std::vector<TagDetection>& tags, TimeNs t_ns) {
   impl_->ForgetIfStale(t_ns);
   const std::optional<TipPrediction> expected = impl_->Expect(t_ns, {});
-  return impl_->Finish(impl_->FindFromTags(tags), t_ns, expected, false);
+  return impl_->Finish(impl_->FindFromTags(tags), t_ns, expected, false, {});
 }
 
 }  // namespace flextip

@@ -13,6 +13,7 @@
 #include "core/tip_observation.h"
 #include "vision/collar_pose.h"
 #include "vision/photometric_fit.h"
+#include "vision/shaft_contour.h"
 #include "vision/tag_detector.h"
 #include "vision/tip_prediction.h"
 
@@ -32,6 +33,12 @@ struct TrackerOptions {
   double max_ok_sd_m = 0.003;                      ///< nor is what was seen (one tag, two poses)
   double acceleration_noise_m_s2 = 1.0;            ///< how fast a prediction's covariance grows
   double gamma_guess = 2.2, gamma_guess_sd = 0.4;  ///< where the camera's is not known
+  /// The shaft before the cameras, where its outline is to be used: beside tags that leave its
+  /// direction less certain than `outline_from_rad`, and to carry a prediction on while they hide.
+  std::optional<TubeShape> tube;
+  ContourOptions outline;
+  double outline_from_rad = 0.0008;
+  TimeNs max_outline_ns = 2'000'000'000;  ///< so long the outline alone may carry a prediction
   double print_offset_sd_m = 3e-5;  ///< how well the tags' places along their normals are known
 };
 
@@ -49,6 +56,7 @@ struct TipTrack {
   double rms_px = 0.0;                      ///< corner distance of the fit, where kCorners
   double noise_grey = 0.0;                  ///< of a pixel about the fit, where kPixels
   int tags_used = 0;                        ///< in all cameras
+  bool outline_used = false;  ///< the shaft\'s outline is in the pose
   bool ambiguous = false;                   ///< another pose fits nearly as well
   std::optional<Pose> alternative_T_RE;     ///< that pose, or a clearly worse one
   double direction_noise_rad = 0.0;         ///< of d_RE, per axis across it, where kOk

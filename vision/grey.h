@@ -1,0 +1,21 @@
+// Grey values of colour pixels, everywhere the same.
+#pragma once
+
+#include <cstdint>
+
+#include "core/image.h"
+
+namespace flextip {
+
+/// Of blue, green, red, with the weights of Rec. 601.
+inline std::uint8_t GreyOf(const std::uint8_t* bgr) {
+  return static_cast<std::uint8_t>((bgr[0] * 1868 + bgr[1] * 9617 + bgr[2] * 4899 + 8192) >> 14);
+}
+
+/// Not rounded for colour images.
+inline float GreyAt(const Image& image, int x, int y) {
+  const std::uint8_t* at = image.Row(y) + static_cast<std::ptrdiff_t>(x) * image.channels;
+  return image.channels == 1 ? at[0] : 0.114f * at[0] + 0.587f * at[1] + 0.299f * at[2];
+}
+
+}  // namespace flextip

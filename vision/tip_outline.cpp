@@ -1,0 +1,122 @@
+#include "vision/tip_outline.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vision/grey.h"
+#include "vision/reprojection.h"
+
+namespace flextip {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+constexpr int kJoinSearch_px = 4, kJoinSteps = 2;
+constexpr double kMargin_px = 45.0;
+constexpr double kBlurChange = 0.15;  // of the blur, from which on it is worth a new edge model
+constexpr int kLeastPoints = 12;
+
+Matrix6 Turn(const Eigen::Matrix3d& R) {
+  Matrix6 Q = Matrix6::Zero();
+  Q.topLeftCorner<3, 3>() = Q.bottomRightCorner<3, 3>() = R;
+  return Q;
+}
+
+ContourOptions WithBlur(ContourOptions options, double blur_px) {
+  options.blur_px = blur_px;
+  return options;
+}
+
+}  // namespace
+
+TipOutline::TipOutline(const std::vector<CameraCalibration>& cameras, const TubeShape& tube,
+                       const ContourOptions& options)
+    : tube_(tube), options_(options) {
+  for (const CameraCalibration& c : cameras) {
+    const CameraModel camera(c);
+    views_.push_back({camera, options.blur_px, ShaftContour(camera, tube, options),
+                      Image(c.width_px, c.height_px, 1)});
+  }
+}
+
+void TipOutline::SetBlur(std::size_t camera, double blur_px) {
+  View& view = views_.at(camera);
+  blur_px = std::clamp(blur_px, 0.3, 4.0);
+  if (std::abs(blur_px - view.blur_px) < kBlurChange * view.blur_px) return;
+  view.blur_px = blur_px;
+  view.contour = ShaftContour(view.camera, tube_, WithBlur(options_, blur_px));
+}
+
+// Grey values where the outline may be looked for.
+const Image& TipOutline::GreyAround(View& view, const Image& image, const Pose& T_CE) const {
+  if (image.channels == 1) return image;
+  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  for (const ContourPoint& p : TubeContour(view.camera, tube_, T_CE, {0, 0}, 8, 4)) {
+    low = low.cwiseMin(p.px);
+    high = high.cwiseMax(p.px);
+  }
+  const double right = image.width_px - 1.0, bottom = image.height_px - 1.0;
+  const int x0 = static_cast<int>(std::clamp(low.x() - kMargin_px, 0.0, right));
+  const int x1 = static_cast<int>(std::clamp(high.x() + kMargin_px, 0.0, right));
+  const int y0 = static_cast<int>(std::clamp(low.y() - kMargin_px, 0.0, bottom));
+  const int y1 = static_cast<int>(std::clamp(high.y() + kMargin_px, 0.0, bottom));
+  for (int y = y0; y <= y1; ++y) {
+    const std::uint8_t* from = image.Row(y) + 3 * static_cast<std::ptrdiff_t>(x0);
+    std::uint8_t* to = view.grey.Row(y) + x0;
+    for (int x = x0; x <= x1; ++x, from += 3) *to++ = GreyOf(from);
+  }
+  return view.grey;
+}
+
+TipPrediction TipOutline::Join(const std::vector<const Image*>& images, const TipPrediction& seen) {
+  const Matrix6 information = seen.covariance.ldlt().solve(Matrix6::Identity());
+  TipPrediction joined = seen;
+  std::vector<Eigen::Vector2d> bends(views_.size(), options_.bend_mean);
+  for (int i = 0; i < kJoinSteps; ++i) {
+    Matrix6 A = information;
+    Vector6 b = -information * PoseDifference(seen.T_RE, joined.T_RE);
+    std::vector<ContourTerm> terms(views_.size());
+    for (std::size_t k = 0; k < views_.size(); ++k) {
+      if (images[k] == nullptr) continue;
+      const Pose& T_RC = views_[k].camera.Calibration().T_RC;
+      const Pose T_CE = T_RC.Inverse() * joined.T_RE;
+      const Image& grey = GreyAround(views_[k], *images[k], T_CE);
+      terms[k] = views_[k].contour.Linearise(grey, T_CE, bends[k], kJoinSearch_px);
+      if (terms[k].points < kLeastPoints || terms[k].rms_px > options_.most_rms_px) {
+        terms[k] = ContourTerm();
+        continue;
+      }
+      const Matrix6 Q = Turn(T_RC.R);
+      A += Q * terms[k].JtJ * Q.transpose();
+      b -= Q * terms[k].Jtr;
+    }
+    const Vector6 step = A.ldlt().solve(b);
+    if (!step.allFinite()) return seen;
+    joined.T_RE = MovePose(joined.T_RE, step);
+    joined.covariance = A.ldlt().solve(Matrix6::Identity());
+    for (std::size_t k = 0; k < views_.size(); ++k) {
+      const Eigen::Matrix3d R_CR = views_[k].camera.Calibration().T_RC.R.transpose();
+      bends[k] += terms[k].bend_step + terms[k].bend_by_pose * (Turn(R_CR) * step);
+    }
+  }
+  return joined;
+}
+
+std::optional<TipPrediction> TipOutline::Find(const std::vector<const Image*>& images,
+                                              const TipPrediction& expected) {
+  for (std::size_t k = 0; k < views_.size(); ++k) {
+    if (images[k] == nullptr) continue;
+    const Pose& T_RC = views_[k].camera.Calibration().T_RC;
+    const Pose T_CE = T_RC.Inverse() * expected.T_RE;
+    const Matrix6 Q = Turn(T_RC.R);
+    const Image& grey = GreyAround(views_[k], *images[k], T_CE);
+    const ContourFit fit =
+        views_[k].contour.Fit(grey, T_CE, Q.transpose() * expected.covariance * Q);
+    if (!fit.IsUsable()) continue;
+    return TipPrediction{T_RC * fit.T_CE, Q * fit.covariance * Q.transpose()};
+  }
+  return {};
+}
+
+}  // namespace flextip

@@ -1,0 +1,45 @@
+// The shaft's outline beside the tags: in one adjustment with them, or alone while they are
+// covered.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "vision/shaft_contour.h"
+#include "vision/tip_prediction.h"
+
+namespace flextip {
+
+class TipOutline {
+ public:
+  /// Throws InputError as ShaftContour does.
+  TipOutline(const std::vector<CameraCalibration>& cameras, const TubeShape& tube,
+             const ContourOptions& options);
+
+  /// The blur of a camera's pictures (px), as the tags show it.
+  void SetBlur(std::size_t camera, double blur_px);
+
+  /// `seen` and the outlines in the pictures, each with its covariance: a Gauss-Newton step on all
+  /// of them from `seen`, and one more. Unchanged where no outline is found.
+  TipPrediction Join(const std::vector<const Image*>& images, const TipPrediction& seen);
+
+  /// The pose by the outline in the first camera that shows it, `expected` being the prior; empty
+  /// where it cannot be told.
+  std::optional<TipPrediction> Find(const std::vector<const Image*>& images,
+                                    const TipPrediction& expected);
+
+ private:
+  struct View {
+    CameraModel camera;
+    double blur_px;
+    ShaftContour contour;
+    Image grey;  // right only around the outline
+  };
+  const Image& GreyAround(View& view, const Image& image, const Pose& T_CE) const;
+
+  TubeShape tube_;
+  ContourOptions options_;
+  std::vector<View> views_;
+};
+
+}  // namespace flextip
