@@ -13,9 +13,19 @@ constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
 constexpr float kReachOfUnknown = 3.2f;      // sigmas kept from what is not known
 constexpr float kFlatPart = 0.02f;           // whiteness nearer to 0 or 1 than this says nothing
 constexpr float kSaturated_grey = 252.0f;
+constexpr double kMaxBlur_cells = 1.6;
 constexpr int kFewestPixels = 30;
 constexpr int kFlatEvery = 7;             // of flat pixels so many are left out for one taken
 constexpr double kHiddenRim_cells = 0.5;  // of a tag's rim that a neighbour may hide
+
+PatternBlur HalfDifference(const PatternBlur& a, const PatternBlur& b) {
+  PatternBlur d;
+  d.sigma_u = 0.5f * (b.sigma_u - a.sigma_u);
+  d.sigma_v = 0.5f * (b.sigma_v - a.sigma_v);
+  d.inverse_u = 0.5f * (b.inverse_u - a.inverse_u);
+  d.inverse_v = 0.5f * (b.inverse_v - a.inverse_v);
+  return d;
+}
 
 }  // namespace
 
@@ -24,7 +34,9 @@ struct PhotometricFace::Geometry {
   Eigen::Matrix3f to_tag;
   Eigen::Matrix2f uv_of_px;  // derivative at the tag's centre
   Eigen::Vector3f normal;    // into the tag
-  PatternBlur blur;
+  PatternBlur blur;          // at the centre
+  PatternBlur by_u, by_v;    // its change by half a pattern
+  float half = 0;
   bool valid = false;
 
   struct Place {
@@ -35,6 +47,17 @@ struct PhotometricFace::Geometry {
     const float z = 1 / w;
     return {(to_tag(0, 0) * mx + to_tag(0, 1) * my + to_tag(0, 2)) * z,
             (to_tag(1, 0) * mx + to_tag(1, 1) * my + to_tag(1, 2)) * z, z};
+  }
+  // The nearer side of a tag is seen larger, and so less blurred in cells.
+  PatternBlur BlurAt(const Place& at) const {
+    const float fu = at.u / half - 1, fv = at.v / half - 1;
+    PatternBlur b;
+    b.sigma_u = blur.sigma_u + fu * by_u.sigma_u + fv * by_v.sigma_u;
+    b.sigma_v = blur.sigma_v + fu * by_u.sigma_v + fv * by_v.sigma_v;
+    b.inverse_u = blur.inverse_u + fu * by_u.inverse_u + fv * by_v.inverse_u;
+    b.inverse_v = blur.inverse_v + fu * by_u.inverse_v + fv * by_v.inverse_v;
+    b.rho = blur.rho;
+    return b;
   }
 };
 
@@ -70,8 +93,6 @@ PhotometricFace::Geometry PhotometricFace::Place(const CameraModel& camera, cons
   Geometry g;
   Pose T_CG = T_CE * tag_.T_EG;
   T_CG.p -= optics.print_offset_m * T_CG.R.col(2);
-  Eigen::Matrix<double, 2, 3> J;
-  if (!camera.Project(T_CG.p, &J)) return g;
   const double half = 0.5 * pattern_.Cells();
   Eigen::Matrix3d from_tag;
   from_tag << cell_m_ * T_CG.R.col(0), cell_m_ * T_CG.R.col(1),
@@ -79,19 +100,35 @@ PhotometricFace::Geometry PhotometricFace::Place(const CameraModel& camera, cons
   const Eigen::Matrix3d to_tag = from_tag.inverse();
   if (!to_tag.allFinite()) return g;
   g.to_tag = to_tag.cast<float>();
-  const double z = T_CG.p.z();
-  Eigen::Matrix2d uv_of_m = z * (to_tag.topLeftCorner<2, 2>() -
-                                 Eigen::Vector2d(half, half) * to_tag.bottomLeftCorner<1, 2>());
-  const Eigen::Matrix2d uv_of_px = uv_of_m * (z * J.leftCols<2>()).inverse();
+  g.normal = T_CG.R.col(2).cast<float>();
+  g.half = static_cast<float>(half);
+
   Eigen::Matrix2d spread_px;
   spread_px << optics.blur_px2[0] + kPixelVariance, optics.blur_px2[1], optics.blur_px2[1],
       optics.blur_px2[2] + kPixelVariance;
-  const Eigen::Matrix2d spread = uv_of_px * spread_px * uv_of_px.transpose();
-  const double su = std::sqrt(spread(0, 0)), sv = std::sqrt(spread(1, 1));
-  g.normal = T_CG.R.col(2).cast<float>();
-  g.uv_of_px = uv_of_px.cast<float>();
-  g.blur = {su, sv, std::clamp(spread(0, 1) / (su * sv), -0.75, 0.75)};
-  g.valid = std::isfinite(su) && std::isfinite(sv) && su < 1.6 && sv < 1.6;
+  // The blur on the tag, and the derivative of places on it by pixels, at (u, v) in halves from
+  // the centre.
+  const auto blur_at = [&](double fu, double fv, Eigen::Matrix2f* uv_of_px) -> std::optional<PatternBlur> {
+    const Eigen::Vector2d uv(half * (1 + fu), half * (1 + fv));
+    const Eigen::Vector3d x_C = from_tag * Eigen::Vector3d(uv.x(), uv.y(), 1);
+    Eigen::Matrix<double, 2, 3> J;
+    if (!camera.Project(x_C, &J)) return {};
+    const Eigen::Matrix2d by_px = (to_tag.topLeftCorner<2, 2>() - uv * to_tag.bottomLeftCorner<1, 2>()) *
+                                  J.leftCols<2>().inverse();
+    const Eigen::Matrix2d spread = by_px * spread_px * by_px.transpose();
+    const double su = std::sqrt(spread(0, 0)), sv = std::sqrt(spread(1, 1));
+    if (!(su < kMaxBlur_cells && sv < kMaxBlur_cells)) return {};
+    if (uv_of_px) *uv_of_px = by_px.cast<float>();
+    return PatternBlur(su, sv, std::clamp(spread(0, 1) / (su * sv), -0.75, 0.75));
+  };
+  const auto centre = blur_at(0, 0, &g.uv_of_px);
+  const auto u0 = blur_at(-1, 0, nullptr), u1 = blur_at(1, 0, nullptr);
+  const auto v0 = blur_at(0, -1, nullptr), v1 = blur_at(0, 1, nullptr);
+  if (!centre || !u0 || !u1 || !v0 || !v1) return g;
+  g.blur = *centre;
+  g.by_u = HalfDifference(*u0, *u1);
+  g.by_v = HalfDifference(*v0, *v1);
+  g.valid = true;
   return g;
 }
 
@@ -134,7 +171,7 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
       const bool within =
           at.u > limits[0] && at.u < limits[1] && at.v > limits[2] && at.v < limits[3];
       if (!within || !pattern_.Known(at.u, at.v, reach_u, reach_v)) continue;
-      const PatternValue value = pattern_.At(at.u, at.v, g.blur);
+      const PatternValue value = pattern_.At(at.u, at.v, g.BlurAt(at));
       const float part = std::min(value.c, 1 - value.c);
       if ((value.flat || part < kFlatPart) && flat++ % kFlatEvery != 0) continue;
       pixels_.push_back({ray.x, ray.y, GreyAt(image, x, y)});
@@ -150,7 +187,7 @@ bool PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE, c
   double n = 0, c1 = 0, c2 = 0, l1 = 0, cl = 0;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
-    const double c = pattern_.At(at.u, at.v, g.blur).c, light = tone.Light(pixel.grey);
+    const double c = pattern_.At(at.u, at.v, g.BlurAt(at)).c, light = tone.Light(pixel.grey);
     n += 1, c1 += c, c2 += c * c, l1 += light, cl += c * light;
   }
   const double spread = c2 - c1 * c1 / n;
@@ -210,7 +247,7 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
   Row row;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
-    const PatternValue p = pattern_.At(at.u, at.v, g.blur);
+    const PatternValue p = pattern_.At(at.u, at.v, g.BlurAt(at));
     light.At(at.u, at.v);
     const float contrast = light.white - light.black;
     const ToneCurve::Value film = tone.At(light.black + p.c * contrast);

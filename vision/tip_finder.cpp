@@ -169,11 +169,7 @@ Sight TipFinder::FindNear(const Images& images, const Pose& T_RE, double radius_
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (images[i] != nullptr) tags[i] = DetectNear(*images[i], i, T_RE, radius_px);
   }
-  Sight sight = BestOf(tags, T_RE);
-  if (!sight.Found() || !options_.photometric_fit) return sight;
-  sight = Refined(images, sight);
-  CheckOtherPlanarPose(images, T_RE, sight);
-  return sight;
+  return Acquired(images, BestOf(tags, T_RE), T_RE);
 }
 
 std::vector<TagDetection> TipFinder::DetectNear(const Image& image, std::size_t camera,
@@ -209,11 +205,7 @@ Sight TipFinder::FindAnywhere(const Images& images, const std::optional<Pose>& n
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (images[i] != nullptr) tags[i] = detector_.Detect(*images[i], thorough ? 1.0 : 2.0);
   }
-  Sight sight = BestOf(tags, near_T_RE);
-  if (!sight.Found() || !options_.photometric_fit) return sight;
-  sight = Refined(images, sight);
-  CheckOtherPlanarPose(images, near_T_RE, sight);
-  return sight;
+  return Acquired(images, BestOf(tags, near_T_RE), near_T_RE);
 }
 
 // The camera that knows best decides.
@@ -270,6 +262,21 @@ Sight TipFinder::FromTags(const std::vector<TagDetection>& tags,
   sight.ambiguous = pose.ambiguous;
   if (pose.alternative) sight.alternative_T_RE = T_RC * *pose.alternative;
   return sight;
+}
+
+// A pose from corners as its pixels confirm it. From one plane alone, with other tags not seen that
+// should be, it could be the other planar pose: then only one that was expected counts.
+Sight TipFinder::Acquired(const Images& images, const Sight& corners,
+                          const std::optional<Pose>& near_T_RE) {
+  if (!corners.Found() || !options_.photometric_fit) return corners;
+  Sight sight = Refined(images, corners);
+  CheckOtherPlanarPose(images, near_T_RE, sight);
+  const bool complete = sight.pixels.faces >= sight.pixels.faces_in_view;
+  if (sight.source != TrackSource::kPixels || complete || !sight.pixels.one_plane) return sight;
+  if (near_T_RE && IsTrusted(sight, *near_T_RE)) return sight;
+  Sight nothing;
+  nothing.tags = sight.tags;
+  return nothing;
 }
 
 // What the corners say, made better by the pixels where those agree.

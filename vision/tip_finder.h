@@ -55,6 +55,7 @@ class TipFinder {
  private:
   Sight FitPixels(const Images& images, const Pose& T_RE);
   bool IsTrusted(const Sight& sight, const Pose& expected_T_RE) const;
+  Sight Acquired(const Images& images, const Sight& corners, const std::optional<Pose>& near_T_RE);
   Sight Refined(const Images& images, const Sight& corners);
   void CheckOtherPlanarPose(const Images& images, const std::optional<Pose>& near_T_RE,
                             Sight& sight);

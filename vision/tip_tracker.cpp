@@ -53,6 +53,10 @@ double MaxSd(const Eigen::Matrix3d& covariance) {
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
 }
 
+double PositionSd(const TipPrediction& prediction) {
+  return MaxSd(prediction.covariance.bottomRightCorner<3, 3>());
+}
+
 }  // namespace
 
 struct TipTracker::Impl {
@@ -94,6 +98,8 @@ struct TipTracker::Impl {
   Sight FindFromTags(const std::vector<TagDetection>& tags);
   TipTrack Finish(const Sight& sight, TimeNs t_ns, const std::optional<TipPrediction>& expected,
                   bool has_model, const Images& images);
+  void Carry(const Images& images, const Sight& sight, TimeNs t_ns,
+             const std::optional<TipPrediction>& expected, bool has_model, TipTrack& track);
   void Remember(const Sight& sight, TimeNs t_ns);
   void Report(const Sight& sight, TipTrack& track) const;
 };
@@ -188,9 +194,7 @@ std::optional<TipPrediction> TipTracker::Impl::FollowOutline(const Images& image
                                                              const TipPrediction& expected) {
   if (!outline || images.empty() || t_ns - last_seen_ns > options.max_outline_ns) return {};
   auto found = outline->Find(images, expected);
-  if (!found || MaxSd(found->covariance.bottomRightCorner<3, 3>()) > options.max_predicted_sd_m) {
-    return {};
-  }
+  if (!found || PositionSd(*found) > options.max_predicted_sd_m) return {};
   filter.Measure(t_ns, found->T_RE.p, found->covariance.bottomRightCorner<3, 3>());
   last_T_RE = found->T_RE;
   last_ns = t_ns;
@@ -248,18 +252,30 @@ TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
     Remember(sight, t_ns);
     return track;
   }
-  if (!expected) return track;
-  const auto followed = FollowOutline(images, t_ns, *expected);
-  const TipPrediction& prediction = followed ? *followed : *expected;
-  const bool patient = followed || has_model || predicted_frames < options.max_predicted_frames;
-  const Eigen::Matrix3d covariance = prediction.covariance.bottomRightCorner<3, 3>();
-  if (!patient || MaxSd(covariance) > options.max_predicted_sd_m) return track;
-  if (!followed) ++predicted_frames;
-  track.outline_used = followed.has_value();
-  track.tip.status = TipStatus::kPredicted;
-  track.tip.p_RE = prediction.T_RE.p;
-  track.tip.covariance_m2 = covariance;
+  Carry(images, sight, t_ns, expected, has_model, track);
   return track;
+}
+
+// The tags were not seen, or not well: the best of what they say, the outline and the expectation.
+void TipTracker::Impl::Carry(const Images& images, const Sight& sight, TimeNs t_ns,
+                             const std::optional<TipPrediction>& expected, bool has_model,
+                             TipTrack& track) {
+  std::optional<TipPrediction> best = expected;
+  bool measured = false;
+  const auto consider = [&](const std::optional<TipPrediction>& other) {
+    if (!other || (best && PositionSd(*best) < PositionSd(*other))) return;
+    best = other;
+    measured = true;
+  };
+  if (sight.Found()) consider(TipPrediction{sight.T_RE, sight.covariance});
+  if (expected) consider(FollowOutline(images, t_ns, *expected));
+  const bool patient = measured || has_model || predicted_frames < options.max_predicted_frames;
+  if (!best || !patient || PositionSd(*best) > options.max_predicted_sd_m) return;
+  if (!measured) ++predicted_frames;
+  track.outline_used = measured && !sight.Found();
+  track.tip.status = TipStatus::kPredicted;
+  track.tip.p_RE = best->T_RE.p;
+  track.tip.covariance_m2 = best->covariance.bottomRightCorner<3, 3>();
 }
 
 TipTracker::TipTracker(const CameraCalibration& camera, const TagCollar& collar,
