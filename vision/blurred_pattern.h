@@ -30,7 +30,7 @@ struct PatternValue {
 
 /// The mean of the pattern under a bivariate normal distribution, exact but for the tails beyond
 /// 3.5 sigma and the correlation, which enters by the tetrachoric series to its third power (right
-/// to 0.002 for |rho| < 0.6); derivatives leave the correlation out.
+/// to 0.0015 for |rho| < 0.4, to 0.006 at 0.6); derivatives leave the correlation out.
 class BlurredPattern {
  public:
   explicit BlurredPattern(const TagCells& tag);

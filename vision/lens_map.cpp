@@ -6,7 +6,7 @@
 namespace flextip {
 namespace {
 
-constexpr int kNodeStep_px = 8;
+constexpr int kNodeStep_px = 6;
 
 // Cubic interpolation through four nodes at -1, 0, 1, 2 (Lagrange).
 std::array<double, 4> Weights(double t) {

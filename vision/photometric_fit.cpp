@@ -91,11 +91,14 @@ struct PhotometricFit::Impl {
     return sums;
   }
 
-  void Step(const Vector6& step_R) {
+  // False where a picture's blur is not settled yet.
+  bool Step(const Vector6& step_R) {
+    bool settled = true;
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (!present[i] || views[i].Faces() == 0) continue;
-      views[i].Step(Turn(cameras[i]->T_CR.R).eval() * step_R);
+      settled = views[i].Step(Turn(cameras[i]->T_CR.R).eval() * step_R) && settled;
     }
+    return settled;
   }
 
   // How far the collar moves in the pictures when E goes from one pose to the other (px).
@@ -125,9 +128,10 @@ struct PhotometricFit::Impl {
       const Pose moved = MovePose(T_RE, step);
       const double moved_px = Moved_px(T_RE, moved);
       T_RE = moved;
-      Step(step);
+      const bool settled = Step(step);
       last_size = size;
-      if (moved_px < small_px || (redescending && size < kLastStep)) return true;
+      const bool small = moved_px < small_px || (redescending && size < kLastStep);
+      if (small && (settled || !redescending)) return true;
     }
     return last_size < kGoodStep;
   }

@@ -15,6 +15,7 @@ constexpr double kWellSeen = 0.45;  // cosine of 63 degrees
 constexpr double kAslant = 0.3;     // cosine of 73 degrees
 constexpr double kMaxExtraBlur_cells = 0.3;
 constexpr double kNoiseGrowth = 1.005;             // from one picture to the next
+constexpr double kSettled = 0.1;                   // of the blur, in one step
 constexpr double kBlurChange = 0.4;                // of the blur, from one picture to the next
 constexpr double kKnown = 1e-6, kKnown_m = 1e-10;  // standard deviations of what is not fitted
 
@@ -228,7 +229,7 @@ PoseTerm PhotometricView::EliminateOptics(Matrix11 A, Vector11 b) {
   return term;
 }
 
-void PhotometricView::Step(const Eigen::Matrix<double, 6, 1>& step) {
+bool PhotometricView::Step(const Eigen::Matrix<double, 6, 1>& step) {
   Vector11 rest;
   rest.head<6>() = to_pivot_ * step;
   rest.tail<5>() = optics_elimination_.constant - optics_elimination_.by_rest * rest.head<6>();
@@ -238,6 +239,8 @@ void PhotometricView::Step(const Eigen::Matrix<double, 6, 1>& step) {
   const double xx = std::clamp(moved[0], kMinBlur_px2, kMaxBlur_px2);
   const double yy = std::clamp(moved[2], kMinBlur_px2, kMaxBlur_px2);
   const double most = 0.95 * std::sqrt(xx * yy);
+  const double changed = std::abs(xx - optics_.blur_px2[0]) + std::abs(yy - optics_.blur_px2[2]);
+  const bool settled = changed < kSettled * (xx + yy);
   optics_.blur_px2 = {xx, std::clamp(moved[1], -most, most), yy};
   if (prior_.gamma_sd > 0) {
     optics_.gamma = std::clamp(optics_.gamma + rest[9], 0.7, 3.5);
@@ -247,6 +250,7 @@ void PhotometricView::Step(const Eigen::Matrix<double, 6, 1>& step) {
   for (SeenFace& s : seen_) {
     if (s.active) faces_[s.face].levels += s.levels.constant - s.levels.by_rest * rest;
   }
+  return settled;
 }
 
 OpticsPrior PhotometricView::Learned(const Eigen::Matrix<double, 6, 6>& covariance) const {

@@ -63,8 +63,9 @@ class PhotometricView {
 
   /// The sums at T_CE under the scale of residuals known so far.
   PoseTerm Linearise(const Pose& T_CE, bool redescending);
-  /// Moves light, blur and gamma with the pose's step (the last Linearise's).
-  void Step(const Eigen::Matrix<double, 6, 1>& step);
+  /// Moves light, blur and gamma with the pose's step (the last Linearise's). False where the blur
+  /// still changed by more than a tenth.
+  bool Step(const Eigen::Matrix<double, 6, 1>& step);
 
   /// The optics as fitted, as a prior for the next picture: what stays from picture to picture with
   /// the standard deviation it is known to now. `covariance`: of the pose (dw, dp) in C.

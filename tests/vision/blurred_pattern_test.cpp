@@ -1,0 +1,170 @@
+// The blurred pattern against integration of the cells under the normal distribution.
+#include "vision/blurred_pattern.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/derivative_check.h"
+
+namespace flextip {
+namespace {
+
+double Cdf(double x) { return 0.5 * std::erfc(-x * M_SQRT1_2); }
+
+// Beyond the tag its outermost cells go on.
+bool IsWhite(const TagCells& tag, int column, int row) {
+  return tag.At(std::clamp(column, 0, tag.cells - 1), std::clamp(row, 0, tag.cells - 1)) ==
+         TagCells::kWhite;
+}
+
+// The mean of the pattern: along u by the midpoint rule within each column, along v, given u,
+// exactly.
+double Mean(const TagCells& tag, double u, double v, double su, double sv, double rho) {
+  constexpr double kTail = 6.5, kStep = 0.02;
+  const double s = sv * std::sqrt(1 - rho * rho);
+  double sum = 0;
+  for (int column = -8; column < tag.cells + 8; ++column) {
+    const double from = std::max(-kTail, (column - u) / su);
+    const double to = std::min(kTail, (column + 1 - u) / su);
+    const int steps = static_cast<int>(std::ceil((to - from) / kStep));
+    for (int i = 0; i < steps; ++i) {
+      const double x = from + (i + 0.5) * (to - from) / steps, centre = v + rho * sv * x;
+      double white = 0;
+      for (int row = -8; row < tag.cells + 8; ++row) {
+        if (!IsWhite(tag, column, row)) continue;
+        white += Cdf((row + 1 - centre) / s) - Cdf((row - centre) / s);
+      }
+      sum += std::exp(-0.5 * x * x) / std::sqrt(2 * M_PI) * white * (to - from) / steps;
+    }
+  }
+  return sum;
+}
+
+// Without correlation the sum over cells is exact.
+double MeanUncorrelated(const TagCells& tag, double u, double v, double su, double sv) {
+  double sum = 0;
+  for (int column = -8; column < tag.cells + 8; ++column) {
+    for (int row = -8; row < tag.cells + 8; ++row) {
+      if (!IsWhite(tag, column, row)) continue;
+      sum += (Cdf((column + 1 - u) / su) - Cdf((column - u) / su)) *
+             (Cdf((row + 1 - v) / sv) - Cdf((row - v) / sv));
+    }
+  }
+  return sum;
+}
+
+struct Draw {
+  double u, v, su, sv;
+};
+std::vector<Draw> Draws(unsigned seed, int count, int cells) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> place(0, cells), sigma(0.1, 0.8);
+  std::vector<Draw> draws;
+  for (int i = 0; i < count; ++i) {
+    draws.push_back({place(random), place(random), sigma(random), sigma(random)});
+  }
+  return draws;
+}
+
+PatternValue At(const BlurredPattern& pattern, const Draw& d, double rho) {
+  return pattern.At(static_cast<float>(d.u), static_cast<float>(d.v), {d.su, d.sv, rho});
+}
+
+TEST(BlurredPattern, IsTheMeanOfTheCells) {
+  for (const char* family : {"tag36h11", "tagStandard41h12"}) {
+    const TagCells tag = ReadTagCells(family, 5);
+    const BlurredPattern pattern(tag);
+    EXPECT_EQ(pattern.Cells(), tag.cells);
+    for (const Draw& d : Draws(1, 2000, tag.cells)) {
+      // Beyond 3.5 sigma lie 4.65e-4 of the distribution of each axis.
+      EXPECT_NEAR(At(pattern, d, 0).c, MeanUncorrelated(tag, d.u, d.v, d.su, d.sv), 9.3e-4)
+          << d.u << " " << d.v << " " << d.su << " " << d.sv;
+    }
+  }
+}
+
+TEST(BlurredPattern, KnowsTheCorrelation) {
+  const TagCells tag = ReadTagCells("tag36h11", 5);
+  const BlurredPattern pattern(tag);
+  for (const double rho : {-0.6, -0.4, 0.2, 0.4, 0.6}) {
+    double worst = 0, without = 0;
+    for (const Draw& d : Draws(2, 60, tag.cells)) {
+      const double mean = Mean(tag, d.u, d.v, d.su, d.sv, rho);
+      worst = std::max(worst, std::abs(At(pattern, d, rho).c - mean));
+      without = std::max(without, std::abs(At(pattern, d, 0).c - mean));
+    }
+    EXPECT_LT(worst, std::abs(rho) > 0.45 ? 0.006 : 0.0015) << rho;
+    EXPECT_GT(without, 5 * worst) << rho;  // so much does it do
+  }
+}
+
+// Times sigma (squared), so that all are of order 1; the tails leave 0.001 (0.003).
+TEST(BlurredPattern, DerivativesAreThoseOfTheMean) {
+  const TagCells tag = ReadTagCells("tag36h11", 9);
+  const BlurredPattern pattern(tag);
+  for (const Draw& d : Draws(3, 120, tag.cells)) {
+    const auto mean = [&](const Eigen::VectorXd& x) {
+      return Eigen::VectorXd::Constant(1, MeanUncorrelated(tag, x[0], x[1], d.su, d.sv));
+    };
+    const auto gradient = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+      return NumericJacobian(mean, x, 0.005).transpose();
+    };
+    const Eigen::Vector2d at(d.u, d.v), s(d.su, d.sv);
+    const Eigen::Vector2d g = gradient(at).cwiseProduct(s);
+    const Eigen::Matrix2d H =
+        s.asDiagonal() * NumericJacobian(gradient, at, 0.005) * s.asDiagonal();
+    const PatternValue p = At(pattern, d, 0);
+    EXPECT_NEAR(p.c_u * d.su, g[0], 2e-3);
+    EXPECT_NEAR(p.c_v * d.sv, g[1], 2e-3);
+    EXPECT_NEAR(p.c_uu * d.su * d.su, H(0, 0), 6e-3);
+    EXPECT_NEAR(p.c_uv * d.su * d.sv, H(0, 1), 2e-3);
+    EXPECT_NEAR(p.c_vv * d.sv * d.sv, H(1, 1), 6e-3);
+    EXPECT_TRUE(!p.flat || g.norm() + H.norm() < 0.02);
+  }
+}
+
+TEST(BlurredPattern, WhereItIsKnown) {
+  for (const char* family : {"tag36h11", "tagCircle21h7"}) {
+    const TagCells tag = ReadTagCells(family, 0);
+    const BlurredPattern pattern(tag);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> place(-2, tag.cells + 2), reach(0.05, 1.5);
+    int known = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const double u = place(random), v = place(random), ru = reach(random), rv = reach(random);
+      bool all = true;
+      for (int a = -40; a <= 40 && all; ++a) {
+        for (int b = -40; b <= 40 && all; ++b) {
+          all = tag.At(static_cast<int>(std::floor(u + ru * a / 40)),
+                       static_cast<int>(std::floor(v + rv * b / 40))) != TagCells::kUnknown;
+        }
+      }
+      const bool says = pattern.Known(static_cast<float>(u), static_cast<float>(v),
+                                      static_cast<float>(ru), static_cast<float>(rv));
+      EXPECT_EQ(says, all) << u << " " << v << " " << ru << " " << rv;
+      known += says;
+    }
+    EXPECT_GT(known, 200) << family;
+  }
+}
+
+// Far from the tag and with a wide blur: values between black and white, no reading beside it.
+TEST(BlurredPattern, StaysWithinBoundsFarAway) {
+  const TagCells tag = ReadTagCells("tag36h11", 0);
+  const BlurredPattern pattern(tag);
+  for (const float u : {-1e4f, -20.0f, -5.0f, 4.0f, 18.0f, 1e4f}) {
+    for (const float v : {-1e4f, -9.0f, 3.5f, 25.0f, 1e4f}) {
+      for (const double sigma : {0.1, 1.6}) {
+        const PatternValue p = pattern.At(u, v, {sigma, sigma, 0.7});
+        EXPECT_GE(p.c, -0.01f);
+        EXPECT_LE(p.c, 1.01f);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flextip

@@ -1,0 +1,43 @@
+// Small rendered scenes for the tests of the photometric fit and the tracker.
+#pragma once
+
+#include <vector>
+
+#include "core/camera.h"
+#include "core/tag_collar.h"
+#include "simulation/laparoscope.h"
+
+namespace flextip {
+
+/// 320x240 pixels of 600 px focal length, some distortion, gamma 2.2, not in R's origin.
+CameraCalibration ScopeCamera();
+
+/// A second one beside it, turned toward the same place.
+CameraCalibration SecondScopeCamera();
+
+/// Six tags of 5 mm, `behind_tip_m` to their middle; `outward_m` moves all along their normals.
+TagCollar ScopeCollar(double outward_m = 0, int first_id = 0);
+
+/// T_RE of a shaft seen by ScopeCamera from the right, its collar near the middle of the picture at
+/// 0.1 m, leaning away by `lean` and rolled about its axis (at 0 one tag looks to the camera).
+Pose ScopePose(double lean, double roll, const Eigen::Vector3d& offset_C = Eigen::Vector3d::Zero());
+
+/// Tissue behind, grey.
+LaparoscopeOptions ScopeOptions(const CameraCalibration& camera);
+
+/// A slightly bent shaft that ends at T_RE.
+ShaftCurve ScopeShaft(const Pose& T_RE);
+
+/// Linear light of a frame as a lens gives it that blurs before the pixels take their means: drawn
+/// three times as large, blurred, and averaged. (The renderer blurs after the pixels, in steps of
+/// a pixel, which leaves 1.5 grey levels beside a Gaussian at 0.7 px.)
+LinearImage LightThroughLens(const CameraCalibration& camera, const TagCollar& collar,
+                             const Pose& T_RE, double blur_px);
+
+/// Shot and read noise as the renderer's defaults, gamma, 8 bit.
+Image Film(const LinearImage& light, double gamma, unsigned seed);
+
+/// A collar with one tag of another.
+TagCollar OnlyTag(const TagCollar& collar, int id);
+
+}  // namespace flextip
