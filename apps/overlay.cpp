@@ -11,7 +11,8 @@ namespace flextip {
 namespace {
 
 const cv::Scalar kGreen(80, 220, 60), kYellow(40, 220, 240), kOrange(0, 140, 255);
-const cv::Scalar kWhite(255, 255, 255), kBlack(0, 0, 0), kCyan(230, 200, 40);
+const cv::Scalar kWhite(255, 255, 255), kBlack(0, 0, 0), kCyan(255, 230, 0), kDimCyan(140, 125, 20),
+    kRed(70, 70, 255);
 constexpr std::size_t kPicturesOfReport = 6, kPicturesOfOverlay = 24, kEveryOfUnknown = 150;
 constexpr double kAxis_m = 0.01;
 constexpr double kChi2Of99Percent = 9.21;  // two degrees of freedom
@@ -46,20 +47,23 @@ void Quad(cv::Mat& canvas, const TagCorners& corners, const cv::Scalar& color) {
   for (int i = 0; i < 4; ++i) Line(canvas, corners[i], corners[(i + 1) % 4], color);
 }
 
+// Every face's outline; those turned away first, so that the near ones lie over them.
 void DrawCollar(cv::Mat& canvas, const CameraModel& model, const TagCollar& collar,
                 const Pose& T_CE) {
-  for (const CollarTag& tag : collar.tags) {
-    const Pose T_CG = T_CE * tag.T_EG;
-    if (T_CG.R.col(2).dot(T_CG.p) <= 0) continue;  // faces away
-    TagCorners corners;
-    bool seen = true;
-    const auto corners_E = CornersInE(tag);
-    for (int i = 0; i < 4; ++i) {
-      const auto px = model.Project(T_CE * corners_E[i]);
-      seen = seen && px && Near(*px, canvas);
-      if (px) corners[i] = *px;
+  for (const bool away : {true, false}) {
+    for (const CollarTag& tag : collar.tags) {
+      const Pose T_CG = T_CE * tag.T_EG;
+      if ((T_CG.R.col(2).dot(T_CG.p) <= 0) != away) continue;
+      TagCorners corners;
+      bool seen = true;
+      const auto corners_E = CornersInE(tag);
+      for (int i = 0; i < 4; ++i) {
+        const auto px = model.Project(T_CE * corners_E[i]);
+        seen = seen && px && Near(*px, canvas);
+        if (px) corners[i] = *px;
+      }
+      if (seen) Quad(canvas, corners, away ? kDimCyan : kCyan);
     }
-    if (seen) Quad(canvas, corners, kCyan);
   }
 }
 
@@ -74,6 +78,11 @@ void DrawAxes(cv::Mat& canvas, const CameraModel& model, const Pose& T_CE) {
   }
 }
 
+const cv::Scalar& ColorOf(TipStatus status) {
+  if (status == TipStatus::kOk) return kWhite;
+  return status == TipStatus::kPredicted ? kOrange : kRed;
+}
+
 // The covariance seen through the lens: J C J^T.
 void DrawTip(cv::Mat& canvas, const CameraModel& model, const TipObservation& tip) {
   const Pose T_CR = model.Calibration().T_RC.Inverse();
@@ -86,14 +95,20 @@ void DrawTip(cv::Mat& canvas, const CameraModel& model, const TipObservation& ti
   const Eigen::Vector2d half = (kChi2Of99Percent * axes.eigenvalues().cwiseMax(0)).cwiseSqrt();
   const Eigen::Vector2d minor_axis = axes.eigenvectors().col(0);
   const double angle_deg = std::atan2(minor_axis.y(), minor_axis.x()) * 180 / M_PI;
-  const cv::Scalar color = tip.status == TipStatus::kOk ? kWhite : kOrange;
+  const cv::Scalar color = ColorOf(tip.status);
+  const Eigen::Vector2d cross(3, 0), up(0, 3);
+  Line(canvas, *px - cross, *px + cross, color);
+  Line(canvas, *px - up, *px + up, color);
   const auto size = Fine(half.cwiseMin(1000.0).cwiseMax(1.0));
   cv::ellipse(canvas, Fine(*px), cv::Size(size.x, size.y), angle_deg, 0, 360, color, 1, cv::LINE_AA,
               kFractionBits);
 }
 
 std::string Describe(const TipTrack& track) {
-  if (track.tip.status != TipStatus::kOk) return Name(track.tip.status);
+  if (track.tip.status == TipStatus::kLost) return "lost";
+  if (track.tip.status == TipStatus::kPredicted) {
+    return fmt::format("predicted, {:.1f} mm", 1e3 * std::sqrt(track.tip.covariance_m2.trace()));
+  }
   return track.source == TrackSource::kPixels
              ? fmt::format("ok, {} tags, {:.1f} grey levels", track.tags_used, track.noise_grey)
              : fmt::format("ok, {} tags, {:.2f} px", track.tags_used, track.rms_px);
@@ -127,7 +142,7 @@ void DrawTrack(Image& image, const TipTrack& track, const CameraCalibration& cam
     DrawAxes(canvas, model, T_CE);
   }
   if (track.tip.status != TipStatus::kLost) DrawTip(canvas, model, track.tip);
-  DrawLabel(image, Describe(track));
+  Text(canvas, Describe(track), {8, 22}, 0.6, ColorOf(track.tip.status));
 }
 
 void DrawPoints(Image& image, const std::vector<Eigen::Vector2d>& points_px) {
@@ -151,14 +166,22 @@ OverlayWriter::OverlayWriter(const std::filesystem::path& folder, std::size_t fr
   if (video) video_.emplace(folder / "overlay.mp4", rate_hz);
 }
 
-void OverlayWriter::Add(const Frame& frame, const TipTrack& track, const CameraCalibration& camera,
-                        const TagCollar& collar) {
-  const bool picture = count_ % every_ == 0 && count_ / every_ < pictures_;
+bool OverlayWriter::WantsPicture(TipStatus status) {
+  const bool changed = last_status_ && *last_status_ != status;
+  last_status_ = status;
+  const bool spread = count_ % every_ == 0 && count_ / every_ < pictures_;
   ++count_;
+  return spread || (changed && of_changes_++ < kPicturesOfReport);
+}
+
+void OverlayWriter::Add(const FrameSet& frames, const TipTrack& track,
+                        const CameraCalibration& camera, const TagCollar& collar) {
+  if (!frames.images[0]) return;
+  const bool picture = WantsPicture(track.tip.status);
   if (!picture && !video_) return;
-  Image image = ToColour(frame.image);
+  Image image = ToColour(*frames.images[0]);
   DrawTrack(image, track, camera, collar);
-  if (picture) WritePng(folder_ / "overlay" / fmt::format("{}.png", frame.t_ns), image);
+  if (picture) WritePng(folder_ / "overlay" / fmt::format("{}.png", frames.t_ns), image);
   if (video_) video_->Add(image);
 }
 

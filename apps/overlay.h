@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/frame_source.h"
-
+#include "apps/frame_sets.h"
+#include "apps/frames.h"
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/tag_collar.h"
@@ -18,8 +18,9 @@ namespace flextip {
 /// Outlines and ids of tags; green where the corners were fitted to the edges, else yellow.
 void DrawTags(Image& image, const std::vector<TagDetection>& tags);
 
-/// Tags, the collar's faces where the pose puts them, the axes of E (x red, y green, z blue, 10 mm)
-/// and the ellipse that holds the tip with 99 %; orange where it is only predicted.
+/// Tags, the faces of the fitted collar (cyan, those turned away thinner and dimmer), the axes of E
+/// (x red, y green, z blue, 10 mm), the ellipse that holds the tip with 99 %, and the status in its
+/// colour.
 void DrawTrack(Image& image, const TipTrack& track, const CameraCalibration& camera,
                const TagCollar& collar);
 
@@ -29,20 +30,24 @@ void DrawPoints(Image& image, const std::vector<Eigen::Vector2d>& points_px);
 void DrawLabel(Image& image, const std::string& text);
 
 /// Draws tracked frames into FOLDER/overlay.mp4, where that is wanted, and a few into
-/// FOLDER/overlay/*.png.
+/// FOLDER/overlay/*.png: some spread evenly, and the first ones after the status changed.
 class OverlayWriter {
  public:
   /// `frames` 0: not known.
   OverlayWriter(const std::filesystem::path& folder, std::size_t frames, double rate_hz,
                 bool video);
 
-  void Add(const Frame& frame, const TipTrack& track, const CameraCalibration& camera,
+  /// The first camera's picture; a set without it is passed over.
+  void Add(const FrameSet& frames, const TipTrack& track, const CameraCalibration& camera,
            const TagCollar& collar);
   void Finish();
 
  private:
+  bool WantsPicture(TipStatus status);
+
   std::filesystem::path folder_;
-  std::size_t pictures_, every_, count_ = 0;
+  std::size_t pictures_, every_, count_ = 0, of_changes_ = 0;
+  std::optional<TipStatus> last_status_;
   std::optional<VideoFile> video_;
 };
 

@@ -35,25 +35,28 @@ double TipScore::RmsAcross() const {
   return std::sqrt(std::max(0.0, squared_m2 - squared_depth_m2) / std::max(1, frames));
 }
 double TipScore::MeanNees() const { return nees / std::max(1, frames); }
+double TipScore::ShareInside() const { return static_cast<double>(inside) / std::max(1, frames); }
 
-void TipScore::Add(const Sample<TipObservation>& sample, const Series<Eigen::Vector3d>& truth,
-                   const Pose& T_RC) {
-  const TipObservation& tip = sample.value;
-  const auto p_RE = ValueAt(truth, sample.t_ns);
-  if (tip.status != TipStatus::kOk || !p_RE) return;
-  const Eigen::Vector3d e_R = tip.p_RE - *p_RE;
+void TipScore::Add(const TipObservation& tip, const Eigen::Vector3d& p_RE, const Pose& T_RC) {
+  constexpr double kChi2Of95Percent = 7.815;  // three degrees of freedom
+  const Eigen::Vector3d e_R = tip.p_RE - p_RE;
   const double along = (T_RC.R.transpose() * e_R).z();
+  const double normalised = e_R.dot(tip.covariance_m2.ldlt().solve(e_R));
   squared_m2 += e_R.squaredNorm();
   squared_depth_m2 += along * along;
-  nees += e_R.dot(tip.covariance_m2.ldlt().solve(e_R));
+  nees += normalised;
   max_error_m = std::max(max_error_m, e_R.norm());
+  inside += normalised <= kChi2Of95Percent;
   ++frames;
 }
 
 TipScore ScoreTips(const Series<TipObservation>& tips, const Series<Eigen::Vector3d>& truth,
                    const Pose& T_RC) {
   TipScore score;
-  for (const auto& tip : tips) score.Add(tip, truth, T_RC);
+  for (const auto& tip : tips) {
+    const auto p_RE = ValueAt(truth, tip.t_ns);
+    if (p_RE && tip.value.status == TipStatus::kOk) score.Add(tip.value, *p_RE, T_RC);
+  }
   return score;
 }
 

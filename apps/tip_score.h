@@ -16,10 +16,9 @@ namespace flextip {
 std::optional<Series<Eigen::Vector3d>> ReadTipTruth(const std::filesystem::path& recording,
                                                     const std::filesystem::path& file);
 
-/// Over the frames that were seen (status ok) at times the truth covers; sums, so that it can be
-/// added to frame by frame.
+/// Over frames of one status; sums, so that it can be added to frame by frame.
 struct TipScore {
-  int frames = 0;
+  int frames = 0, inside = 0;                       ///< inside: the error is in its 95 % ellipsoid
   double squared_m2 = 0.0, squared_depth_m2 = 0.0;  ///< depth: along the camera's axis
   double max_error_m = 0.0;
   double nees = 0.0;
@@ -29,11 +28,13 @@ struct TipScore {
   double RmsDepth() const;   ///< m
   /// Squared error over its covariance: 3 where that is honest.
   double MeanNees() const;
+  double ShareInside() const;
 
-  void Add(const Sample<TipObservation>& tip, const Series<Eigen::Vector3d>& truth,
-           const Pose& T_RC);
+  /// The tip's error in R; the covariance must be definite.
+  void Add(const TipObservation& tip, const Eigen::Vector3d& p_RE, const Pose& T_RC);
 };
 
+/// Over frames seen (ok), at times the truth covers.
 TipScore ScoreTips(const Series<TipObservation>& tips, const Series<Eigen::Vector3d>& truth,
                    const Pose& T_RC);
 

@@ -16,7 +16,9 @@
 #include "apps/overlay.h"
 #include "apps/progress.h"
 #include "apps/stop_signal.h"
+#include "apps/tip_follower.h"
 #include "apps/track_input.h"
+#include "apps/track_summary.h"
 #include "apps/track_tables.h"
 #include "core/error.h"
 #include "report/pages.h"
@@ -25,8 +27,8 @@
 namespace flextip {
 namespace {
 
-// A resumed run tracks so many frames again, without writing them: the tracker then has the state
-// that it had. It forgets by a tenth a frame.
+// A resumed run tracks so many frames again, without writing them: tracker and model then have the
+// state that they had. They forget by a tenth a frame.
 constexpr long kWarmUpFrames = 500;
 
 struct TrackOptions {
@@ -36,7 +38,7 @@ struct TrackOptions {
   std::vector<double> black_white;
   double rate_hz = 0.0;
   long max_frames = 0;  // 0: all
-  bool overlay = false, force = false, resume = false;
+  bool no_model = false, overlay = false, force = false, resume = false;
 
   std::string InputName() const {
     if (!input.live.empty()) return input.live;
@@ -52,6 +54,8 @@ void CheckOptions(TrackOptions& options) {
     throw InputError(fmt::format("--black-white: found {},{}, expected the first below the second",
                                  options.input.range.black, options.input.range.white));
   }
+  // Recorded frames give the same tables on every machine; live ones do not wait for a search.
+  options.tracker.background_detection = !options.input.live.empty();
   if (options.rate_hz > 0) options.input.rate_hz = options.rate_hz;
   if (options.resume && !options.input.live.empty()) {
     throw InputError("--resume: a live source cannot be seen again");
@@ -66,13 +70,13 @@ std::string Remark(const TipTrack& track) {
 }
 
 // Tracks the last frames before `tables` goes on once more.
-void WarmUp(FrameSource& frames, TipTracker& tracker, long done) {
+void WarmUp(FrameSets& frames, TipFollower& follower, long done) {
   const long again = std::min(done, kWarmUpFrames);
   frames.Skip(static_cast<std::size_t>(done - again));
   for (long i = 0; i < again; ++i) {
-    const std::optional<Frame> frame = frames.Next();
-    if (!frame) return;
-    (void)tracker.Track(frame->image, frame->t_ns);
+    const std::optional<FrameSet> set = frames.Next();
+    if (!set) return;
+    (void)follower.Follow(*set);
   }
 }
 
@@ -81,10 +85,9 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
                  TrackTables& tables, bool quiet) {
   using Clock = std::chrono::steady_clock;
   const CameraCalibration& camera = input.recording.cam0->calibration;
-  const TagCollar& collar = *input.recording.tags0;
-  TipTracker tracker(camera, collar, options.tracker);
+  TipFollower follower(input.recording, options.tracker, !options.no_model);
   const long before = tables.sums.frames;
-  WarmUp(*input.frames, tracker, before);
+  WarmUp(*input.frames, follower, before);
   const auto count = static_cast<long>(input.frames->Count());
   const long total = options.max_frames > 0 && (count == 0 || options.max_frames < count)
                          ? options.max_frames
@@ -94,14 +97,13 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
   Progress progress("frames", to_do, quiet, "fps");
   while (!StopSignal::Requested() && (options.max_frames == 0 || tables.sums.frames < total)) {
     const auto start = Clock::now();
-    const std::optional<Frame> frame = input.frames->Next();
-    if (!frame) break;
-    const TipTrack track = tracker.Track(frame->image, frame->t_ns);
+    const std::optional<FrameSet> set = input.frames->Next();
+    if (!set) break;
+    const TipTrack track = follower.Follow(*set);
     tables.sums.seconds += std::chrono::duration<double>(Clock::now() - start).count();
-    tables.Add(frame->t_ns, track);
-    if (truth) tables.sums.score.Add({frame->t_ns, track.tip}, *truth, camera.T_RC);
+    tables.Add(set->t_ns, track, truth ? ValueAt(*truth, set->t_ns) : std::nullopt, camera.T_RC);
     tables.SaveWhenDue();
-    overlay.Add(*frame, track, camera, collar);
+    overlay.Add(*set, track, camera, *input.recording.tags0);
     progress.Update(static_cast<std::size_t>(tables.sums.frames - before), Remark(track));
   }
   overlay.Finish();
@@ -111,34 +113,6 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
   if (input.is_recording && options.max_frames == 0 && tables.sums.frames < count) {
     output.Warn(fmt::format("the video ends after {} of {} frames", tables.sums.frames, count));
   }
-}
-
-nlohmann::json Summary(const TrackSums& sums) {
-  const auto frames = static_cast<double>(sums.frames);
-  nlohmann::json summary = {{"frames", sums.frames},
-                            {"ok", sums.ok},
-                            {"predicted", sums.predicted},
-                            {"lost", sums.lost},
-                            {"frames_per_second", frames / std::max(sums.seconds, 1e-9)},
-                            {"tags_per_frame", static_cast<double>(sums.tags) / frames}};
-  if (sums.ok > 0) {
-    summary["rms_reprojection_error_px"] =
-        std::sqrt(sums.squared_rms_px / static_cast<double>(sums.ok));
-  }
-  return summary;
-}
-
-void AddScore(const TipScore& score, nlohmann::json& summary, OutputFolder& output) {
-  summary["scored_frames"] = score.frames;
-  if (score.frames == 0) {
-    output.Warn("no frame with the tip seen falls into the truth's time");
-    return;
-  }
-  summary["tip_rms_error_m"] = score.RmsError();
-  summary["tip_max_error_m"] = score.max_error_m;
-  summary["tip_rms_error_across_m"] = score.RmsAcross();
-  summary["tip_rms_error_depth_m"] = score.RmsDepth();
-  summary["tip_mean_nees"] = score.MeanNees();
 }
 
 void PrintResult(const TrackOptions& options, const nlohmann::json& summary) {
@@ -179,8 +153,12 @@ void RunTrack(TrackOptions options, bool quiet) {
   std::optional<StopSignal> stop;
   if (!options.input.live.empty()) stop.emplace();
   TrackFrames(options, input, truth, output, tables, quiet);
-  nlohmann::json summary = Summary(tables.sums);
-  if (truth) AddScore(tables.sums.score, summary, output);
+  const TrackSums& sums = tables.sums;
+  const int cameras = static_cast<int>(input.frames->Cameras());
+  const nlohmann::json summary = TrackSummary(sums, cameras, truth.has_value());
+  if (truth && sums.score.frames == 0) {
+    output.Warn("no frame with the tip seen falls into the truth's time");
+  }
   tables.Finish(*input.recording.tags0, input.recording.cam0->calibration.rate_hz);
   output.WriteSummary(summary);
   WriteTrackReport(output.folder());
@@ -232,12 +210,25 @@ void AddTrack(CLI::App& app, AppContext& context) {
       ->capture_default_str();
   command->add_option("--threads", options->tracker.detector.threads, "Threads")
       ->capture_default_str();
+  command->add_flag("--no-model", options->no_model,
+                    "Carry a hidden tip on by its motion alone, not by wrist0 and the shaft");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->add_flag("--resume", options->resume, "Go on where an interrupted run ended");
   command->footer(
-      "Example:\n  flextip track RECORDING -o OUT --overlay\n"
-      "  flextip track video.mp4 --camera sensor.yaml --collar collar.yaml -o OUT\n"
-      "  flextip track --live 0 --camera sensor.yaml --collar collar.yaml -o OUT\n");
+      "Examples:\n"
+      "  a recording (both eyes where it has cam1, the wrist where it has wrist0)\n"
+      "    flextip track RECORDING -o OUT --overlay\n"
+      "  a folder of PNG, JPEG or TIFF pictures, here of a 12-bit camera at 50 Hz\n"
+      "    flextip track pictures/ --camera sensor.yaml --collar collar.yaml --rate 50 "
+      "--black-white 0,4095 -o OUT\n"
+      "  a video\n"
+      "    flextip track video.mp4 --camera camera_info.yaml --collar collar.yaml -o OUT\n"
+      "  a camera that is plugged in, or a stream, until Ctrl-C\n"
+      "    flextip track --live 0 --camera sensor.yaml --collar collar.yaml -o OUT\n"
+      "    flextip track --live rtsp://HOST/STREAM --camera sensor.yaml --collar collar.yaml -o "
+      "OUT\n"
+      "  after an interruption\n"
+      "    flextip track RECORDING -o OUT --resume\n");
   OnRun(*command, context, [options, &context] { RunTrack(*options, context.quiet); });
 }
 

@@ -1,5 +1,9 @@
 #include "apps/track_input.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "core/error.h"
 #include "recording/camera_formats.h"
 #include "recording/recording_reader.h"
@@ -7,6 +11,33 @@
 
 namespace flextip {
 namespace {
+
+std::vector<TimeNs> TimesOf(const CameraStream& camera) {
+  std::vector<TimeNs> times;
+  for (const auto& frame : camera.filenames) times.push_back(frame.t_ns);
+  for (const auto& frame : camera.frame_numbers) times.push_back(frame.t_ns);
+  return times;
+}
+
+// Both cameras where both have frames; a pair is at most half a period of the faster one apart.
+void OpenCameras(const TrackInputOptions& options, TrackInput& input) {
+  Recording& recording = input.recording;
+  const auto open = [&](const char* name, const CameraStream& camera) {
+    return OpenRecordedFrames(options.source, name, camera, options.range);
+  };
+  auto cam0 = open("cam0", *recording.cam0);
+  if (recording.cam1 && TimesOf(*recording.cam1).empty()) recording.cam1.reset();
+  if (!recording.cam1) {
+    input.frames = std::make_unique<FrameSets>(std::move(cam0));
+    return;
+  }
+  const double rate_hz =
+      std::max(recording.cam0->calibration.rate_hz, recording.cam1->calibration.rate_hz);
+  const TimeNs tolerance_ns = rate_hz > 0 ? std::llround(0.5e9 / rate_hz) : 0;
+  auto pairs = PairFrames(TimesOf(*recording.cam0), TimesOf(*recording.cam1), tolerance_ns);
+  input.frames =
+      std::make_unique<FrameSets>(std::move(cam0), open("cam1", *recording.cam1), std::move(pairs));
+}
 
 TrackInput OpenRecording(const TrackInputOptions& options) {
   const auto& source = options.source;
@@ -22,7 +53,7 @@ TrackInput OpenRecording(const TrackInputOptions& options) {
   if (!read.recording.cam0) refuse("no cam0/, tracking needs it");
   if (!read.recording.tags0) refuse("no tags0/, tracking needs it");
   TrackInput input{std::move(read.recording), true, nullptr, std::move(read.warnings)};
-  input.frames = OpenRecordedFrames(source, "cam0", *input.recording.cam0, options.range);
+  OpenCameras(options, input);
   return input;
 }
 
@@ -49,9 +80,9 @@ TrackInput OpenTrackInput(const TrackInputOptions& options) {
   camera.calibration = ReadCameraDescription(options.camera, format).calibration;
   input.recording.tags0 = ReadCollarFile(options.collar, log);
   if (options.rate_hz) camera.calibration.rate_hz = *options.rate_hz;
-  input.frames =
+  input.frames = std::make_unique<FrameSets>(
       live ? OpenLiveFrames(options.live, camera.calibration)
-           : OpenPlainFrames(options.source, camera.calibration, options.rate_hz, options.range);
+           : OpenPlainFrames(options.source, camera.calibration, options.rate_hz, options.range));
   input.warnings = std::move(log.warnings);
   return input;
 }

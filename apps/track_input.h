@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/frame_sets.h"
 #include "apps/frame_source.h"
 #include "recording/recording.h"
 
@@ -21,9 +22,10 @@ struct TrackInputOptions {
 };
 
 struct TrackInput {
-  Recording recording;  ///< with cam0 (its calibration at least) and tags0
+  Recording recording;  ///< with cam0 (its calibration at least) and tags0;
+                        ///< cam1 only where its frames are there
   bool is_recording = false;
-  std::unique_ptr<FrameSource> frames;
+  std::unique_ptr<FrameSets> frames;
   std::vector<std::string> warnings;
 };
 

@@ -20,6 +20,10 @@ const std::vector<std::string> kTagColumns = {
     "id []",     "c0_x [px]", "c0_y [px]", "c1_x [px]",          "c1_y [px]", "c2_x [px]",
     "c2_y [px]", "c3_x [px]", "c3_y [px]", "decision_margin []", "hamming []"};
 
+const std::vector<std::string> kFrameColumns = {"status []",   "source []",     "tags_used []",
+                                                "rms_px [px]", "noise_grey []", "sd_position [m]",
+                                                "error [m]"};
+
 void AddTags(CsvWriter& csv, TimeNs t_ns, const std::vector<TagDetection>& tags) {
   for (const TagDetection& tag : tags) {
     csv.Add(t_ns).Add(static_cast<TimeNs>(tag.id));
@@ -29,37 +33,56 @@ void AddTags(CsvWriter& csv, TimeNs t_ns, const std::vector<TagDetection>& tags)
   }
 }
 
+nlohmann::json ToJson(const TipScore& s) {
+  return {s.frames, s.inside, s.squared_m2, s.squared_depth_m2, s.max_error_m, s.nees};
+}
+
+TipScore ScoreFromJson(const nlohmann::json& j) {
+  return {j.at(0), j.at(1), j.at(2), j.at(3), j.at(4), j.at(5)};
+}
+
 nlohmann::json ToJson(const TrackSums& s) {
   return {{"frames", s.frames},
           {"ok", s.ok},
           {"predicted", s.predicted},
           {"lost", s.lost},
           {"tags", s.tags},
+          {"by_pixels", s.by_pixels},
+          {"by_corners", s.by_corners},
           {"squared_direction_noise", s.squared_direction_noise},
           {"squared_rms_px", s.squared_rms_px},
+          {"squared_noise_grey", s.squared_noise_grey},
           {"seconds", s.seconds},
-          {"score",
-           {s.score.frames, s.score.squared_m2, s.score.squared_depth_m2, s.score.max_error_m,
-            s.score.nees}}};
+          {"score", ToJson(s.score)},
+          {"score_predicted", ToJson(s.score_predicted)}};
 }
 
-TrackSums FromJson(const nlohmann::json& j) {
-  TrackSums s;
-  j.at("frames").get_to(s.frames);
-  j.at("ok").get_to(s.ok);
-  j.at("predicted").get_to(s.predicted);
-  j.at("lost").get_to(s.lost);
-  j.at("tags").get_to(s.tags);
-  j.at("squared_direction_noise").get_to(s.squared_direction_noise);
-  j.at("squared_rms_px").get_to(s.squared_rms_px);
-  j.at("seconds").get_to(s.seconds);
-  const auto& score = j.at("score");
-  score.at(0).get_to(s.score.frames);
-  score.at(1).get_to(s.score.squared_m2);
-  score.at(2).get_to(s.score.squared_depth_m2);
-  score.at(3).get_to(s.score.max_error_m);
-  score.at(4).get_to(s.score.nees);
-  return s;
+TrackSums SumsFromJson(const nlohmann::json& j) {
+  return {.frames = j.at("frames"),
+          .ok = j.at("ok"),
+          .predicted = j.at("predicted"),
+          .lost = j.at("lost"),
+          .tags = j.at("tags"),
+          .by_pixels = j.at("by_pixels"),
+          .by_corners = j.at("by_corners"),
+          .squared_direction_noise = j.at("squared_direction_noise"),
+          .squared_rms_px = j.at("squared_rms_px"),
+          .squared_noise_grey = j.at("squared_noise_grey"),
+          .seconds = j.at("seconds"),
+          .score = ScoreFromJson(j.at("score")),
+          .score_predicted = ScoreFromJson(j.at("score_predicted"))};
+}
+
+const char* Name(TrackSource source) {
+  switch (source) {
+    case TrackSource::kNone:
+      return "none";
+    case TrackSource::kCorners:
+      return "corners";
+    case TrackSource::kPixels:
+      return "pixels";
+  }
+  return "";
 }
 
 void Open(std::ofstream& stream, const fs::path& file) {
@@ -75,16 +98,15 @@ TrackTables::TrackTables(const fs::path& folder, const std::string& input, bool 
     : folder_(folder),
       mark_(folder / "unfinished.json"),
       input_(input),
-      vision_rows_(TimedColumns(VisionColumns())),
-      tag_rows_(TimedColumns(kTagColumns)) {
+      vision_{"vision0/data.csv", CsvWriter(TimedColumns(VisionColumns()))},
+      tags_{"tags0/data.csv", CsvWriter(TimedColumns(kTagColumns))},
+      frames_{"frames.csv", CsvWriter(TimedColumns(kFrameColumns))} {
   if (resume && fs::exists(mark_)) Resume();
-  if (sums.frames == 0) {
+  for (GrowingTable* table : {&vision_, &tags_, &frames_}) {
     std::error_code ignored;
-    fs::remove(folder / "vision0/data.csv", ignored);
-    fs::remove(folder / "tags0/data.csv", ignored);
+    if (sums.frames == 0) fs::remove(folder / table->name, ignored);
+    Open(table->stream, folder / table->name);
   }
-  Open(vision_, folder / "vision0/data.csv");
-  Open(tags_, folder / "tags0/data.csv");
 }
 
 // What was written after the mark is cut off: the frames are tracked again.
@@ -97,42 +119,80 @@ void TrackTables::Resume() {
                            fmt::format("the interrupted run was of {}, not of {}",
                                        mark.at("input").get<std::string>(), input_));
     }
-    sums = FromJson(mark.at("sums"));
-    fs::resize_file(folder_ / "vision0/data.csv", mark.at("vision_bytes").get<std::uintmax_t>());
-    fs::resize_file(folder_ / "tags0/data.csv", mark.at("tag_bytes").get<std::uintmax_t>());
+    sums = SumsFromJson(mark.at("sums"));
+    for (GrowingTable* table : {&vision_, &tags_, &frames_}) {
+      const auto bytes = mark.at("bytes").at(table->name).get<std::uintmax_t>();
+      fs::resize_file(folder_ / table->name, bytes);
+      (void)table->rows.TakeText();  // the header is there
+    }
   } catch (const nlohmann::json::exception& error) {
     throw InputError::At(mark_.string(), 0, fmt::format("damaged: {}", error.what()));
   } catch (const fs::filesystem_error& error) {
     throw InputError::At(error.path1().string(), 0, error.code().message());
   }
-  (void)vision_rows_.TakeText();  // the headers are there
-  (void)tag_rows_.TakeText();
 }
 
-void TrackTables::Add(TimeNs t_ns, const TipTrack& track) {
-  AddVisionRow(vision_rows_, {t_ns, track.tip});
-  AddTags(tag_rows_, t_ns, track.tags);
+void TrackTables::Add(TimeNs t_ns, const TipTrack& track,
+                      const std::optional<Eigen::Vector3d>& p_RE, const Pose& T_RC) {
+  AddVisionRow(vision_.rows, {t_ns, track.tip});
+  AddTags(tags_.rows, t_ns, track.tags);
+  AddFrame(t_ns, track, p_RE);
+  Count(track);
+  if (p_RE && track.tip.status == TipStatus::kOk) sums.score.Add(track.tip, *p_RE, T_RC);
+  if (p_RE && track.tip.status == TipStatus::kPredicted) {
+    sums.score_predicted.Add(track.tip, *p_RE, T_RC);
+  }
+}
+
+void TrackTables::AddFrame(TimeNs t_ns, const TipTrack& track,
+                           const std::optional<Eigen::Vector3d>& p_RE) {
+  const bool ok = track.tip.status == TipStatus::kOk;
+  const bool known = track.tip.status != TipStatus::kLost;
+  const TrackSource source = ok ? track.source : TrackSource::kNone;
+  CsvWriter& row = frames_.rows;
+  const auto add = [&](bool there, double value) {
+    if (there) {
+      row.Add(value);
+    } else {
+      row.AddEmpty();
+    }
+  };
+  row.Add(t_ns).Add(std::string(flextip::Name(track.tip.status))).Add(std::string(Name(source)));
+  row.Add(static_cast<TimeNs>(ok ? track.tags_used : 0));
+  add(source == TrackSource::kCorners, track.rms_px);
+  add(source == TrackSource::kPixels, track.noise_grey);
+  add(known, std::sqrt(track.tip.covariance_m2.trace()));
+  add(known && p_RE, p_RE ? (track.tip.p_RE - *p_RE).norm() : 0.0);
+  row.EndRow();
+}
+
+void TrackTables::Count(const TipTrack& track) {
   ++sums.frames;
   sums.tags += static_cast<long>(track.tags.size());
-  sums.ok += track.tip.status == TipStatus::kOk;
   sums.predicted += track.tip.status == TipStatus::kPredicted;
   sums.lost += track.tip.status == TipStatus::kLost;
-  if (track.tip.status == TipStatus::kOk) {
-    sums.squared_direction_noise += track.direction_noise_rad * track.direction_noise_rad;
+  if (track.tip.status != TipStatus::kOk) return;
+  ++sums.ok;
+  sums.squared_direction_noise += track.direction_noise_rad * track.direction_noise_rad;
+  if (track.source == TrackSource::kCorners) {
+    ++sums.by_corners;
     sums.squared_rms_px += track.rms_px * track.rms_px;
+  } else if (track.source == TrackSource::kPixels) {
+    ++sums.by_pixels;
+    sums.squared_noise_grey += track.noise_grey * track.noise_grey;
   }
 }
 
 void TrackTables::Save() {
-  vision_ << vision_rows_.TakeText() << std::flush;
-  tags_ << tag_rows_.TakeText() << std::flush;
-  if (!vision_ || !tags_) {
-    throw WorkError(fmt::format("{}: the tables cannot be written", folder_.string()));
+  nlohmann::json bytes;
+  for (GrowingTable* table : {&vision_, &tags_, &frames_}) {
+    table->stream << table->rows.TakeText() << std::flush;
+    if (!table->stream) {
+      throw WorkError(fmt::format("{}: the tables cannot be written", folder_.string()));
+    }
+    bytes[table->name] = static_cast<long>(table->stream.tellp());
   }
-  const nlohmann::json mark = {{"input", input_},
-                               {"vision_bytes", static_cast<long>(vision_.tellp())},
-                               {"tag_bytes", static_cast<long>(tags_.tellp())},
-                               {"sums", ToJson(sums)}};
+  const nlohmann::json mark = {{"input", input_}, {"bytes", bytes}, {"sums", ToJson(sums)}};
   fs::path fresh = mark_;
   fresh += ".new";
   WriteTextFile(fresh, mark.dump());

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "apps/tip_score.h"
@@ -19,13 +20,16 @@ namespace flextip {
 /// What the summary needs of all frames so far.
 struct TrackSums {
   long frames = 0, ok = 0, predicted = 0, lost = 0, tags = 0;
-  double squared_direction_noise = 0.0, squared_rms_px = 0.0;  ///< over ok
-  double seconds = 0.0;                                        ///< reading and tracking
-  TipScore score;
+  long by_pixels = 0, by_corners = 0;    ///< how the ok ones were found
+  double squared_direction_noise = 0.0;  ///< over ok
+  double squared_rms_px = 0.0;           ///< over by_corners
+  double squared_noise_grey = 0.0;       ///< over by_pixels
+  double seconds = 0.0;                  ///< reading and tracking
+  TipScore score, score_predicted;       ///< of the ok and the predicted ones
 };
 
-/// FOLDER/vision0 and FOLDER/tags0. Rows reach the disk at least once a second, and with them
-/// FOLDER/unfinished.json: how far both tables are whole, and the sums up to there.
+/// FOLDER/vision0, FOLDER/tags0 and FOLDER/frames.csv. Rows reach the disk at least once a second,
+/// and with them FOLDER/unfinished.json: how far the tables are whole, and the sums up to there.
 class TrackTables {
  public:
   /// Goes on where `resume` finds an unfinished run of the same `input`, else from the beginning.
@@ -35,7 +39,9 @@ class TrackTables {
 
   TrackSums sums;
 
-  void Add(TimeNs t_ns, const TipTrack& track);
+  /// `p_RE`: the true tip, to be scored against.
+  void Add(TimeNs t_ns, const TipTrack& track, const std::optional<Eigen::Vector3d>& p_RE,
+           const Pose& T_RC);
   /// After the first frame and twice a second; after the frame's part of `sums` is complete.
   void SaveWhenDue();
   /// Writes both sensor.yaml beside the tables and takes unfinished.json away.
@@ -44,11 +50,18 @@ class TrackTables {
  private:
   void Resume();
   void Save();
+  void AddFrame(TimeNs t_ns, const TipTrack& track, const std::optional<Eigen::Vector3d>& p_RE);
+  void Count(const TipTrack& track);
 
   std::filesystem::path folder_, mark_;
   std::string input_;
-  std::ofstream vision_, tags_;
-  CsvWriter vision_rows_, tag_rows_;
+  /// One of the files, and its rows that are not yet there.
+  struct GrowingTable {
+    std::string name;
+    CsvWriter rows;
+    std::ofstream stream = {};
+  };
+  GrowingTable vision_, tags_, frames_;
   std::chrono::steady_clock::time_point saved_ = {};  // long ago: the first frame is saved at once
 };
 

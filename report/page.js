@@ -41,7 +41,9 @@
       showlegend: plot.traces.length > 1, hoverlabel: { font: FONT },
       modebar: { bgcolor: "rgba(0,0,0,0)", color: "#b9c2cc", activecolor: INK } };
     if (!inSpace) {
-      return Object.assign(common, { margin: { l: 60, r: 16, t: 10, b: 48 }, hovermode: plot.traces.some((t) => t.markers) ? "closest" : "x unified",
+      const shapes = (plot.bands || []).map((b) => ({ type: "rect", layer: "below", xref: "x", yref: "paper",
+        x0: b.from, x1: b.to, y0: 0, y1: 1, fillcolor: b.color, opacity: 0.18, line: { width: 0 } }));
+      return Object.assign(common, { shapes: shapes, margin: { l: 60, r: 16, t: 10, b: 48 }, hovermode: plot.traces.some((t) => t.markers) ? "closest" : "x unified",
         legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
         xaxis: axis(plot.x_label, {}),
         yaxis: axis(plot.y_label, plot.log_y ? { type: "log", exponentformat: "power" } : {}) });

@@ -112,75 +112,6 @@ void AddFrames(Report& report, const std::vector<Run>& runs) {
   report.AddPictures(pictures);
 }
 
-/// How sure the tip's position is: the square root of the covariance's trace.
-PlotTrace Uncertainty(const ResultTable& table) {
-  PlotTrace trace{.name = "standard deviation", .x = SecondsOf(table)};
-  const auto xx = Scaled(table, "cov_xx", 1.0), yy = Scaled(table, "cov_yy", 1.0),
-             zz = Scaled(table, "cov_zz", 1.0);
-  if (xx.empty() || yy.empty() || zz.empty()) return {};
-  for (std::size_t i = 0; i < xx.size(); ++i) {
-    trace.y.push_back(kMmPerM * std::sqrt(xx[i] + yy[i] + zz[i]));
-  }
-  return trace;
-}
-
-/// The path of the tip, one trace for each status it had.
-void AddSeenPath(Report& report, const ResultTable& table) {
-  Plot plot{.title = "Path of the tip as seen", .x_label = kX, .y_label = kY, .z_label = kZ};
-  const auto path = PathTrace(table, "p_RE", "");
-  const auto* status = table.Texts("status");
-  if (path.x.empty()) return;
-  plot.traces.push_back(
-      {.name = "path", .x = path.x, .y = path.y, .z = path.z, .color = "#0072b2"});
-  for (const auto& [name, color] :
-       {std::pair{"ok", "#009e73"}, std::pair{"predicted", "#d55e00"}}) {
-    PlotTrace trace{.name = name, .color = color, .markers = true};
-    for (std::size_t i = 0; status != nullptr && i < status->size(); ++i) {
-      if ((*status)[i] != name) continue;
-      trace.x.push_back(path.x[i]);
-      trace.y.push_back(path.y[i]);
-      trace.z.push_back(path.z[i]);
-    }
-    if (!trace.x.empty()) plot.traces.push_back(std::move(trace));
-  }
-  report.AddPlot(plot);
-}
-
-/// The values less the first one that is a number.
-std::vector<double> FromFirst(std::vector<double> values) {
-  const auto first =
-      std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  if (first == values.end()) return values;
-  const double start = *first;
-  for (double& v : values) v -= start;
-  return values;
-}
-
-void AddSeenTip(Report& report, const fs::path& data) {
-  if (!fs::exists(data)) return;
-  const auto table = ReadResultTable(data);
-  if (table.Rows() == 0) return;
-  report.AddHeading("The tip");
-  AddSeenPath(report, table);
-  Plot coordinates{.title = "Movement of the tip",
-                   .caption = "Along the robot's axes, from where it was seen first. Gaps: lost.",
-                   .x_label = "time (s)",
-                   .y_label = "movement (mm)"};
-  for (const char* axis : {"x", "y", "z"}) {
-    auto y = FromFirst(Scaled(table, std::string("p_RE_") + axis, kMmPerM));
-    if (y.empty()) continue;
-    coordinates.traces.push_back({.name = axis, .x = SecondsOf(table), .y = std::move(y)});
-  }
-  report.AddPlot(coordinates);
-  const auto uncertainty = Uncertainty(table);
-  if (uncertainty.y.empty()) return;
-  report.AddPlot({.title = "How sure the position is",
-                  .caption = "Standard deviation of the position, all three axes together.",
-                  .x_label = "time (s)",
-                  .y_label = "standard deviation (mm)",
-                  .traces = {uncertainty}});
-}
-
 /// A file of numbers as it is, for tables that are short enough to be read.
 void AddShortTable(Report& report, const fs::path& file, const std::string& title) {
   constexpr std::size_t kRows = 60;
@@ -221,14 +152,6 @@ void WriteSimulateReport(const fs::path& folder) {
   AddDeviations(report, runs);
   AddPaths(report, runs);
   AddFrames(report, runs);
-  report.Write(folder / "report.html");
-}
-
-void WriteTrackReport(const fs::path& folder) {
-  Report report = BeginPage(folder, "Tip tracked in frames");
-  AddPictureFiles(report, "What was found in the frames",
-                  PicturesIn(folder / "overlay", kPictures));
-  AddSeenTip(report, folder / "vision0" / "data.csv");
   report.Write(folder / "report.html");
 }
 

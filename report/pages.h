@@ -12,7 +12,8 @@ namespace flextip {
 /// Per controller: deviation over time and the tip's path against the desired one, from
 /// FOLDER/deviation.csv (one run) or FOLDER/CONTROLLER/deviation.csv (several); frames of cam0.
 void WriteSimulateReport(const std::filesystem::path& folder);
-/// Overlays, the tip's path and its coordinates over time, from vision0/data.csv.
+/// Overlays; the tip's path, movement and covariance from vision0/data.csv; error, noise and tags
+/// of each frame from frames.csv. Long tables are thinned, keeping least and greatest values.
 void WriteTrackReport(const std::filesystem::path& folder);
 /// Every column of state0/data.csv over time.
 void WriteEstimateReport(const std::filesystem::path& folder);

@@ -58,6 +58,9 @@ std::string PlotJson(const Plot& plot) {
     assert(trace.z.empty() || trace.z.size() == trace.x.size());
     json["traces"].push_back(TraceJson(trace));
   }
+  for (const PlotBand& band : plot.bands) {
+    json["bands"].push_back({{"from", band.from}, {"to", band.to}, {"color", band.color}});
+  }
   return WithoutTags(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 

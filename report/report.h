@@ -19,11 +19,18 @@ struct PlotTrace {
   bool markers = false;  ///< points instead of a line
 };
 
+/// A stretch of the x axis behind the curves.
+struct PlotBand {
+  double from = 0.0, to = 0.0;
+  std::string color;
+};
+
 struct Plot {
   std::string title = {}, caption = {};
   std::string x_label = {}, y_label = {}, z_label = {};  ///< with the unit: "time (s)"
   std::vector<PlotTrace> traces = {};                    ///< all over x, or all in space
   bool log_y = false;
+  std::vector<PlotBand> bands = {};
 };
 
 /// A row of texts for each line; cells are shown as they are.

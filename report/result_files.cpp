@@ -44,7 +44,9 @@ std::vector<std::string> Cells(std::string_view line) {
   return cells;
 }
 
-double Number(const std::string& cell) {
+}  // namespace
+
+double NumberIn(const std::string& cell) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc() || end != cell.data() + cell.size()) {
@@ -52,6 +54,8 @@ double Number(const std::string& cell) {
   }
   return value;
 }
+
+namespace {
 
 std::ptrdiff_t Find(const ResultTable& table, const std::string& name) {
   const auto same = [&](const std::string& n) { return n == name || n.starts_with(name + " ["); };
@@ -89,26 +93,38 @@ const std::vector<std::string>* ResultTable::Texts(const std::string& name) cons
   return i < 0 ? nullptr : &texts[static_cast<std::size_t>(i)];
 }
 
-ResultTable ReadResultTable(const std::filesystem::path& path) {
+void ForEachRow(const std::filesystem::path& path,
+                const std::function<void(const std::vector<std::string>& names,
+                                         const std::vector<std::string>& cells)>& row) {
   std::ifstream file(path);
   std::string line;
   if (!std::getline(file, line)) throw InputError::At(path.string(), 0, "no table to read");
-  ResultTable table;
-  table.names = Cells(line.starts_with('#') ? line.substr(1) : line);
-  table.numbers.resize(table.names.size());
-  table.texts.resize(table.names.size());
+  const auto names = Cells(line.starts_with('#') ? line.substr(1) : line);
   for (long number = 2; std::getline(file, line); ++number) {
     if (Trimmed(line).empty()) continue;
     const auto cells = Cells(line);
-    if (cells.size() != table.names.size()) {
+    if (cells.size() != names.size()) {
       throw InputError::At(path.string(), number,
-                           fmt::format("{} cells, expected {}", cells.size(), table.names.size()));
+                           fmt::format("{} cells, expected {}", cells.size(), names.size()));
     }
+    row(names, cells);
+  }
+}
+
+ResultTable ReadResultTable(const std::filesystem::path& path) {
+  ResultTable table;
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line)) throw InputError::At(path.string(), 0, "no table to read");
+  table.names = Cells(line.starts_with('#') ? line.substr(1) : line);
+  table.numbers.resize(table.names.size());
+  table.texts.resize(table.names.size());
+  ForEachRow(path, [&](const auto&, const std::vector<std::string>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      table.numbers[i].push_back(Number(cells[i]));
+      table.numbers[i].push_back(NumberIn(cells[i]));
       table.texts[i].push_back(cells[i]);
     }
-  }
+  });
   return table;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -22,6 +23,14 @@ struct ResultTable {
   const std::vector<double>* Column(const std::string& name) const;
   const std::vector<std::string>* Texts(const std::string& name) const;
 };
+
+/// A cell's number; NaN where it is empty or none.
+double NumberIn(const std::string& cell);
+
+/// Hands over the cells of a table row by row, with the columns' names. Throws as ReadResultTable.
+void ForEachRow(const std::filesystem::path& path,
+                const std::function<void(const std::vector<std::string>& names,
+                                         const std::vector<std::string>& cells)>& row);
 
 /// Throws InputError where the file is missing or a line has another number of cells.
 ResultTable ReadResultTable(const std::filesystem::path& path);

@@ -5,9 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 namespace flextip {
 namespace {
@@ -36,6 +39,22 @@ ProgramResult RunProgram(const std::vector<std::string>& arguments) {
   int status = 0;
   waitpid(child, &status, 0);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadText(out), ReadText(err)};
+}
+
+void KillOnceItHasWritten(const std::vector<std::string>& arguments,
+                          const std::filesystem::path& folder) {
+  const TestFolder messages;
+  const pid_t child = fork();
+  if (child == 0) Become(arguments, messages / "out", messages / "err");
+  for (bool marked = false; !marked && waitpid(child, nullptr, WNOHANG) == 0;) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      marked |= std::filesystem::exists(entry.path() / "unfinished.json");
+    }
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
 }
 
 TestFolder::TestFolder() {

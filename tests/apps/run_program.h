@@ -17,6 +17,11 @@ struct ProgramResult {
 /// Runs the built program with `arguments`, without a shell and with stderr not a terminal.
 ProgramResult RunProgram(const std::vector<std::string>& arguments);
 
+/// Starts the program and kills it as soon as an `unfinished.json` in a folder of `folder` says
+/// that a part of its work is done.
+void KillOnceItHasWritten(const std::vector<std::string>& arguments,
+                          const std::filesystem::path& folder);
+
 /// A fresh folder of the running test, removed at its end.
 class TestFolder {
  public:
