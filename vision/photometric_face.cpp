@@ -108,13 +108,15 @@ PhotometricFace::Geometry PhotometricFace::Place(const CameraModel& camera, cons
       optics.blur_px2[2] + kPixelVariance;
   // The blur on the tag, and the derivative of places on it by pixels, at (u, v) in halves from
   // the centre.
-  const auto blur_at = [&](double fu, double fv, Eigen::Matrix2f* uv_of_px) -> std::optional<PatternBlur> {
+  const auto blur_at = [&](double fu, double fv,
+                           Eigen::Matrix2f* uv_of_px) -> std::optional<PatternBlur> {
     const Eigen::Vector2d uv(half * (1 + fu), half * (1 + fv));
     const Eigen::Vector3d x_C = from_tag * Eigen::Vector3d(uv.x(), uv.y(), 1);
     Eigen::Matrix<double, 2, 3> J;
     if (!camera.Project(x_C, &J)) return {};
-    const Eigen::Matrix2d by_px = (to_tag.topLeftCorner<2, 2>() - uv * to_tag.bottomLeftCorner<1, 2>()) *
-                                  J.leftCols<2>().inverse();
+    const Eigen::Matrix2d by_px =
+        (to_tag.topLeftCorner<2, 2>() - uv * to_tag.bottomLeftCorner<1, 2>()) *
+        J.leftCols<2>().inverse();
     const Eigen::Matrix2d spread = by_px * spread_px * by_px.transpose();
     const double su = std::sqrt(spread(0, 0)), sv = std::sqrt(spread(1, 1));
     if (!(su < kMaxBlur_cells && sv < kMaxBlur_cells)) return {};

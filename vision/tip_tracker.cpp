@@ -67,7 +67,7 @@ struct TipTracker::Impl {
   std::optional<BackgroundDetector> background;
   std::optional<TipOutline> outline;
 
-  std::optional<Pose> last_T_RE;  // of the last frame in which the collar was seen
+  std::optional<Pose> last_T_RE;         // of the last frame in which the collar was seen
   TimeNs last_ns = 0, last_seen_ns = 0;  // of last_T_RE, and of the last tags
   Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();  // rad/s
   int predicted_frames = 0, lost_frames = 0;

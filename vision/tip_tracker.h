@@ -29,7 +29,7 @@ struct TrackerOptions {
   bool background_detection = false;
   int max_predicted_frames = 3;  ///< then the tip is lost, unless a model is given
   TimeNs max_prediction_ns = 200'000'000;
-  double max_predicted_sd_m = 0.01;                ///< a prediction less certain than this is none
+  double max_predicted_sd_m = 0.01;  ///< a prediction less certain than this is none
   double max_ok_sd_m = 0.001;  ///< what is seen less certainly (one small tag) counts as predicted
   double acceleration_noise_m_s2 = 1.0;            ///< how fast a prediction's covariance grows
   double gamma_guess = 2.2, gamma_guess_sd = 0.4;  ///< where the camera's is not known
@@ -56,7 +56,7 @@ struct TipTrack {
   double rms_px = 0.0;                      ///< corner distance of the fit, where kCorners
   double noise_grey = 0.0;                  ///< of a pixel about the fit, where kPixels
   int tags_used = 0;                        ///< in all cameras
-  bool outline_used = false;  ///< the shaft\'s outline is in the pose
+  bool outline_used = false;                ///< the shaft\'s outline is in the pose
   bool ambiguous = false;                   ///< another pose fits nearly as well
   std::optional<Pose> alternative_T_RE;     ///< that pose, or a clearly worse one
   double direction_noise_rad = 0.0;         ///< of d_RE, per axis across it, where kOk
