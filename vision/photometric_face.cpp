@@ -211,6 +211,7 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
   if (!g.valid) return;
   const Eigen::Vector3f pivot = pivot_C.cast<float>();
   Light light(levels, pattern_.Cells());
+  const float half_contrast = 0.5f * (tone.At(light.level[3]).grey - tone.At(light.level[0]).grey);
   Row row;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
@@ -219,7 +220,7 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
     const float contrast = light.white - light.black;
     const ToneCurve::Value film = tone.At(light.black + p.c * contrast);
     const float residual = pixel.grey - film.grey;
-    sums.CountError(residual);
+    sums.CountError(residual, half_contrast);
     const float weight = rule.Weight(residual);
     if (weight == 0) continue;
     const float root = std::sqrt(weight), by_light = root * film.by_light;
