@@ -197,11 +197,16 @@ CollarSearch::Match CollarSearch::Find(const Image& image, const Pose& T_CE,
 }
 
 Pose CollarSearch::Shifted(const Pose& T_CE, const Eigen::Vector2d& shift_px) const {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const Face& face : faces_) centre += face.tag.T_EG.p / static_cast<double>(faces_.size());
-  const Eigen::Vector3d x_C = T_CE * centre;
+  Eigen::Vector3d sum_C = Eigen::Vector3d::Zero();
+  int seen = 0;
+  for (const Face& face : faces_) {
+    const Pose T_CG = T_CE * face.tag.T_EG;
+    if (T_CG.R.col(2).dot(T_CG.p) <= kMinCosine * T_CG.p.norm()) continue;
+    sum_C += T_CG.p;
+    ++seen;
+  }
   Eigen::Matrix<double, 2, 3> J;
-  if (!camera_.Project(x_C, &J)) return T_CE;
+  if (seen == 0 || !camera_.Project(sum_C / seen, &J)) return T_CE;
   Pose shifted = T_CE;
   shifted.p.head<2>() += J.leftCols<2>().inverse() * shift_px;
   return shifted;

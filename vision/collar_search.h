@@ -24,7 +24,7 @@ class CollarSearch {
   /// in steps of about half a cell, and finds where they correlate best.
   Match Find(const Image& image, const Pose& T_CE, double radius_px) const;
 
-  /// T_CE moved across the line of sight so that the collar is seen `shift_px` away.
+  /// T_CE moved across the line of sight so that the tags in view are seen `shift_px` away.
   Pose Shifted(const Pose& T_CE, const Eigen::Vector2d& shift_px) const;
 
   /// A place on a tag where it would be seen, and how white it is, smoothed over about a cell.

@@ -246,6 +246,7 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
   if (!g.valid) return;
   const Eigen::Vector3f pivot = pivot_C.cast<float>();
   Light light(levels, pattern_.Cells());
+  const float half_contrast = 0.5f * (tone.At(light.level[3]).grey - tone.At(light.level[0]).grey);
   Row row;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
@@ -255,7 +256,7 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
     const ToneCurve::Value film = tone.At(light.black + p.c * contrast);
     const float residual = pixel.grey - film.grey;
     if (film.by_light == 0 && pixel.grey > kSaturated_grey) continue;  // says nothing
-    sums.CountError(residual);
+    sums.CountError(residual, half_contrast);
     const float weight = rule.Weight(residual);
     if (weight == 0) continue;
     const float root = std::sqrt(weight), by_light = root * film.by_light;

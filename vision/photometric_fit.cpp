@@ -70,9 +70,9 @@ struct PhotometricFit::Impl {
     return faces;
   }
 
-  void DropFaces(double correlation) {
+  void DropFaces(double correlation, double contradicted) {
     for (std::size_t i = 0; i < views.size(); ++i) {
-      if (present[i]) views[i].DropFaces(correlation, options.min_contrast_grey);
+      if (present[i]) views[i].DropFaces(correlation, options.min_contrast_grey, contradicted);
     }
   }
 
@@ -241,12 +241,12 @@ PhotometricResult PhotometricFit::Fit(const std::vector<const Image*>& images,
   }
   f.Select(T_RE, 2 * o.coarse_pixels, 0);
   f.Iterate(T_RE, sums, o.max_coarse_iterations, kFineStep_px, true);
-  f.DropFaces(0.6 * o.min_correlation);
+  f.DropFaces(0.6 * o.min_correlation, 1);
   if (f.Faces() == 0) return {};
   f.Select(T_RE, 0, 0);
   bool converged = f.Iterate(T_RE, sums, o.max_iterations, 0, true);
   const int faces = f.Faces();
-  f.DropFaces(o.min_correlation);
+  f.DropFaces(o.min_correlation, o.max_contradicted);
   if (f.Faces() == 0) {
     PhotometricResult poor;
     poor.status = PhotometricStatus::kPoorFit;

@@ -27,9 +27,10 @@ struct PhotometricOptions {
   int max_coarse_iterations = 8, max_iterations = 6;
   double min_correlation = 0.88;  ///< of a face's measured and predicted grey values
   double min_contrast_grey = 10.0;
-  double min_inliers = 0.6;       ///< mean weight of all pixels
-  double model_noise_px = 0.015;  ///< what a tag's corners are wrong by whatever the noise: print,
-                                  ///< lens, film; per axis
+  double max_contradicted = 0.02;  ///< of a face's pixels, white for black and black for white each
+  double min_inliers = 0.6;        ///< mean weight of all pixels
+  double model_noise_px = 0.015;   ///< what a tag's corners are wrong by whatever the noise: print,
+                                   ///< lens, film; per axis
 };
 
 /// What one camera's picture said.

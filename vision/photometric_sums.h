@@ -55,7 +55,10 @@ class FaceSums {
     moments_[4] += weight * measured * measured;
     moments_[5] += weight * predicted * measured;
   }
-  void CountError(float residual) {
+  /// `half_contrast`: of the face (grey values).
+  void CountError(float residual, float half_contrast) {
+    brighter_ += residual > half_contrast;
+    darker_ += residual < -half_contrast;
     const int bin = static_cast<int>(std::abs(residual) * kBinsPerGrey);
     ++errors_[std::min(bin, kBins - 1)];
     ++pixels_;
@@ -65,6 +68,11 @@ class FaceSums {
   const Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize>& A() const { return A_; }
   int Pixels() const { return pixels_; }
   double Weight() const { return moments_[0]; }
+  /// The part of the pixels that are white for black, or black for white if those are fewer. What
+  /// covers a tag does one or the other; another tag does both.
+  double Contradicted() const {
+    return static_cast<double>(std::min(brighter_, darker_)) / std::max(1, pixels_);
+  }
   /// Of measured and predicted grey values, weighted.
   double Correlation() const;
 
@@ -79,7 +87,7 @@ class FaceSums {
 
   Eigen::Matrix<float, FaceColumns::kSize, kBlock> rows_ =
       Eigen::Matrix<float, FaceColumns::kSize, kBlock>::Zero();
-  int filled_ = 0, pixels_ = 0;
+  int filled_ = 0, pixels_ = 0, brighter_ = 0, darker_ = 0;
   Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize> A_ =
       Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize>::Zero();
   std::array<double, 6> moments_{};

@@ -114,18 +114,20 @@ std::vector<FaceFit> PhotometricView::FaceFits() const {
         tone_.At(static_cast<float>(level[3])).grey - tone_.At(static_cast<float>(level[0])).grey;
     const int pixels = s.sums.Pixels();
     fits.push_back({faces_[s.face].Tag().id, pixels, s.sums.Weight() / std::max(1, pixels),
-                    s.sums.Correlation(), contrast});
+                    s.sums.Correlation(), contrast, s.sums.Contradicted()});
   }
   return fits;
 }
 
-int PhotometricView::DropFaces(double min_correlation, double min_contrast) {
+int PhotometricView::DropFaces(double min_correlation, double min_contrast,
+                               double max_contradicted) {
   std::size_t at = 0;
   const auto fits = FaceFits();
   for (SeenFace& s : seen_) {
     if (!s.active) continue;
     const FaceFit& fit = fits[at++];
-    s.active = fit.correlation >= min_correlation && fit.contrast >= min_contrast;
+    s.active = fit.correlation >= min_correlation && fit.contrast >= min_contrast &&
+               fit.contradicted <= max_contradicted;
   }
   return Faces();
 }

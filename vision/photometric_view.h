@@ -22,9 +22,10 @@ struct PoseTerm {
 struct FaceFit {
   int tag_id = 0;
   int pixels = 0;
-  double inliers = 0;      ///< mean weight of its pixels
-  double correlation = 0;  ///< of measured and predicted grey values
-  double contrast = 0;     ///< white less black (grey values)
+  double inliers = 0;       ///< mean weight of its pixels
+  double correlation = 0;   ///< of measured and predicted grey values
+  double contrast = 0;      ///< white less black (grey values)
+  double contradicted = 0;  ///< FaceSums::Contradicted
 };
 
 /// What is known of a picture's optics beforehand.
@@ -53,7 +54,7 @@ class PhotometricView {
   void Select(const Pose& T_CE, int pixels, double extra_blur_px2);
 
   /// Leaves faces out that do not look like their tags; returns how many are left.
-  int DropFaces(double min_correlation, double min_contrast);
+  int DropFaces(double min_correlation, double min_contrast, double max_contradicted);
   int Faces() const;
   /// Of the faces that look well enough toward the camera at T_CE and lie wholly in the picture.
   int FacesInView(const Pose& T_CE) const;

@@ -178,6 +178,7 @@ TEST(PhotometricFit, ATagHalfCoveredDoesNotMoveThePose) {
   const PhotometricResult b = fit.Fit({&covered}, kSeen, {KnownGamma()});
   ASSERT_TRUE(a.IsUsable());
   ASSERT_TRUE(b.IsUsable());
+  for (const FaceFit& face : b.views[0].faces) EXPECT_LT(face.contradicted, 0.005);
   EXPECT_LT(Nees(a, kSeen), 22.5);  // 99.9 % of chi-square 6
   EXPECT_LT(PoseDifference(b.T_RE, kSeen).tail<3>().norm(), 1e-4);
 }
@@ -187,20 +188,12 @@ TEST(PhotometricFit, TagsOfOtherIdsAreNotOk) {
   const CameraCalibration camera = ScopeCamera();
   PhotometricFit fit({camera}, ScopeCollar());
   std::mt19937 random(3);
-  for (int i = 0; i < 24; ++i) {
-    const Image image = Frame(camera, ScopeCollar(0, 6 + 7 * i), kSeen);
+  for (int i = 0; i < 12; ++i) {
+    const Image image = Frame(camera, ScopeCollar(0, 6 + 14 * i), kSeen);
     for (const double shift_px : {0.0, 1.5}) {
       const PhotometricResult r =
           fit.Fit({&image}, Off(shift_px, shift_px, random), {KnownGamma()});
       EXPECT_FALSE(r.IsUsable()) << i;
-      if (r.IsUsable()) {
-        std::cerr << i << " noise " << r.views[0].noise_grey << " err mm "
-                  << 1e3 * PoseDifference(r.T_RE, kSeen).tail<3>().norm();
-        for (auto& f : r.views[0].faces)
-          std::cerr << " | " << f.tag_id << " corr " << f.correlation << " inl " << f.inliers
-                    << " contrast " << f.contrast;
-        std::cerr << "\n";
-      }
     }
   }
 }
