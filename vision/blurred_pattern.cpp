@@ -116,6 +116,10 @@ void BlurredPattern::AddCorrelation(const Lines& u, const Lines& v, float rho,
 }
 
 bool BlurredPattern::Known(float u, float v, float reach_u, float reach_v) const {
+  if (all_known_) {
+    const auto end = static_cast<float>(cells_);
+    return u - reach_u >= 0 && v - reach_v >= 0 && u + reach_u < end && v + reach_v < end;
+  }
   const auto cell = [&](float at) {
     return std::clamp(static_cast<int>(std::floor(at)), -kPad, cells_ + kPad - 1);
   };

@@ -72,6 +72,7 @@ class BlurredPattern {
   float last_;                // three cells beyond the pattern
   std::vector<float> white_;  // columns, padded
   std::vector<bool> known_;   // columns, padded
+  bool all_known_;            // within the pattern
   const NormalTable* normal_ = &NormalTable::Get();
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/rotation.h"
 #include "vision/reprojection.h"
 
 namespace flextip {
@@ -15,7 +16,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // A stage ends with a step below so many pixels, the last with one whose square is below so
 // many of its own variances.
 constexpr double kCoarseStep_px = 0.8, kFineStep_px = 0.25;
-constexpr double kLastStep = 0.3, kGoodStep = 3.0;  // the second: where the iterations run out
+constexpr double kLastStep = 1.0, kGoodStep = 3.0;  // the second: where the iterations run out
+constexpr double kNear_px = 6.0, kNearPart = 0.03, kNear_rad = 0.12;
 constexpr double kMaxTurn_rad = 0.2;
 constexpr double kParallel = 0.985;  // cosine of 10 degrees
 
@@ -114,13 +116,36 @@ struct PhotometricFit::Impl {
     return most;
   }
 
+  // Keeps the first stages, which see few pixels through a wide blur, near where they began: by
+  // some pixels across, and in proportion along the line of sight and in rotation.
+  Matrix6 StayNear(const Pose& T_RE) const {
+    Eigen::Vector3d centre_E = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& x_E : points_E)
+      centre_E += x_E / static_cast<double>(points_E.size());
+    const Camera& camera = *cameras[0];
+    const double z = std::max(0.01, (camera.T_CR * (T_RE * centre_E)).z());
+    const double across = kNear_px * z / camera.model.Calibration().fu_px;
+    const Eigen::Matrix3d R_RC = camera.T_CR.R.transpose();
+    const Eigen::Vector3d sd(across, across, kNearPart * z);
+    Matrix6 about_centre = Matrix6::Zero();
+    about_centre.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / (kNear_rad * kNear_rad);
+    about_centre.bottomRightCorner<3, 3>() =
+        R_RC * sd.cwiseAbs2().cwiseInverse().asDiagonal() * R_RC.transpose();
+    Matrix6 to_centre = Matrix6::Identity();
+    to_centre.bottomLeftCorner<3, 3>() = -Skew(T_RE.R * centre_E);
+    return to_centre.transpose() * about_centre * to_centre;
+  }
+
   // Gauss-Newton until a step is small.
-  bool Iterate(Pose& T_RE, Sums& sums, int max_iterations, double small_px, bool redescending) {
+  bool Iterate(Pose& T_RE, Sums& sums, int max_iterations, double small_px, bool redescending,
+               const Matrix6& near_start = Matrix6::Zero()) {
+    const Pose start = T_RE;
     double last_size = HUGE_VAL;
     for (int i = 0; i < max_iterations; ++i) {
       sums = Linearise(T_RE, redescending);
       if (sums.pixels == 0) return false;
-      Vector6 step = sums.JtJ.ldlt().solve(sums.Jtr);
+      const Vector6 gone = PoseDifference(start, T_RE);
+      Vector6 step = (sums.JtJ + near_start).ldlt().solve(sums.Jtr - near_start * gone);
       if (!step.allFinite()) return false;
       const double size = step.dot(sums.JtJ * step);
       const double turn = step.head<3>().norm();
@@ -237,10 +262,10 @@ PhotometricResult PhotometricFit::Fit(const std::vector<const Image*>& images,
   if (f.Faces() == 0) return {};
   if (coarse) {
     f.Select(T_RE, o.coarse_pixels, o.coarse_extra_blur_px2);
-    f.Iterate(T_RE, sums, o.max_coarse_iterations, kCoarseStep_px, false);
+    f.Iterate(T_RE, sums, o.max_coarse_iterations, kCoarseStep_px, false, f.StayNear(T_RE));
   }
   f.Select(T_RE, 2 * o.coarse_pixels, 0);
-  f.Iterate(T_RE, sums, o.max_coarse_iterations, kFineStep_px, true);
+  f.Iterate(T_RE, sums, o.max_coarse_iterations, kFineStep_px, true, f.StayNear(T_RE));
   f.DropFaces(0.6 * o.min_correlation, 1);
   if (f.Faces() == 0) return {};
   f.Select(T_RE, 0, 0);

@@ -1,5 +1,7 @@
 #include "vision/tag_cells.h"
 
+#include <apriltag/apriltag.h>
+
 #include "core/error.h"
 #include "vision/tag_families.h"
 

@@ -1,5 +1,7 @@
 #include "vision/tag_detector.h"
 
+#include <apriltag/apriltag.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "vision/tag_families.h"
 
+#include <apriltag/apriltag.h>
 #include <apriltag/tag16h5.h>
 #include <apriltag/tag25h9.h>
 #include <apriltag/tag36h10.h>

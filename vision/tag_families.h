@@ -1,15 +1,14 @@
-// The tag families of the AprilTag library by name. For the sources of vision/ only: the library's
-// types show here.
+// The tag families of the AprilTag library by name, for the sources of vision/.
 #pragma once
-
-#include <apriltag/apriltag.h>
 
 #include <memory>
 #include <string>
 
+struct apriltag_family;  // the library's
+
 namespace flextip {
 
-using TagFamily = std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)>;
+using TagFamily = std::unique_ptr<apriltag_family, void (*)(apriltag_family*)>;
 
 /// Throws InputError where there is no family of that name.
 TagFamily MakeTagFamily(const std::string& name);
