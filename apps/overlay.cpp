@@ -194,11 +194,13 @@ OverlayWriter::OverlayWriter(const std::filesystem::path& folder, std::size_t fr
   if (video) video_.emplace(folder / "overlay.mp4", rate_hz);
 }
 
-void OverlayWriter::FollowWindow(const TipObservation& tip, const CameraCalibration& camera) {
-  const auto px = CameraModel(camera).Project(camera.T_RC.Inverse() * tip.p_RE);
+// Around the tip, or half-way between it and the tags.
+void OverlayWriter::FollowWindow(const TipTrack& track, const CameraCalibration& camera) {
+  const auto px = CameraModel(camera).Project(camera.T_RC.Inverse() * track.tip.p_RE);
   if (!px) return;
   const Eigen::Vector2d middle(0.5 * camera.width_px, 0.5 * camera.height_px);
-  window_px_ = px->cwiseMax(0.0).cwiseMin(2.0 * middle);
+  const Eigen::Vector2d tags = track.tags.empty() ? *px : track.tags.front().corners_px[0];
+  window_px_ = (0.5 * (*px + tags)).cwiseMax(0.0).cwiseMin(2.0 * middle);
 }
 
 bool OverlayWriter::WantsPicture(TipStatus status) {
@@ -217,7 +219,7 @@ void OverlayWriter::Add(const FrameSet& frames, const TipTrack& track,
   Image image = ToColour(*frames.images[0]);
   DrawTrack(image, track, camera, collar);
   if (picture) {
-    if (track.tip.status != TipStatus::kLost) FollowWindow(track.tip, camera);
+    if (track.tip.status != TipStatus::kLost) FollowWindow(track, camera);
     Image part = Cut(image, window_px_);
     DrawStatus(part, track);
     WritePng(folder_ / "overlay" / fmt::format("{}.png", frames.t_ns), part);

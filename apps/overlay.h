@@ -34,7 +34,7 @@ void DrawLabel(Image& image, const std::string& text);
 
 /// Draws tracked frames into FOLDER/overlay.mp4, where that is wanted, and a few into
 /// FOLDER/overlay/*.png: some spread evenly, and the first ones after the status
-/// changed; of large frames the half around the tip.
+/// changed; of large frames the half around tip and tags.
 class OverlayWriter {
  public:
   /// `frames` 0: not known.
@@ -48,12 +48,12 @@ class OverlayWriter {
 
  private:
   bool WantsPicture(TipStatus status);
-  void FollowWindow(const TipObservation& tip, const CameraCalibration& camera);
+  void FollowWindow(const TipTrack& track, const CameraCalibration& camera);
 
   std::filesystem::path folder_;
   std::size_t pictures_, every_, count_ = 0, of_changes_ = 0;
   std::optional<TipStatus> last_status_;
-  Eigen::Vector2d window_px_ = Eigen::Vector2d::Zero();  // where the tip was last
+  Eigen::Vector2d window_px_ = Eigen::Vector2d::Zero();  // where tip and tags were last
   std::optional<VideoFile> video_;
 };
 

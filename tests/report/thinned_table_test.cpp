@@ -42,13 +42,14 @@ TEST_P(Thinned, KeepsExtremesTimesAndTheWorstStatus) {
   const auto table = ReadThinned(file_, {kValue}, "status", {"ok", "predicted", "lost"}, kMax);
   ASSERT_LE(table.buckets.size(), kMax);
   EXPECT_GE(table.buckets.size(), std::min<std::size_t>(values_.size(), kMax / 2));
-  EXPECT_EQ(table.end_s, GetParam() - 1);
+  EXPECT_DOUBLE_EQ(table.end_s, GetParam() - 1);
   for (std::size_t b = 0; b < table.buckets.size(); ++b) {
     const auto& bucket = table.buckets[b];
     const double end = b + 1 < table.buckets.size() ? table.buckets[b + 1].t_s : GetParam();
     double least = INFINITY, greatest = -INFINITY;
     bool lost = false;
-    for (auto i = static_cast<std::size_t>(bucket.t_s); i < static_cast<std::size_t>(end); ++i) {
+    for (auto i = static_cast<std::size_t>(std::llround(bucket.t_s));
+         i < static_cast<std::size_t>(std::llround(end)); ++i) {
       lost = lost || std::isnan(values_[i]);
       least = std::fmin(least, 2 * values_[i]);
       greatest = std::fmax(greatest, 2 * values_[i]);
@@ -60,7 +61,8 @@ TEST_P(Thinned, KeepsExtremesTimesAndTheWorstStatus) {
     }
     EXPECT_DOUBLE_EQ(bucket.columns[0].least, least) << b;
     EXPECT_DOUBLE_EQ(bucket.columns[0].greatest, greatest) << b;
-    EXPECT_DOUBLE_EQ(2 * values_[static_cast<std::size_t>(bucket.columns[0].t_least_s)], least);
+    EXPECT_DOUBLE_EQ(
+        2 * values_[static_cast<std::size_t>(std::llround(bucket.columns[0].t_least_s))], least);
   }
   std::vector<double> x, y;
   table.Trace(0, x, y);
