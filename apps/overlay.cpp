@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -14,6 +15,7 @@ const cv::Scalar kGreen(80, 220, 60), kYellow(40, 220, 240), kOrange(0, 140, 255
 const cv::Scalar kWhite(255, 255, 255), kBlack(0, 0, 0), kCyan(255, 230, 0), kDimCyan(140, 125, 20),
     kRed(70, 70, 255);
 constexpr std::size_t kPicturesOfReport = 6, kPicturesOfOverlay = 24, kEveryOfUnknown = 150;
+constexpr int kLargestWhole_px = 700;
 constexpr double kAxis_m = 0.01;
 constexpr double kChi2Of99Percent = 9.21;  // two degrees of freedom
 constexpr int kFractionBits = 4;           // OpenCV draws to 1/16 px
@@ -142,7 +144,13 @@ void DrawTrack(Image& image, const TipTrack& track, const CameraCalibration& cam
     DrawAxes(canvas, model, T_CE);
   }
   if (track.tip.status != TipStatus::kLost) DrawTip(canvas, model, track.tip);
-  Text(canvas, Describe(track), {8, 22}, 0.6, ColorOf(track.tip.status));
+}
+
+void DrawStatus(Image& image, const TipTrack& track) {
+  cv::Mat canvas = View(image);
+  const double scale = 0.6 * std::max(1.0, image.width_px / 960.0);
+  Text(canvas, Describe(track), {8, 4 + static_cast<int>(30 * scale)}, scale,
+       ColorOf(track.tip.status));
 }
 
 void DrawPoints(Image& image, const std::vector<Eigen::Vector2d>& points_px) {
@@ -158,12 +166,41 @@ void DrawLabel(Image& image, const std::string& text) {
   Text(canvas, text, {8, 22}, 0.6, kWhite);
 }
 
+namespace {
+
+/// Half the picture's width and height where it is large, around a point.
+Image Cut(const Image& image, const Eigen::Vector2d& centre_px) {
+  if (image.width_px <= kLargestWhole_px) return image;
+  Image part(image.width_px / 2, image.height_px / 2, image.channels);
+  const auto start = [](double centre, int whole, int size) {
+    return std::clamp(static_cast<int>(centre) - size / 2, 0, whole - size);
+  };
+  const int x = start(centre_px.x(), image.width_px, part.width_px);
+  const int y = start(centre_px.y(), image.height_px, part.height_px);
+  for (int row = 0; row < part.height_px; ++row) {
+    std::copy_n(image.Row(y + row) + x * image.channels, part.width_px * part.channels,
+                part.Row(row));
+  }
+  return part;
+}
+
+}  // namespace
+
 OverlayWriter::OverlayWriter(const std::filesystem::path& folder, std::size_t frames,
                              double rate_hz, bool video)
     : folder_(folder), pictures_(video ? kPicturesOfOverlay : kPicturesOfReport) {
   every_ = frames == 0 ? kEveryOfUnknown
                        : std::max<std::size_t>(1, (frames + pictures_ - 1) / pictures_);
   if (video) video_.emplace(folder / "overlay.mp4", rate_hz);
+}
+
+// Around the tip, or half-way between it and the tags.
+void OverlayWriter::FollowWindow(const TipTrack& track, const CameraCalibration& camera) {
+  const auto px = CameraModel(camera).Project(camera.T_RC.Inverse() * track.tip.p_RE);
+  if (!px) return;
+  const Eigen::Vector2d middle(0.5 * camera.width_px, 0.5 * camera.height_px);
+  const Eigen::Vector2d tags = track.tags.empty() ? *px : track.tags.front().corners_px[0];
+  window_px_ = (0.5 * (*px + tags)).cwiseMax(0.0).cwiseMin(2.0 * middle);
 }
 
 bool OverlayWriter::WantsPicture(TipStatus status) {
@@ -181,8 +218,15 @@ void OverlayWriter::Add(const FrameSet& frames, const TipTrack& track,
   if (!picture && !video_) return;
   Image image = ToColour(*frames.images[0]);
   DrawTrack(image, track, camera, collar);
-  if (picture) WritePng(folder_ / "overlay" / fmt::format("{}.png", frames.t_ns), image);
-  if (video_) video_->Add(image);
+  if (picture) {
+    if (track.tip.status != TipStatus::kLost) FollowWindow(track, camera);
+    Image part = Cut(image, window_px_);
+    DrawStatus(part, track);
+    WritePng(folder_ / "overlay" / fmt::format("{}.png", frames.t_ns), part);
+  }
+  if (!video_) return;
+  DrawStatus(image, track);
+  video_->Add(image);
 }
 
 void OverlayWriter::Finish() {

@@ -24,13 +24,17 @@ void DrawTags(Image& image, const std::vector<TagDetection>& tags);
 void DrawTrack(Image& image, const TipTrack& track, const CameraCalibration& camera,
                const TagCollar& collar);
 
+/// The status in its colour, and what the fit leaves.
+void DrawStatus(Image& image, const TipTrack& track);
+
 /// Crosses at the points.
 void DrawPoints(Image& image, const std::vector<Eigen::Vector2d>& points_px);
 
 void DrawLabel(Image& image, const std::string& text);
 
 /// Draws tracked frames into FOLDER/overlay.mp4, where that is wanted, and a few into
-/// FOLDER/overlay/*.png: some spread evenly, and the first ones after the status changed.
+/// FOLDER/overlay/*.png: some spread evenly, and the first ones after the status
+/// changed; of large frames the half around tip and tags.
 class OverlayWriter {
  public:
   /// `frames` 0: not known.
@@ -44,10 +48,12 @@ class OverlayWriter {
 
  private:
   bool WantsPicture(TipStatus status);
+  void FollowWindow(const TipTrack& track, const CameraCalibration& camera);
 
   std::filesystem::path folder_;
   std::size_t pictures_, every_, count_ = 0, of_changes_ = 0;
   std::optional<TipStatus> last_status_;
+  Eigen::Vector2d window_px_ = Eigen::Vector2d::Zero();  // where tip and tags were last
   std::optional<VideoFile> video_;
 };
 

@@ -27,10 +27,6 @@
 namespace flextip {
 namespace {
 
-// A resumed run tracks so many frames again, without writing them: tracker and model then have the
-// state that they had. They forget by a tenth a frame.
-constexpr long kWarmUpFrames = 500;
-
 struct TrackOptions {
   TrackInputOptions input;
   std::filesystem::path out, truth;
@@ -69,11 +65,10 @@ std::string Remark(const TipTrack& track) {
                      Name(track.tip.status));
 }
 
-// Tracks the last frames before `tables` goes on once more.
+// Tracks the frames before `tables` goes on once more: what the tracker learns of the optics, and
+// the model of the load, is never quite forgotten, and the tables shall be those of one run.
 void WarmUp(FrameSets& frames, TipFollower& follower, long done) {
-  const long again = std::min(done, kWarmUpFrames);
-  frames.Skip(static_cast<std::size_t>(done - again));
-  for (long i = 0; i < again; ++i) {
+  for (long i = 0; i < done; ++i) {
     const std::optional<FrameSet> set = frames.Next();
     if (!set) return;
     (void)follower.Follow(*set);
