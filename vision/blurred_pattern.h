@@ -45,6 +45,17 @@ class BlurredPattern {
                                                             : AtMany(u, v, blur);
   }
 
+  /// Whether an edge between black and white lies within `reach_u`, `reach_v` cells (less than one)
+  /// of the point, along either axis or both.
+  bool NearEdge(float u, float v, float reach_u, float reach_v) const {
+    const auto cell = [](float at) { return static_cast<int>(at + kPad) - kPad; };
+    const int k0 = cell(u - reach_u), k1 = cell(u + reach_u);
+    const int l0 = cell(v - reach_v), l1 = cell(v + reach_v);
+    const float* a = Column(k0) + kPad;
+    const float* b = Column(k1) + kPad;
+    return a[l0] != a[l1] || b[l0] != b[l1] || a[l0] != b[l0];
+  }
+
   /// False where an unknown cell lies within `reach_u`, `reach_v` cells of the point.
   bool Known(float u, float v, float reach_u, float reach_v) const;
 

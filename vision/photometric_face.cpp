@@ -11,7 +11,7 @@ namespace {
 constexpr double kMinCosine = 0.105;         // of the angle between normal and view: 84 degrees
 constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
 constexpr float kReachOfUnknown = 3.2f;      // sigmas kept from what is not known
-constexpr float kFlatPart = 0.02f;           // whiteness nearer to 0 or 1 than this says nothing
+constexpr float kEdgeReach = 2.1f;  // sigmas from an edge within which pixels say something
 constexpr float kSaturated_grey = 252.0f;
 constexpr double kMaxBlur_cells = 1.6;
 constexpr int kFewestPixels = 30;
@@ -165,6 +165,8 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
               reach_v = kReachOfUnknown * g.blur.sigma_v;
   const Eigen::Vector4f limits =
       Limits(T_CE) + Eigen::Vector4f(reach_u, -reach_u, reach_v, -reach_v);
+  const float edge_u = std::min(kEdgeReach * g.blur.sigma_u, 0.99f);
+  const float edge_v = std::min(kEdgeReach * g.blur.sigma_v, 0.99f);
   int flat = 0;
   for (int y = y0; y <= y1; y += stride) {
     for (int x = x0 + (y / stride) % stride; x <= x1; x += stride) {
@@ -173,9 +175,7 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
       const bool within =
           at.u > limits[0] && at.u < limits[1] && at.v > limits[2] && at.v < limits[3];
       if (!within || !pattern_.Known(at.u, at.v, reach_u, reach_v)) continue;
-      const PatternValue value = pattern_.At(at.u, at.v, g.BlurAt(at));
-      const float part = std::min(value.c, 1 - value.c);
-      if ((value.flat || part < kFlatPart) && flat++ % kFlatEvery != 0) continue;
+      if (!pattern_.NearEdge(at.u, at.v, edge_u, edge_v) && flat++ % kFlatEvery != 0) continue;
       pixels_.push_back({ray.x, ray.y, GreyAt(image, x, y)});
     }
   }

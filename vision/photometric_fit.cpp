@@ -16,7 +16,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // A stage ends with a step below so many pixels, the last with one whose square is below so
 // many of its own variances.
 constexpr double kCoarseStep_px = 0.8, kFineStep_px = 0.25;
-constexpr double kLastStep = 1.0, kGoodStep = 3.0;  // the second: where the iterations run out
+constexpr double kLastStep = 2.5, kGoodStep = 3.0;  // the second: where the iterations run out
 constexpr double kNear_px = 6.0, kNearPart = 0.03, kNear_rad = 0.12;
 constexpr double kMaxTurn_rad = 0.2;
 constexpr double kParallel = 0.985;  // cosine of 10 degrees
@@ -264,7 +264,7 @@ PhotometricResult PhotometricFit::Fit(const std::vector<const Image*>& images,
     f.Select(T_RE, o.coarse_pixels, o.coarse_extra_blur_px2);
     f.Iterate(T_RE, sums, o.max_coarse_iterations, kCoarseStep_px, false, f.StayNear(T_RE));
   }
-  f.Select(T_RE, 2 * o.coarse_pixels, 0);
+  f.Select(T_RE, o.coarse_pixels, 0);
   f.Iterate(T_RE, sums, o.max_coarse_iterations, kFineStep_px, true, f.StayNear(T_RE));
   f.DropFaces(0.6 * o.min_correlation, 1);
   if (f.Faces() == 0) return {};

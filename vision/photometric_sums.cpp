@@ -13,7 +13,7 @@ void FaceSums::Flush() {
 double FaceSums::Correlation() const {
   const auto& m = moments_;
   if (m[0] <= 0) return 0.0;
-  const double x2 = m[3] - m[1] * m[1] / m[0], y2 = m[4] - m[2] * m[2] / m[0];
+  const float x2 = m[3] - m[1] * m[1] / m[0], y2 = m[4] - m[2] * m[2] / m[0];
   return x2 > 0 && y2 > 0 ? (m[5] - m[1] * m[2] / m[0]) / std::sqrt(x2 * y2) : 0.0;
 }
 

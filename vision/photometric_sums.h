@@ -90,7 +90,7 @@ class FaceSums {
   int filled_ = 0, pixels_ = 0, brighter_ = 0, darker_ = 0;
   Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize> A_ =
       Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize>::Zero();
-  std::array<double, 6> moments_{};
+  std::array<float, 6> moments_{};
   Histogram errors_{};
 };
 

@@ -31,7 +31,7 @@ void PhotometricView::Begin(const Image& image, const Pose& T_CE, const OpticsPr
   image_ = &image;
   prior_ = prior;
   optics_ = prior.mean;
-  tone_ = ToneCurve(optics_.gamma);
+  if (tone_.Gamma() != optics_.gamma) tone_ = ToneCurve(optics_.gamma);
   noise_grey_ = extra_blur_px2_ = 0;
   seen_.clear();
   for (std::size_t i = 0; i < faces_.size(); ++i) {

@@ -5,17 +5,23 @@ namespace flextip {
 // An instrument's tip seldom moves faster than this: the spread of the unknown first velocity.
 constexpr double kFirstSpeed_m_s = 0.1;
 
-// x' = F x, P' = F P F^T + Q; the acceleration is taken as constant between two frames and
-// independent from frame to frame.
+// How long an acceleration lasts: the density of the white noise that takes its place is its
+// variance times this.
+constexpr double kAccelerationTime_s = 0.033;
+// Squared innovation over its covariance beyond which the tip has jumped.
+constexpr double kJump = 100.0;
+
+// x' = F x, P' = F P F^T + Q with white acceleration. (A constant acceleration between two frames
+// would double every velocity error once positions are exact.)
 void TipFilter::Advance(TimeNs t_ns, Vector6& x, Matrix6& P) const {
   const double dt = 1e-9 * static_cast<double>(t_ns - t_ns_);
-  Matrix6 F = Matrix6::Identity();
-  F.topRightCorner<3, 3>() = dt * Eigen::Matrix3d::Identity();
-  Eigen::Matrix<double, 6, 3> G;
-  G << 0.5 * dt * dt * Eigen::Matrix3d::Identity(), dt * Eigen::Matrix3d::Identity();
+  const double q = acceleration_noise_m_s2_ * acceleration_noise_m_s2_ * kAccelerationTime_s;
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  Matrix6 F = Matrix6::Identity(), Q;
+  F.topRightCorner<3, 3>() = dt * I;
+  Q << dt * dt * dt / 3 * I, dt * dt / 2 * I, dt * dt / 2 * I, dt * I;
   x = F * x;
-  P = F * P * F.transpose() +
-      acceleration_noise_m_s2_ * acceleration_noise_m_s2_ * G * G.transpose();
+  P = F * P * F.transpose() + q * Q;
 }
 
 void TipFilter::Measure(TimeNs t_ns, const Eigen::Vector3d& p,
@@ -32,8 +38,13 @@ void TipFilter::Measure(TimeNs t_ns, const Eigen::Vector3d& p,
   Advance(t_ns, x_, P_);
   t_ns_ = t_ns;
   const Eigen::Matrix3d S = P_.topLeftCorner<3, 3>() + covariance_m2;
+  const Eigen::Vector3d innovation = p - x_.head<3>();
+  if (innovation.dot(S.ldlt().solve(innovation)) > kJump) {
+    started_ = false;
+    return Measure(t_ns, p, covariance_m2);
+  }
   const Eigen::Matrix<double, 6, 3> K = S.ldlt().solve(P_.topRows<3>()).transpose();
-  x_ += K * (p - x_.head<3>());
+  x_ += K * innovation;
   const Matrix6 updated = P_ - K * P_.topRows<3>();
   P_ = 0.5 * (updated + updated.transpose());
 }

@@ -100,9 +100,9 @@ bool TipFinder::MightSee(const Pose& T_RE) const {
   return false;
 }
 
-Sight TipFinder::FitPixels(const Images& images, const Pose& T_RE) {
+Sight TipFinder::FitPixels(const Images& images, const Pose& T_RE, bool coarse) {
   Sight sight;
-  sight.pixels = fit_.Fit(images, T_RE, priors_);
+  sight.pixels = fit_.Fit(images, T_RE, priors_, coarse);
   if (!sight.pixels.IsUsable()) return sight;
   for (const ViewFit& view : sight.pixels.views) {
     sight.noise_grey = std::max(sight.noise_grey, view.noise_grey);
@@ -151,7 +151,7 @@ std::vector<TagDetection> TipFinder::PredictedTags(const PhotometricResult& fit)
 
 Sight TipFinder::FindNear(const Images& images, const Pose& T_RE, double radius_px) {
   if (options_.photometric_fit) {
-    Sight sight = FitPixels(images, T_RE);
+    Sight sight = FitPixels(images, T_RE, false);
     for (std::size_t i = 0; i < images.size() && !IsTrusted(sight, T_RE); ++i) {
       if (images[i] == nullptr) continue;
       const Pose& T_RC = models_[i]->Calibration().T_RC;

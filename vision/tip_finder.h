@@ -53,7 +53,7 @@ class TipFinder {
   const CameraModel& Camera(std::size_t i) const { return *models_[i]; }
 
  private:
-  Sight FitPixels(const Images& images, const Pose& T_RE);
+  Sight FitPixels(const Images& images, const Pose& T_RE, bool coarse = true);
   bool IsTrusted(const Sight& sight, const Pose& expected_T_RE) const;
   Sight Acquired(const Images& images, const Sight& corners, const std::optional<Pose>& near_T_RE);
   Sight Refined(const Images& images, const Sight& corners);

@@ -7,7 +7,9 @@
 #include <cstdlib>
 #include <memory>
 
+#include <apriltag/apriltag.h>
 #include "core/error.h"
+
 #include "vision/tag_families.h"
 
 namespace flextip {
