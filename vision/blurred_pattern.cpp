@@ -55,7 +55,11 @@ struct BlurredPattern::Lines {
 };
 
 BlurredPattern::BlurredPattern(const TagCells& tag)
-    : cells_(tag.cells), stride_(tag.cells + 2 * kPad), last_(static_cast<float>(tag.cells) + 3) {
+    : cells_(tag.cells),
+      stride_(tag.cells + 2 * kPad),
+      last_(static_cast<float>(tag.cells) + 3),
+      all_known_(std::none_of(tag.colours.begin(), tag.colours.end(),
+                              [](TagCells::Colour c) { return c == TagCells::kUnknown; })) {
   white_.resize(static_cast<std::size_t>(stride_) * stride_);
   known_.resize(white_.size());
   for (int k = -kPad; k < cells_ + kPad; ++k) {

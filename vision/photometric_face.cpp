@@ -18,24 +18,14 @@ constexpr int kFewestPixels = 30;
 constexpr int kFlatEvery = 7;             // of flat pixels so many are left out for one taken
 constexpr double kHiddenRim_cells = 0.5;  // of a tag's rim that a neighbour may hide
 
-PatternBlur HalfDifference(const PatternBlur& a, const PatternBlur& b) {
-  PatternBlur d;
-  d.sigma_u = 0.5f * (b.sigma_u - a.sigma_u);
-  d.sigma_v = 0.5f * (b.sigma_v - a.sigma_v);
-  d.inverse_u = 0.5f * (b.inverse_u - a.inverse_u);
-  d.inverse_v = 0.5f * (b.inverse_v - a.inverse_v);
-  return d;
-}
-
 }  // namespace
 
 // Rays to the tag's cells: (a, b, 1/z) = to_tag (mx, my, 1), u = a z, v = b z.
 struct PhotometricFace::Geometry {
   Eigen::Matrix3f to_tag;
-  Eigen::Matrix2f uv_of_px;  // derivative at the tag's centre
-  Eigen::Vector3f normal;    // into the tag
-  PatternBlur blur;          // at the centre
-  PatternBlur by_u, by_v;    // its change by half a pattern
+  Eigen::Matrix2f m_of_px;  // derivative of the ray at the tag's centre
+  Eigen::Vector3f normal;   // into the tag
+  PatternBlur blur;         // on the tag, in cells, at its centre
   float half = 0;
   bool valid = false;
 
@@ -47,17 +37,6 @@ struct PhotometricFace::Geometry {
     const float z = 1 / w;
     return {(to_tag(0, 0) * mx + to_tag(0, 1) * my + to_tag(0, 2)) * z,
             (to_tag(1, 0) * mx + to_tag(1, 1) * my + to_tag(1, 2)) * z, z};
-  }
-  // The nearer side of a tag is seen larger, and so less blurred in cells.
-  PatternBlur BlurAt(const Place& at) const {
-    const float fu = at.u / half - 1, fv = at.v / half - 1;
-    PatternBlur b;
-    b.sigma_u = blur.sigma_u + fu * by_u.sigma_u + fv * by_v.sigma_u;
-    b.sigma_v = blur.sigma_v + fu * by_u.sigma_v + fv * by_v.sigma_v;
-    b.inverse_u = blur.inverse_u + fu * by_u.inverse_u + fv * by_v.inverse_u;
-    b.inverse_v = blur.inverse_v + fu * by_u.inverse_v + fv * by_v.inverse_v;
-    b.rho = blur.rho;
-    return b;
   }
 };
 
@@ -106,30 +85,18 @@ PhotometricFace::Geometry PhotometricFace::Place(const CameraModel& camera, cons
   Eigen::Matrix2d spread_px;
   spread_px << optics.blur_px2[0] + kPixelVariance, optics.blur_px2[1], optics.blur_px2[1],
       optics.blur_px2[2] + kPixelVariance;
-  // The blur on the tag, and the derivative of places on it by pixels, at (u, v) in halves from
-  // the centre.
-  const auto blur_at = [&](double fu, double fv,
-                           Eigen::Matrix2f* uv_of_px) -> std::optional<PatternBlur> {
-    const Eigen::Vector2d uv(half * (1 + fu), half * (1 + fv));
-    const Eigen::Vector3d x_C = from_tag * Eigen::Vector3d(uv.x(), uv.y(), 1);
-    Eigen::Matrix<double, 2, 3> J;
-    if (!camera.Project(x_C, &J)) return {};
-    const Eigen::Matrix2d by_px =
-        (to_tag.topLeftCorner<2, 2>() - uv * to_tag.bottomLeftCorner<1, 2>()) *
-        J.leftCols<2>().inverse();
-    const Eigen::Matrix2d spread = by_px * spread_px * by_px.transpose();
-    const double su = std::sqrt(spread(0, 0)), sv = std::sqrt(spread(1, 1));
-    if (!(su < kMaxBlur_cells && sv < kMaxBlur_cells)) return {};
-    if (uv_of_px) *uv_of_px = by_px.cast<float>();
-    return PatternBlur(su, sv, std::clamp(spread(0, 1) / (su * sv), -0.75, 0.75));
-  };
-  const auto centre = blur_at(0, 0, &g.uv_of_px);
-  const auto u0 = blur_at(-1, 0, nullptr), u1 = blur_at(1, 0, nullptr);
-  const auto v0 = blur_at(0, -1, nullptr), v1 = blur_at(0, 1, nullptr);
-  if (!centre || !u0 || !u1 || !v0 || !v1) return g;
-  g.blur = *centre;
-  g.by_u = HalfDifference(*u0, *u1);
-  g.by_v = HalfDifference(*v0, *v1);
+  Eigen::Matrix<double, 2, 3> J;
+  if (!camera.Project(T_CG.p, &J)) return g;
+  const Eigen::Matrix2d m_of_px = (T_CG.p.z() * J.leftCols<2>()).inverse();
+  const Eigen::Matrix2d by_px = T_CG.p.z() *
+                                (to_tag.topLeftCorner<2, 2>() -
+                                 Eigen::Vector2d(half, half) * to_tag.bottomLeftCorner<1, 2>()) *
+                                m_of_px;
+  const Eigen::Matrix2d spread = by_px * spread_px * by_px.transpose();
+  const double su = std::sqrt(spread(0, 0)), sv = std::sqrt(spread(1, 1));
+  if (!(su < kMaxBlur_cells && sv < kMaxBlur_cells)) return g;
+  g.m_of_px = m_of_px.cast<float>();
+  g.blur = PatternBlur(su, sv, std::clamp(spread(0, 1) / (su * sv), -0.75, 0.75));
   g.valid = true;
   return g;
 }
@@ -189,7 +156,7 @@ bool PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE, c
   double n = 0, c1 = 0, c2 = 0, l1 = 0, cl = 0;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
-    const double c = pattern_.At(at.u, at.v, g.BlurAt(at)).c, light = tone.Light(pixel.grey);
+    const double c = pattern_.At(at.u, at.v, g.blur).c, light = tone.Light(pixel.grey);
     n += 1, c1 += c, c2 += c * c, l1 += light, cl += c * light;
   }
   const double spread = c2 - c1 * c1 / n;
@@ -222,15 +189,18 @@ void PhotometricFace::DifferentiatePlace(const Pixel& pixel, const Geometry& g,
   const auto at = g.At(pixel.mx, pixel.my);
   // By the ray, and by the point of the tag that is seen there.
   const Eigen::Matrix3f& T = g.to_tag;
-  const float gx = by_c * (p.c_u * (T(0, 0) - at.u * T(2, 0)) + p.c_v * (T(1, 0) - at.v * T(2, 0)));
-  const float gy = by_c * (p.c_u * (T(0, 1) - at.u * T(2, 1)) + p.c_v * (T(1, 1) - at.v * T(2, 1)));
+  Eigen::Matrix2f D;  // by the ray, over the depth
+  D << T(0, 0) - at.u * T(2, 0), T(0, 1) - at.u * T(2, 1), T(1, 0) - at.v * T(2, 0),
+      T(1, 1) - at.v * T(2, 1);
+  const float gx = by_c * (p.c_u * D(0, 0) + p.c_v * D(1, 0));
+  const float gy = by_c * (p.c_u * D(0, 1) + p.c_v * D(1, 1));
   const Eigen::Vector3f h(-gx, -gy, gx * pixel.mx + gy * pixel.my);
   const Eigen::Vector3f q = Eigen::Vector3f(pixel.mx * at.z, pixel.my * at.z, at.z) - pivot;
   row.segment<3>(0) = q.cross(h);
   row.segment<3>(3) = h;
   row[FaceColumns::kOffset] = -h.dot(g.normal);
   // Spreading is diffusion: the derivative by a variance is half the second derivative.
-  const Eigen::Matrix2f& B = g.uv_of_px;
+  const Eigen::Matrix2f B = at.z * D * g.m_of_px;
   const float a = B(0, 0), b = B(0, 1), c = B(1, 0), d = B(1, 1);
   row[FaceColumns::kBlur] = 0.5f * by_c * (a * a * p.c_uu + 2 * a * c * p.c_uv + c * c * p.c_vv);
   row[FaceColumns::kBlur + 1] = by_c * (a * b * p.c_uu + (a * d + c * b) * p.c_uv + c * d * p.c_vv);
@@ -250,7 +220,7 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
   Row row;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
-    const PatternValue p = pattern_.At(at.u, at.v, g.BlurAt(at));
+    const PatternValue p = pattern_.At(at.u, at.v, g.blur);
     light.At(at.u, at.v);
     const float contrast = light.white - light.black;
     const ToneCurve::Value film = tone.At(light.black + p.c * contrast);

@@ -16,7 +16,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // A stage ends with a step below so many pixels, the last with one whose square is below so
 // many of its own variances.
 constexpr double kCoarseStep_px = 0.8, kFineStep_px = 0.25;
-constexpr double kLastStep = 2.5, kGoodStep = 3.0;  // the second: where the iterations run out
+constexpr double kLastStep = 1.0, kGoodStep = 3.0;  // the second: where the iterations run out
 constexpr double kNear_px = 6.0, kNearPart = 0.03, kNear_rad = 0.12;
 constexpr double kMaxTurn_rad = 0.2;
 constexpr double kParallel = 0.985;  // cosine of 10 degrees
@@ -186,8 +186,9 @@ Matrix6 PhotometricFit::Impl::ModelCovariance(const Pose& T_RE) const {
     const auto sum = Reproject(cameras[i]->model, corners, cameras[i]->T_CR * T_RE);
     const Matrix6 Q = Turn(cameras[i]->T_CR.R.transpose());
     const double noise_px = options.model_noise_px + views[i].ExcessNoise_px();
-    if (sum) information += Q * sum->JtJ * Q.transpose() / (noise_px * noise_px);
+    if (sum && noise_px > 0) information += Q * sum->JtJ * Q.transpose() / (noise_px * noise_px);
   }
+  if (information.isZero()) return Matrix6::Zero();
   return information.ldlt().solve(Matrix6::Identity());
 }
 
