@@ -1,6 +1,7 @@
 // Grey values of colour pixels, everywhere the same.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "core/image.h"
@@ -15,7 +16,8 @@ inline std::uint8_t GreyOf(const std::uint8_t* bgr) {
 /// Not rounded for colour images.
 inline float GreyAt(const Image& image, int x, int y) {
   const std::uint8_t* at = image.Row(y) + static_cast<std::ptrdiff_t>(x) * image.channels;
-  return image.channels == 1 ? at[0] : 0.114f * at[0] + 0.587f * at[1] + 0.299f * at[2];
+  const auto value = [at](int channel) { return static_cast<float>(at[channel]); };
+  return image.channels == 1 ? value(0) : 0.114f * value(0) + 0.587f * value(1) + 0.299f * value(2);
 }
 
 }  // namespace flextip

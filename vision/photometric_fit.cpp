@@ -104,7 +104,7 @@ struct PhotometricFit::Impl {
   }
 
   // How far the collar moves in the pictures when E goes from one pose to the other (px).
-  double Moved_px(const Pose& from_T_RE, const Pose& to_T_RE) const {
+  double MovedPx(const Pose& from_T_RE, const Pose& to_T_RE) const {
     double most = 0;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       for (const Eigen::Vector3d& x_E : points_E) {
@@ -151,7 +151,7 @@ struct PhotometricFit::Impl {
       const double turn = step.head<3>().norm();
       if (turn > kMaxTurn_rad) step *= kMaxTurn_rad / turn;
       const Pose moved = MovePose(T_RE, step);
-      const double moved_px = Moved_px(T_RE, moved);
+      const double moved_px = MovedPx(T_RE, moved);
       T_RE = moved;
       const bool settled = Step(step);
       last_size = size;
@@ -185,7 +185,7 @@ Matrix6 PhotometricFit::Impl::ModelCovariance(const Pose& T_RE) const {
     for (const Eigen::Vector3d& x_E : views[i].Corners()) corners.push_back({x_E, {0, 0}});
     const auto sum = Reproject(cameras[i]->model, corners, cameras[i]->T_CR * T_RE);
     const Matrix6 Q = Turn(cameras[i]->T_CR.R.transpose());
-    const double noise_px = options.model_noise_px + views[i].ExcessNoise_px();
+    const double noise_px = options.model_noise_px + views[i].ExcessNoisePx();
     if (sum && noise_px > 0) information += Q * sum->JtJ * Q.transpose() / (noise_px * noise_px);
   }
   if (information.isZero()) return Matrix6::Zero();

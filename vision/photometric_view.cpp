@@ -272,7 +272,7 @@ OpticsPrior PhotometricView::Learned(const Eigen::Matrix<double, 6, 6>& covarian
   return next;
 }
 
-double PhotometricView::ExcessNoise_px() const {
+double PhotometricView::ExcessNoisePx() const {
   if (prior_.noise_grey <= 0 || noise_grey_ <= prior_.noise_grey) return 0.0;
   double contrast = 0;
   for (const FaceFit& face : FaceFits()) contrast = std::max(contrast, face.contrast);

@@ -75,7 +75,7 @@ class PhotometricView {
   std::vector<Eigen::Vector3d> Corners() const;
 
   /// What residuals beyond the film's noise may move an edge by: light that the model lacks.
-  double ExcessNoise_px() const;
+  double ExcessNoisePx() const;
 
   /// Robust standard deviation of a pixel's residual (grey values) in the last Linearise.
   double NoiseGrey() const { return noise_grey_; }

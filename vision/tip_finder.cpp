@@ -13,6 +13,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kMinSearchCorrelation = 0.35;
 constexpr double kAmbiguousRatio = 30.0;     // twice the log of the odds
+constexpr double kAmbiguousPerPixel = 0.15;  // log of the ratio of the noises
 constexpr double kCornerFallback_px = 0.35;  // what corners alone may be wrong by: gamma, blur
 constexpr double kMaxTurn_rad = 0.5, kMaxTurnCovered_rad = 0.25;  // from one picture to the next
 constexpr double kMaxNoiseOfContrast = 0.12;
@@ -311,7 +312,9 @@ void TipFinder::CheckOtherPlanarPose(const Images& images, const std::optional<P
     const double apart = PoseDifference(sight.T_RE, second.T_RE).head<3>().norm();
     if (apart < 0.02) return;  // the same minimum
     double ratio = LogLikelihoodRatio2(sight.pixels, second.pixels);
-    const bool unclear = std::abs(ratio) < kAmbiguousRatio;
+    // Residuals that are not noise (glare, blur) go together: their number proves little.
+    const bool unclear = std::abs(ratio) < kAmbiguousRatio ||
+                         std::abs(ratio) < 2 * kAmbiguousPerPixel * sight.pixels.pixels;
     bool swap = ratio < 0;
     if (unclear && near_T_RE) {
       swap = PoseDifference(*near_T_RE, second.T_RE).head<3>().norm() <

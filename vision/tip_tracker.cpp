@@ -239,6 +239,7 @@ TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
                                   const std::optional<TipPrediction>& expected, bool has_model,
                                   const Images& images) {
   TipTrack track;
+  const bool by_images = !images.empty();
   track.tags = sight.tags;
   track.source = sight.source;
   track.rms_px = sight.rms_px;
@@ -247,7 +248,11 @@ TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
   track.outline_used = sight.outline_used;
   track.ambiguous = sight.ambiguous;
   track.alternative_T_RE = sight.alternative_T_RE;
-  if (sight.Found() && MaxSd(sight.covariance.bottomRightCorner<3, 3>()) <= options.max_ok_sd_m) {
+  // Corners that the pixels do not confirm (covered, blurred) are no measurement to rely on.
+  const bool confirmed =
+      sight.source == TrackSource::kPixels || !options.photometric_fit || !by_images;
+  if (confirmed && sight.Found() &&
+      MaxSd(sight.covariance.bottomRightCorner<3, 3>()) <= options.max_ok_sd_m) {
     Report(sight, track);
     Remember(sight, t_ns);
     return track;
