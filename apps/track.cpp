@@ -211,19 +211,19 @@ void AddTrack(CLI::App& app, AppContext& context) {
   command->add_flag("--resume", options->resume, "Go on where an interrupted run ended");
   command->footer(
       "Examples:\n"
-      "  a recording (both eyes where it has cam1, the wrist where it has wrist0)\n"
-      "    flextip track RECORDING -o OUT --overlay\n"
-      "  a folder of PNG, JPEG or TIFF pictures, here of a 12-bit camera at 50 Hz\n"
-      "    flextip track pictures/ --camera sensor.yaml --collar collar.yaml --rate 50 "
+      "a recording (both eyes where it has cam1, the wrist where it has wrist0)\n"
+      "  flextip track RECORDING -o OUT --overlay\n"
+      "a folder of PNG, JPEG or TIFF pictures, here of a 12-bit camera at 50 Hz\n"
+      "  flextip track pictures/ --camera sensor.yaml --collar collar.yaml --rate 50 "
       "--black-white 0,4095 -o OUT\n"
-      "  a video\n"
-      "    flextip track video.mp4 --camera camera_info.yaml --collar collar.yaml -o OUT\n"
-      "  a camera that is plugged in, or a stream, until Ctrl-C\n"
-      "    flextip track --live 0 --camera sensor.yaml --collar collar.yaml -o OUT\n"
-      "    flextip track --live rtsp://HOST/STREAM --camera sensor.yaml --collar collar.yaml -o "
+      "a video\n"
+      "  flextip track video.mp4 --camera camera_info.yaml --collar collar.yaml -o OUT\n"
+      "a camera that is plugged in, or a stream, until Ctrl-C\n"
+      "  flextip track --live 0 --camera sensor.yaml --collar collar.yaml -o OUT\n"
+      "  flextip track --live rtsp://HOST/STREAM --camera sensor.yaml --collar collar.yaml -o "
       "OUT\n"
-      "  after an interruption\n"
-      "    flextip track RECORDING -o OUT --resume\n");
+      "after an interruption\n"
+      "  flextip track RECORDING -o OUT --resume\n");
   OnRun(*command, context, [options, &context] { RunTrack(*options, context.quiet); });
 }
 
