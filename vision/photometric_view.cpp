@@ -135,7 +135,7 @@ int PhotometricView::DropFaces(double min_correlation, double min_contrast,
 std::vector<Eigen::Vector3d> PhotometricView::Normals() const {
   std::vector<Eigen::Vector3d> normals;
   for (const SeenFace& s : seen_) {
-    if (s.active) normals.push_back(-faces_[s.face].Tag().T_EG.R.col(2));
+    if (s.active) normals.emplace_back(-faces_[s.face].Tag().T_EG.R.col(2));
   }
   return normals;
 }
