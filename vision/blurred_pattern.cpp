@@ -95,28 +95,23 @@ PatternValue BlurredPattern::AtMany(float at_u, float at_v, const PatternBlur& b
   }
   u.Derivatives(column, value.c_u, value.c_uu);
   v.Derivatives(row, value.c_v, value.c_vv);
-  if (u.n > 0 && v.n > 0) AddCorrelation(u, v, blur.rho, value);
+  AddCrossings(u, v, blur, value);
   return value;
 }
 
 // The pattern is a sum of quarter planes, one at each crossing of lines, and the mean of a quarter
 // plane is the bivariate normal distribution.
-void BlurredPattern::AddCorrelation(const Lines& u, const Lines& v, float rho,
-                                    PatternValue& value) const {
+void BlurredPattern::AddCrossings(const Lines& u, const Lines& v, const PatternBlur& blur,
+                                  PatternValue& value) const {
   for (int i = 0; i < u.n; ++i) {
     const float* before = Column(u.first - 1 + i) + v.first - 1 + kPad;
     const float* after = before + stride_;
     for (int j = 0; j < v.n; ++j) {
       const float corner = before[j] - before[j + 1] - after[j] + after[j + 1];
       if (corner == 0) continue;
-      const float density = corner * u.density[i] * v.density[j];
-      const float x = u.x[i], y = v.x[j];
-      value.c +=
-          density * rho * (1 + 0.5f * rho * (x * y + rho * (x * x - 1) * (y * y - 1) * (1.0f / 3)));
-      value.c_uv += density;
+      AddCrossing(corner * u.density[i] * v.density[j], u.x[i], v.x[j], blur, value);
     }
   }
-  value.c_uv /= u.sigma * v.sigma;
 }
 
 bool BlurredPattern::Known(float u, float v, float reach_u, float reach_v) const {

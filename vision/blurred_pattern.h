@@ -30,7 +30,7 @@ struct PatternValue {
 
 /// The mean of the pattern under a bivariate normal distribution, exact but for the tails beyond
 /// 3.5 sigma and the correlation, which enters by the tetrachoric series to its third power (right
-/// to 0.0015 for |rho| < 0.4, to 0.006 at 0.6); derivatives leave the correlation out.
+/// to 0.0015 for |rho| < 0.4, to 0.006 at 0.6); into the derivatives it enters by the first.
 class BlurredPattern {
  public:
   explicit BlurredPattern(const TagCells& tag);
@@ -76,8 +76,11 @@ class BlurredPattern {
   };
   PatternValue AtOneCrossing(const Near& u, const Near& v, const PatternBlur& blur) const;
   PatternValue AtMany(float u, float v, const PatternBlur& blur) const;
+  static void AddCrossing(float density, float x, float y, const PatternBlur& blur,
+                          PatternValue& value);
   const float* Column(int k) const { return &white_[static_cast<std::size_t>(k + kPad) * stride_]; }
-  void AddCorrelation(const Lines& u, const Lines& v, float rho, PatternValue& value) const;
+  void AddCrossings(const Lines& u, const Lines& v, const PatternBlur& blur,
+                    PatternValue& value) const;
 
   int cells_, stride_;
   float last_;                // three cells beyond the pattern
@@ -86,6 +89,20 @@ class BlurredPattern {
   bool all_known_;            // within the pattern
   const NormalTable* normal_ = &NormalTable::Get();
 };
+
+// What a crossing of lines adds where the two axes are correlated; `density`: the product of both
+// axes' densities there times the crossing's colour. Derivatives to the first order in rho.
+inline void BlurredPattern::AddCrossing(float density, float x, float y, const PatternBlur& blur,
+                                        PatternValue& value) {
+  const float rho = blur.rho, su = blur.inverse_u, sv = blur.inverse_v;
+  value.c += density * rho *
+             (1 + 0.5f * rho * (x * y + rho * (x * x - 1) * (y * y - 1) * (1.0f / 3)));
+  value.c_u += density * rho * x * su;
+  value.c_v += density * rho * y * sv;
+  value.c_uu += density * rho * (x * x - 1) * su * su;
+  value.c_vv += density * rho * (y * y - 1) * sv * sv;
+  value.c_uv += density * (1 + rho * x * y) * su * sv;
+}
 
 // With at most one line each way there are four cells at most.
 inline PatternValue BlurredPattern::AtOneCrossing(const Near& u, const Near& v,
@@ -123,12 +140,7 @@ inline PatternValue BlurredPattern::AtOneCrossing(const Near& u, const Near& v,
   value.c_uu = u.x * value.c_u * su;
   value.c_v = nv.density * sv * (before[1] - before[0] + (1 - nu.cdf) * corner);
   value.c_vv = v.x * value.c_v * sv;
-  const float density = corner * nu.density * nv.density;
-  const float xy = u.x * v.x;
-  value.c +=
-      density * blur.rho *
-      (1 + 0.5f * blur.rho * (xy + blur.rho * (u.x * u.x - 1) * (v.x * v.x - 1) * (1.0f / 3)));
-  value.c_uv = density * su * sv;
+  AddCrossing(corner * nu.density * nv.density, u.x, v.x, blur, value);
   return value;
 }
 

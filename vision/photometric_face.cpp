@@ -11,7 +11,7 @@ namespace {
 constexpr double kMinCosine = 0.105;         // of the angle between normal and view: 84 degrees
 constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
 constexpr float kReachOfUnknown = 3.2f;      // sigmas kept from what is not known
-constexpr float kEdgeReach = 2.1f;  // sigmas from an edge within which pixels say something
+constexpr float kEdgeReach = 2.9f;  // sigmas from an edge within which pixels say something
 constexpr float kSaturated_grey = 252.0f;
 constexpr double kMaxBlur_cells = 1.6;
 constexpr int kFewestPixels = 30;

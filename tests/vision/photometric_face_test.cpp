@@ -152,7 +152,7 @@ TEST(PhotometricFace, RowsAreTheDerivativesOfThePrediction) {
 TEST(PhotometricFace, RowsAreNearlySoAslant) {
   for (const Eigen::Vector3d& turn : {Eigen::Vector3d(0.7, 0, 0), Eigen::Vector3d(0.4, 0.5, 0)}) {
     const auto errors = RelativeErrors(Turned(turn));
-    EXPECT_LT(errors.maxCoeff(), 0.15) << errors.transpose();
+    EXPECT_LT(errors.maxCoeff(), 0.12) << errors.transpose();
     EXPECT_LT(errors.tail<6>().maxCoeff(), 0.001) << errors.transpose();
   }
 }
