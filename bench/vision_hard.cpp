@@ -13,9 +13,9 @@
 #include "bench/tool.h"
 #include "bench/vision_score.h"
 #include "bench/vision_sequence.h"
-#include "bench/vision_track.h"
 #include "core/rotation.h"
 #include "recording/text.h"
+#include "vision/tip_tracker.h"
 
 namespace flextip {
 namespace {
@@ -149,7 +149,7 @@ SequenceScore RunSequence(const Arguments& a, int number) {
     std::optional<TipPrediction> prediction;
     if (a.wrist) prediction = model.Predict(s.motion.TipAt(frame / VisionSequence::kRate_hz));
     const auto start = std::chrono::steady_clock::now();
-    const TipTrack track = TrackFrame(tracker, image, t_ns, prediction);
+    const TipTrack track = tracker.Track(image, t_ns, prediction);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     score.frames.push_back(ScoreFrame(s, frame, track));
     score.frames.back().ms = took.count();
@@ -196,9 +196,6 @@ void RunAll(const Arguments& a) {
 void Run(Arguments& arguments) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   cv::setNumThreads(1);
-  if (arguments.wrist && !kTakesPrediction<TipTracker>) {
-    throw InputError("--wrist: this tracker takes no prediction");
-  }
   if (!arguments.sheet.empty()) {
     WriteSheet(arguments);
     return;

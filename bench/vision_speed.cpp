@@ -12,9 +12,9 @@
 #include "bench/tool.h"
 #include "bench/vision_figures.h"
 #include "bench/vision_scene.h"
-#include "bench/vision_track.h"
 #include "recording/text.h"
 #include "simulation/laparoscope.h"
+#include "vision/tip_tracker.h"
 
 namespace flextip {
 namespace {
@@ -123,7 +123,7 @@ class FlextipTracking : public Contender {
     PeerAnswer answer;
     TipTrack track;
     answer.ms = TimeMs([&] {
-      track = TrackFrame(*tracker_, clip.frames[frame], static_cast<TimeNs>(frame) * kStep_ns, {});
+      track = tracker_->Track(clip.frames[frame], static_cast<TimeNs>(frame) * kStep_ns);
     });
     if (track.tip.status == TipStatus::kOk) {
       answer.T_CE = clip.camera.T_RC.Inverse() * track.T_RE;

@@ -95,8 +95,8 @@ class BlurredPattern {
 inline void BlurredPattern::AddCrossing(float density, float x, float y, const PatternBlur& blur,
                                         PatternValue& value) {
   const float rho = blur.rho, su = blur.inverse_u, sv = blur.inverse_v;
-  value.c += density * rho *
-             (1 + 0.5f * rho * (x * y + rho * (x * x - 1) * (y * y - 1) * (1.0f / 3)));
+  value.c +=
+      density * rho * (1 + 0.5f * rho * (x * y + rho * (x * x - 1) * (y * y - 1) * (1.0f / 3)));
   value.c_u += density * rho * x * su;
   value.c_v += density * rho * y * sv;
   value.c_uu += density * rho * (x * x - 1) * su * su;

@@ -21,13 +21,6 @@ constexpr double kNear_px = 6.0, kNearPart = 0.03, kNear_rad = 0.12;
 constexpr double kMaxTurn_rad = 0.2;
 constexpr double kParallel = 0.985;  // cosine of 10 degrees
 
-// Both halves of a (dw, dp) turned from C to R.
-Matrix6 Turn(const Eigen::Matrix3d& R_RC) {
-  Matrix6 Q = Matrix6::Zero();
-  Q.topLeftCorner<3, 3>() = Q.bottomRightCorner<3, 3>() = R_RC;
-  return Q;
-}
-
 struct Camera {
   explicit Camera(const CameraCalibration& calibration)
       : model(calibration), lens(model), T_CR(calibration.T_RC.Inverse()) {}
@@ -84,9 +77,9 @@ struct PhotometricFit::Impl {
       if (!present[i] || views[i].Faces() == 0) continue;
       const PoseTerm term = views[i].Linearise(cameras[i]->T_CR * T_RE, redescending);
       const double variance = std::pow(std::max(views[i].NoiseGrey(), 0.5), 2);
-      const Matrix6 Q = Turn(cameras[i]->T_CR.R.transpose());
-      sums.JtJ += Q * term.JtJ * Q.transpose() / variance;
-      sums.Jtr += Q * term.Jtr / variance;
+      const Eigen::Matrix3d R_RC = cameras[i]->T_CR.R.transpose();
+      sums.JtJ += Turned(term.JtJ, R_RC) / variance;
+      sums.Jtr += Turned(term.Jtr, R_RC) / variance;
       sums.weight += term.weight;
       sums.pixels += term.pixels;
     }
@@ -98,7 +91,7 @@ struct PhotometricFit::Impl {
     bool settled = true;
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (!present[i] || views[i].Faces() == 0) continue;
-      settled = views[i].Step(Turn(cameras[i]->T_CR.R).eval() * step_R) && settled;
+      settled = views[i].Step(Turned(step_R, cameras[i]->T_CR.R)) && settled;
     }
     return settled;
   }
@@ -120,8 +113,8 @@ struct PhotometricFit::Impl {
   // some pixels across, and in proportion along the line of sight and in rotation.
   Matrix6 StayNear(const Pose& T_RE) const {
     Eigen::Vector3d centre_E = Eigen::Vector3d::Zero();
-    for (const Eigen::Vector3d& x_E : points_E)
-      centre_E += x_E / static_cast<double>(points_E.size());
+    for (const Eigen::Vector3d& x_E : points_E) centre_E += x_E;
+    centre_E /= static_cast<double>(points_E.size());
     const Camera& camera = *cameras[0];
     const double z = std::max(0.01, (camera.T_CR * (T_RE * centre_E)).z());
     const double across = kNear_px * z / camera.model.Calibration().fu_px;
@@ -184,9 +177,10 @@ Matrix6 PhotometricFit::Impl::ModelCovariance(const Pose& T_RE) const {
     std::vector<Correspondence> corners;
     for (const Eigen::Vector3d& x_E : views[i].Corners()) corners.push_back({x_E, {0, 0}});
     const auto sum = Reproject(cameras[i]->model, corners, cameras[i]->T_CR * T_RE);
-    const Matrix6 Q = Turn(cameras[i]->T_CR.R.transpose());
     const double noise_px = options.model_noise_px + views[i].ExcessNoisePx();
-    if (sum && noise_px > 0) information += Q * sum->JtJ * Q.transpose() / (noise_px * noise_px);
+    if (sum && noise_px > 0) {
+      information += Turned(sum->JtJ, cameras[i]->T_CR.R.transpose()) / (noise_px * noise_px);
+    }
   }
   if (information.isZero()) return Matrix6::Zero();
   return information.ldlt().solve(Matrix6::Identity());
@@ -206,9 +200,8 @@ PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sum
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (present[i]) result.faces_in_view += views[i].FacesInView(cameras[i]->T_CR * T_RE);
     ViewFit fit;
-    const Matrix6 Q = Turn(cameras[i]->T_CR.R);
     if (present[i]) {
-      fit = {views[i].Learned(Q * covariance * Q.transpose()), views[i].NoiseGrey(),
+      fit = {views[i].Learned(Turned(covariance, cameras[i]->T_CR.R)), views[i].NoiseGrey(),
              views[i].FaceFits()};
     }
     result.views.push_back(fit);
@@ -228,7 +221,9 @@ double LogLikelihoodRatio2(const PhotometricResult& a, const PhotometricResult& 
   double ratio = 0;
   for (std::size_t i = 0; i < std::min(a.views.size(), b.views.size()); ++i) {
     if (a.views[i].noise_grey <= 0 || b.views[i].noise_grey <= 0) continue;
-    ratio += 2 * a.pixels * std::log(b.views[i].noise_grey / a.views[i].noise_grey);
+    int pixels = 0;
+    for (const FaceFit& face : a.views[i].faces) pixels += face.pixels;
+    ratio += 2 * pixels * std::log(b.views[i].noise_grey / a.views[i].noise_grey);
   }
   return ratio;
 }

@@ -25,7 +25,7 @@ struct PhotometricOptions {
   int coarse_pixels = 500;             ///< of all faces together, until the steps become small
   double coarse_extra_blur_px2 = 2.0;  ///< widens the reach of the first steps
   int max_coarse_iterations = 8, max_iterations = 6;
-  double min_correlation = 0.88;  ///< of a face's measured and predicted grey values
+  double min_correlation = 0.96;  ///< of a face's measured and predicted grey values
   double min_contrast_grey = 10.0;
   double max_contradicted = 0.02;  ///< of a face's pixels, white for black and black for white each
   double min_inliers = 0.6;        ///< mean weight of all pixels

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/rotation.h"
+#include "vision/collar_pose.h"
 
 namespace flextip {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 constexpr double kFirstScale_grey = 25.0, kMinNoise_grey = 0.7;
 constexpr double kSlopeOfContrast = 0.15;  // how much light may change over a face
 constexpr double kMinBlur_px2 = 0.01, kMaxBlur_px2 = 60.0;
+constexpr double kRim_px = 4.0;     // a tag's surroundings are to be in the picture too
 constexpr double kWellSeen = 0.45;  // cosine of 63 degrees
 constexpr double kAslant = 0.3;     // cosine of 73 degrees
 constexpr double kMaxExtraBlur_cells = 0.3;
@@ -93,12 +95,11 @@ int PhotometricView::FacesInView(const Pose& T_CE) const {
       std::count_if(faces_.begin(), faces_.end(), [&](const PhotometricFace& face) {
         const CollarTag& tag = face.Tag();
         if (face.Cosine(T_CE) < kWellSeen) return false;
-        const double h = 0.6 * tag.size_m;
-        for (const auto& [x, y] :
-             {std::pair{-h, h}, std::pair{h, h}, std::pair{h, -h}, std::pair{-h, -h}}) {
-          const auto px = camera_.Project(T_CE * (tag.T_EG * Eigen::Vector3d(x, y, 0)));
-          const bool inside = px && px->x() >= 0 && px->y() >= 0 && px->x() <= c.width_px - 1 &&
-                              px->y() <= c.height_px - 1;
+        for (const Eigen::Vector3d& x_E : CornersInE(tag)) {
+          const auto px = camera_.Project(T_CE * x_E);
+          const bool inside = px && px->x() >= kRim_px && px->y() >= kRim_px &&
+                              px->x() <= c.width_px - 1 - kRim_px &&
+                              px->y() <= c.height_px - 1 - kRim_px;
           if (!inside) return false;
         }
         return true;
@@ -286,12 +287,8 @@ std::vector<Eigen::Vector3d> PhotometricView::Corners() const {
   std::vector<Eigen::Vector3d> corners;
   for (const SeenFace& s : seen_) {
     if (!s.active) continue;
-    const CollarTag& tag = faces_[s.face].Tag();
-    const double h = 0.5 * tag.size_m;
-    for (const auto& [x, y] :
-         {std::pair{-h, h}, std::pair{h, h}, std::pair{h, -h}, std::pair{-h, -h}}) {
-      corners.push_back(tag.T_EG * Eigen::Vector3d(x, y, 0));
-    }
+    const auto of_face = CornersInE(faces_[s.face].Tag());
+    corners.insert(corners.end(), of_face.begin(), of_face.end());
   }
   return corners;
 }

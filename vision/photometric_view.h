@@ -43,9 +43,6 @@ class PhotometricView {
   PhotometricView(const CameraModel& camera, const LensMap& lens,
                   std::vector<PhotometricFace> faces);
 
-  const CameraModel& Camera() const { return camera_; }
-  const Optics& SeenOptics() const { return optics_; }
-
   /// Starts with a picture: the faces seen from T_CE take part.
   void Begin(const Image& image, const Pose& T_CE, const OpticsPrior& prior);
 

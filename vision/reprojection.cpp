@@ -16,6 +16,20 @@ Eigen::Matrix<double, 6, 1> PoseDifference(const Pose& from, const Pose& to) {
   return step;
 }
 
+Eigen::Matrix<double, 6, 6> Turned(const Eigen::Matrix<double, 6, 6>& covariance_B,
+                                   const Eigen::Matrix3d& R_AB) {
+  Eigen::Matrix<double, 6, 6> Q = Eigen::Matrix<double, 6, 6>::Zero();
+  Q.topLeftCorner<3, 3>() = Q.bottomRightCorner<3, 3>() = R_AB;
+  return Q * covariance_B * Q.transpose();
+}
+
+Eigen::Matrix<double, 6, 1> Turned(const Eigen::Matrix<double, 6, 1>& step_B,
+                                   const Eigen::Matrix3d& R_AB) {
+  Eigen::Matrix<double, 6, 1> step_A;
+  step_A << R_AB * step_B.head<3>(), R_AB * step_B.tail<3>();
+  return step_A;
+}
+
 std::optional<ReprojectionError> Reproject(const CameraModel& camera,
                                            const std::vector<Correspondence>& points,
                                            const Pose& T_CE) {

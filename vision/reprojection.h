@@ -30,6 +30,13 @@ Pose MovePose(const Pose& T_CE, const Eigen::Matrix<double, 6, 1>& step);
 /// The step (dw, dp) that takes `from` to `to`.
 Eigen::Matrix<double, 6, 1> PoseDifference(const Pose& from, const Pose& to);
 
+/// The covariance, or information, of a step (dw, dp) in the axes of A as it is in those of B.
+Eigen::Matrix<double, 6, 6> Turned(const Eigen::Matrix<double, 6, 6>& covariance_B,
+                                   const Eigen::Matrix3d& R_AB);
+/// A step (dw, dp), or a gradient by one, likewise.
+Eigen::Matrix<double, 6, 1> Turned(const Eigen::Matrix<double, 6, 1>& step_B,
+                                   const Eigen::Matrix3d& R_AB);
+
 /// Empty where a point falls behind the camera or out of the lens model's range.
 std::optional<ReprojectionError> Reproject(const CameraModel& camera,
                                            const std::vector<Correspondence>& points,

@@ -15,20 +15,13 @@ constexpr double kMinSearchCorrelation = 0.35;
 constexpr double kAmbiguousRatio = 30.0;     // twice the log of the odds
 constexpr double kAmbiguousPerPixel = 0.15;  // log of the ratio of the noises
 constexpr double kCornerFallback_px = 0.35;  // what corners alone may be wrong by: gamma, blur
-constexpr double kMaxTurn_rad = 0.5, kMaxTurnCovered_rad = 0.25;  // from one picture to the next
-constexpr double kMaxNoiseOfContrast = 0.12;
+constexpr double kMaxTurn_rad = 0.5, kMaxTurnUnsure_rad = 0.25;  // from one picture to the next
 constexpr double kFirstBlurSd_px2 = 3.0;
 constexpr int kDetectMargin_px = 12;
 
 TagDetectorOptions DetectorFor(const TagCollar& collar, TagDetectorOptions options) {
   options.family = collar.family;
   return options;
-}
-
-Matrix6 Turned(const Matrix6& covariance_C, const Eigen::Matrix3d& R_RC) {
-  Matrix6 Q = Matrix6::Zero();
-  Q.topLeftCorner<3, 3>() = Q.bottomRightCorner<3, 3>() = R_RC;
-  return Q * covariance_C * Q.transpose();
 }
 
 Image Crop(const Image& image, int x0, int y0, int width, int height) {
@@ -107,9 +100,6 @@ Sight TipFinder::FitPixels(const Images& images, const Pose& T_RE, bool coarse) 
   if (!sight.pixels.IsUsable()) return sight;
   for (const ViewFit& view : sight.pixels.views) {
     sight.noise_grey = std::max(sight.noise_grey, view.noise_grey);
-    for (const FaceFit& face : view.faces) {
-      if (view.noise_grey > kMaxNoiseOfContrast * face.contrast) return sight;
-    }
   }
   sight.source = TrackSource::kPixels;
   sight.T_RE = sight.pixels.T_RE;
@@ -119,13 +109,18 @@ Sight TipFinder::FitPixels(const Images& images, const Pose& T_RE, bool coarse) 
   return sight;
 }
 
+// Whether the tags that should be in view are.
+bool TipFinder::IsComplete(const Sight& sight) const {
+  return sight.pixels.faces >= sight.pixels.faces_in_view;
+}
+
 // Another minimum leaves more than the noise of the pictures before, turns far from what was
 // expected, or would show tags that are not there.
 bool TipFinder::IsTrusted(const Sight& sight, const Pose& expected_T_RE) const {
   if (!sight.Found()) return false;
   const double turn = PoseDifference(expected_T_RE, sight.T_RE).head<3>().norm();
-  const bool complete = sight.pixels.faces >= sight.pixels.faces_in_view;
-  if (turn > (complete ? kMaxTurn_rad : kMaxTurnCovered_rad)) return false;
+  const bool sure = IsComplete(sight) && !sight.pixels.one_plane;
+  if (turn > (sure ? kMaxTurn_rad : kMaxTurnUnsure_rad)) return false;
   return noise_grey_ <= 0 || sight.noise_grey < 1.6 * noise_grey_ + 0.5;
 }
 
@@ -212,44 +207,25 @@ Sight TipFinder::FindAnywhere(const Images& images, const std::optional<Pose>& n
 // The camera that knows best decides.
 Sight TipFinder::BestOf(const std::vector<std::vector<TagDetection>>& tags,
                         const std::optional<Pose>& near_T_RE) const {
+  CollarPoseOptions options = options_.pose;
+  if (options_.photometric_fit) options.corner_noise_floor_px = kCornerFallback_px;
+  const auto spread = [](const Sight& s) { return s.covariance.bottomRightCorner<3, 3>().trace(); };
   Sight best;
   for (std::size_t i = 0; i < tags.size(); ++i) {
-    const Pose& T_RC = models_[i]->Calibration().T_RC;
-    std::optional<Pose> near_T_CE;
-    if (near_T_RE) near_T_CE = T_RC.Inverse() * *near_T_RE;
-    CollarPoseOptions corners = options_.pose;
-    if (options_.photometric_fit) corners.corner_noise_floor_px = kCornerFallback_px;
-    const CollarPose pose = EstimateCollarPose(*models_[i], collar_, tags[i], corners, near_T_CE);
-    if (!pose.IsUsable()) {
-      if (i == 0) best.tags = tags[0];
-      continue;
-    }
-    const Matrix6 covariance = Turned(pose.covariance, T_RC.R);
-    if (best.Found() && covariance.bottomRightCorner<3, 3>().trace() >
-                            best.covariance.bottomRightCorner<3, 3>().trace()) {
-      continue;
-    }
-    best.source = TrackSource::kCorners;
-    best.T_RE = T_RC * pose.T_CE;
-    best.covariance = covariance;
-    best.tags = tags[0];
-    best.rms_px = pose.rms_px;
-    best.squared_error_px2 = pose.squared_error_px2;
-    best.dof = pose.dof;
-    best.tags_used = pose.tags_used;
-    best.ambiguous = pose.ambiguous;
-    if (pose.alternative) best.alternative_T_RE = T_RC * *pose.alternative;
+    const Sight sight = FromTags(i, tags[i], near_T_RE, options);
+    if (sight.Found() && (!best.Found() || spread(sight) < spread(best))) best = sight;
   }
+  best.tags = tags[0];
   return best;
 }
 
-Sight TipFinder::FromTags(const std::vector<TagDetection>& tags,
+Sight TipFinder::FromTags(std::size_t camera, const std::vector<TagDetection>& tags,
                           const std::optional<Pose>& near_T_RE,
                           const CollarPoseOptions& options) const {
-  const Pose& T_RC = models_[0]->Calibration().T_RC;
+  const Pose& T_RC = models_[camera]->Calibration().T_RC;
   std::optional<Pose> near_T_CE;
   if (near_T_RE) near_T_CE = T_RC.Inverse() * *near_T_RE;
-  const CollarPose pose = EstimateCollarPose(*models_[0], collar_, tags, options, near_T_CE);
+  const CollarPose pose = EstimateCollarPose(*models_[camera], collar_, tags, options, near_T_CE);
   Sight sight;
   sight.tags = tags;
   if (!pose.IsUsable()) return sight;
@@ -265,16 +241,16 @@ Sight TipFinder::FromTags(const std::vector<TagDetection>& tags,
   return sight;
 }
 
-// A pose from corners as its pixels confirm it. From one plane alone, with other tags not seen that
-// should be, it could be the other planar pose: then only one that was expected counts.
+// A pose from corners as its pixels confirm it. One plane alone may be the other planar pose: it
+// counts where it was expected, or where nothing was and no tag is missing.
 Sight TipFinder::Acquired(const Images& images, const Sight& corners,
                           const std::optional<Pose>& near_T_RE) {
   if (!corners.Found() || !options_.photometric_fit) return corners;
   Sight sight = Refined(images, corners);
   CheckOtherPlanarPose(images, near_T_RE, sight);
-  const bool complete = sight.pixels.faces >= sight.pixels.faces_in_view;
-  if (sight.source != TrackSource::kPixels || complete || !sight.pixels.one_plane) return sight;
-  if (near_T_RE && IsTrusted(sight, *near_T_RE)) return sight;
+  if (sight.source != TrackSource::kPixels || !sight.pixels.one_plane) return sight;
+  const bool believed = near_T_RE ? IsTrusted(sight, *near_T_RE) : IsComplete(sight);
+  if (believed) return sight;
   Sight nothing;
   nothing.tags = sight.tags;
   return nothing;

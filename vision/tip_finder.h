@@ -39,9 +39,9 @@ class TipFinder {
   Sight FindNear(const Images& images, const Pose& T_RE, double radius_px);
   /// By detection in the whole pictures. `thorough`: as the options say, else at half resolution.
   Sight FindAnywhere(const Images& images, const std::optional<Pose>& near_T_RE, bool thorough);
-  /// By tags of the first camera.
-  Sight FromTags(const std::vector<TagDetection>& tags, const std::optional<Pose>& near_T_RE,
-                 const CollarPoseOptions& options) const;
+  /// By the tags seen in one camera.
+  Sight FromTags(std::size_t camera, const std::vector<TagDetection>& tags,
+                 const std::optional<Pose>& near_T_RE, const CollarPoseOptions& options) const;
 
   /// Whether the tags might be seen in one of the cameras from T_RE.
   bool MightSee(const Pose& T_RE) const;
@@ -50,10 +50,9 @@ class TipFinder {
   /// Forgets the blur; what does not change is kept.
   void Forget();
 
-  const CameraModel& Camera(std::size_t i) const { return *models_[i]; }
-
  private:
   Sight FitPixels(const Images& images, const Pose& T_RE, bool coarse = true);
+  bool IsComplete(const Sight& sight) const;
   bool IsTrusted(const Sight& sight, const Pose& expected_T_RE) const;
   Sight Acquired(const Images& images, const Sight& corners, const std::optional<Pose>& near_T_RE);
   Sight Refined(const Images& images, const Sight& corners);

@@ -17,12 +17,6 @@ constexpr double kMargin_px = 45.0;
 constexpr double kBlurChange = 0.15;  // of the blur, from which on it is worth a new edge model
 constexpr int kLeastPoints = 12;
 
-Matrix6 Turn(const Eigen::Matrix3d& R) {
-  Matrix6 Q = Matrix6::Zero();
-  Q.topLeftCorner<3, 3>() = Q.bottomRightCorner<3, 3>() = R;
-  return Q;
-}
-
 ContourOptions WithBlur(ContourOptions options, double blur_px) {
   options.blur_px = blur_px;
   return options;
@@ -87,9 +81,8 @@ TipPrediction TipOutline::Join(const std::vector<const Image*>& images, const Ti
         terms[k] = ContourTerm();
         continue;
       }
-      const Matrix6 Q = Turn(T_RC.R);
-      A += Q * terms[k].JtJ * Q.transpose();
-      b -= Q * terms[k].Jtr;
+      A += Turned(terms[k].JtJ, T_RC.R);
+      b -= Turned(terms[k].Jtr, T_RC.R);
     }
     const Vector6 step = A.ldlt().solve(b);
     if (!step.allFinite()) return seen;
@@ -97,7 +90,7 @@ TipPrediction TipOutline::Join(const std::vector<const Image*>& images, const Ti
     joined.covariance = A.ldlt().solve(Matrix6::Identity());
     for (std::size_t k = 0; k < views_.size(); ++k) {
       const Eigen::Matrix3d R_CR = views_[k].camera.Calibration().T_RC.R.transpose();
-      bends[k] += terms[k].bend_step + terms[k].bend_by_pose * (Turn(R_CR) * step);
+      bends[k] += terms[k].bend_step + terms[k].bend_by_pose * Turned(step, R_CR);
     }
   }
   return joined;
@@ -109,12 +102,11 @@ std::optional<TipPrediction> TipOutline::Find(const std::vector<const Image*>& i
     if (images[k] == nullptr) continue;
     const Pose& T_RC = views_[k].camera.Calibration().T_RC;
     const Pose T_CE = T_RC.Inverse() * expected.T_RE;
-    const Matrix6 Q = Turn(T_RC.R);
     const Image& grey = GreyAround(views_[k], *images[k], T_CE);
     const ContourFit fit =
-        views_[k].contour.Fit(grey, T_CE, Q.transpose() * expected.covariance * Q);
+        views_[k].contour.Fit(grey, T_CE, Turned(expected.covariance, T_RC.R.transpose()));
     if (!fit.IsUsable()) continue;
-    return TipPrediction{T_RC * fit.T_CE, Q * fit.covariance * Q.transpose()};
+    return TipPrediction{T_RC * fit.T_CE, Turned(fit.covariance, T_RC.R)};
   }
   return {};
 }

@@ -21,7 +21,7 @@ constexpr double kNoiseMemory = 0.9;
 constexpr double kMinSearch_px = 8.0, kMaxSearch_px = 60.0;
 constexpr int kThoroughEvery = 5;  // of the frames of a lost tip, at full resolution
 
-void CheckCollar(const TagCollar& collar) {
+const TagCollar& Checked(const TagCollar& collar) {
   if (collar.tags.empty()) throw InputError("the tag collar has no tags");
   std::set<int> ids;
   for (const CollarTag& tag : collar.tags) {
@@ -31,10 +31,6 @@ void CheckCollar(const TagCollar& collar) {
     }
     if (!ids.insert(tag.id).second) throw InputError(fmt::format("tag {} is there twice", tag.id));
   }
-}
-
-const TagCollar& Checked(const TagCollar& collar) {
-  CheckCollar(collar);
   return collar;
 }
 
@@ -161,7 +157,7 @@ Sight TipTracker::Impl::FindLost(const Images& images, TimeNs t_ns,
   }
   Sight sight;
   if (const auto found = background->Take()) {
-    const Sight then = finder.FromTags(found->tags, near_T_RE, options.pose);
+    const Sight then = finder.FromTags(0, found->tags, near_T_RE, options.pose);
     if (then.Found()) sight = finder.FindNear(images, then.T_RE, kMaxSearch_px);
   }
   if (!sight.Found() && images[0] != nullptr) background->Submit(*images[0], t_ns);
@@ -205,7 +201,7 @@ Sight TipTracker::Impl::FindFromTags(const std::vector<TagDetection>& tags) {
   CollarPoseOptions pose = options.pose;
   pose.prior_variance_px2 = noise_dof > 0 ? noise_sum_px2 / noise_dof : 0.0;
   pose.prior_dof = noise_dof;
-  const Sight sight = finder.FromTags(tags, last_T_RE, pose);
+  const Sight sight = finder.FromTags(0, tags, last_T_RE, pose);
   if (sight.Found()) {
     noise_sum_px2 = kNoiseMemory * noise_sum_px2 + sight.squared_error_px2;
     noise_dof = kNoiseMemory * noise_dof + sight.dof;

@@ -178,8 +178,7 @@ TEST(PhotometricFit, ATagHalfCoveredDoesNotMoveThePose) {
   const PhotometricResult b = fit.Fit({&covered}, kSeen, {KnownGamma()});
   ASSERT_TRUE(a.IsUsable());
   ASSERT_TRUE(b.IsUsable());
-  for (const FaceFit& face : b.views[0].faces)
-    EXPECT_LT(face.contradicted, 0.005);
+  for (const FaceFit& face : b.views[0].faces) EXPECT_LT(face.contradicted, 0.005);
   EXPECT_LT(Nees(a, kSeen), 22.5);  // 99.9 % of chi-square 6
   EXPECT_LT(PoseDifference(b.T_RE, kSeen).tail<3>().norm(), 1e-4);
 }
