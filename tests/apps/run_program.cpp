@@ -1,16 +1,15 @@
 #include "tests/apps/run_program.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <thread>
 
 namespace flextip {
 namespace {
@@ -41,20 +40,19 @@ ProgramResult RunProgram(const std::vector<std::string>& arguments) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadText(out), ReadText(err)};
 }
 
-void KillOnceItHasWritten(const std::vector<std::string>& arguments,
-                          const std::filesystem::path& folder) {
+void KillAtFileSize(const std::vector<std::string>& arguments, std::uintmax_t bytes) {
   const TestFolder messages;
   const pid_t child = fork();
-  if (child == 0) Become(arguments, messages / "out", messages / "err");
-  for (bool marked = false; !marked && waitpid(child, nullptr, WNOHANG) == 0;) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-      marked |= std::filesystem::exists(entry.path() / "unfinished.json");
-    }
+  if (child == 0) {
+    const rlimit size{bytes, bytes}, none{0, 0};
+    setrlimit(RLIMIT_CORE, &none);
+    setrlimit(RLIMIT_FSIZE, &size);
+    Become(arguments, messages / "out", messages / "err");
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(60));
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status)) << ReadText(messages / "err");
+  ASSERT_EQ(WTERMSIG(status), SIGXFSZ);
 }
 
 TestFolder::TestFolder() {

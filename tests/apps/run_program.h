@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,10 +18,9 @@ struct ProgramResult {
 /// Runs the built program with `arguments`, without a shell and with stderr not a terminal.
 ProgramResult RunProgram(const std::vector<std::string>& arguments);
 
-/// Starts the program and kills it as soon as an `unfinished.json` in a folder of `folder` says
-/// that a part of its work is done.
-void KillOnceItHasWritten(const std::vector<std::string>& arguments,
-                          const std::filesystem::path& folder);
+/// Runs the program until a file it writes would hold more than `bytes`: the system kills it then,
+/// in the midst of writing and however fast it is.
+void KillAtFileSize(const std::vector<std::string>& arguments, std::uintmax_t bytes);
 
 /// A fresh folder of the running test, removed at its end.
 class TestFolder {

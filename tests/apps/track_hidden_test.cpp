@@ -197,9 +197,11 @@ TEST_F(TrackHidden, AKilledRunWithAWristIsResumedToTheSameTables) {
   WriteRecording(folder_ / "rec", recording);
   Track("whole");
   const auto rec = (folder_ / "rec").string(), out = (folder_ / "out").string();
-  KillOnceItHasWritten({"track", rec, "-o", out, "--truth", (folder_ / "truth.csv").string()},
-                       folder_ / "");
+  KillAtFileSize({"track", rec, "-o", out, "--truth", (folder_ / "truth.csv").string()},
+                 fs::file_size(folder_ / "whole/frames.csv") * 3 / 4);
+  ASSERT_FALSE(fs::exists(out));
   Track("out", {"--resume"});
+  EXPECT_NE(Summary("out")["warnings"].dump().find("resumed"), std::string::npos);
   for (const char* file : {"vision0/data.csv", "tags0/data.csv", "frames.csv"}) {
     EXPECT_EQ(ReadText(folder_ / "out" / file), ReadText(folder_ / "whole" / file)) << file;
   }
