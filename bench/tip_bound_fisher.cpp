@@ -76,15 +76,15 @@ Pictures Render(const Laparoscope& laparoscope, double blur_px, const TagCollar&
   const CameraCalibration calibration = BoundCamera();
   const CameraModel camera(calibration);
   const auto light_of = [&](const BoundScene& moved) {
-    LinearImage image = laparoscope.RenderLinear(CurveOf(moved, tube), 0);
-    return Blurred(View(image), blur_px);
+    LinearImage image = laparoscope.RenderLight(CurveOf(moved, tube), 0);
+    return View(image).clone();
   };
   const auto difference = [&](const BoundScene& ahead, const BoundScene& back, double step) {
     return cv::Mat((light_of(ahead) - light_of(back)) / (2 * step));
   };
   Pictures p;
   LinearImage sharp = laparoscope.RenderLinear(CurveOf(scene, tube), 0);
-  p.light = Blurred(View(sharp), blur_px);
+  p.light = light_of(scene);
   const double step_m = kStep_px * scene.T_CE.p.z() / calibration.fu_px;
   for (int k = 0; k < 6; ++k) {
     const double step = k < 3 ? step_m / 0.03 : (k == 5 ? 5 : 1) * step_m;

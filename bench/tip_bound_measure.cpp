@@ -39,12 +39,9 @@ class Exposures {
  public:
   Exposures(const Laparoscope& laparoscope, const LaparoscopeOptions& options,
             const TubeShape& tube, const BoundScene& scene)
-      : light_(laparoscope.RenderLinear(CurveOf(scene, tube), 0)),
+      : light_(laparoscope.RenderLight(CurveOf(scene, tube), 0)),
         film_(options, laparoscope.Gamma()) {}
-  Image Take(int number) const {
-    LinearImage light = light_;
-    return film_.Develop(light, number);
-  }
+  Image Take(int number) const { return film_.Develop(light_, number); }
 
  private:
   LinearImage light_;

@@ -51,6 +51,7 @@ LaparoscopeOptions BoundScope(double blur_px) {
   options.tissue.normal_R = {0.2, -0.3, -1};
   options.grey = true;
   options.blur_sigma_px = blur_px;
+  options.parts_per_px = 3;
   options.seed = 3;
   return options;
 }

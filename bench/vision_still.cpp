@@ -23,6 +23,7 @@ LaparoscopeOptions Options(const StillCase& one, const CameraCalibration& camera
   o.exposure = 0.7;
   o.exposure_distance_m = kDepth_m;
   o.blur_sigma_px = one.blur_px;
+  o.parts_per_px = 3;
   o.full_well_electrons = 0;
   o.tissue.point_R = camera.T_RC * Vector3d(0, 0, kDepth_m + 0.05);
   o.tissue.normal_R = camera.T_RC.R * Vector3d(0.2, -0.3, -1).normalized();

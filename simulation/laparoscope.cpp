@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "simulation/render_film.h"
+#include "simulation/render_lens.h"
 #include "simulation/render_raster.h"
 #include "simulation/render_rays.h"
 #include "simulation/render_scene.h"
@@ -55,6 +56,7 @@ void Check(const CameraCalibration& camera, const LaparoscopeOptions& o) {
   Require(o.exposure_distance_m >= 0, "exposure distance", o.exposure_distance_m, ">= 0");
   Require(o.vignetting >= 0, "vignetting", o.vignetting, ">= 0");
   Require(o.blur_sigma_px >= 0 && o.blur_sigma_px < 50, "blur", o.blur_sigma_px, "0 to 50 px");
+  Require(o.parts_per_px >= 1 && o.parts_per_px <= 4, "parts per pixel", o.parts_per_px, "1 to 4");
   Require(o.full_well_electrons >= 0, "full well", o.full_well_electrons, ">= 0");
   Require(o.read_noise_electrons >= 0, "read noise", o.read_noise_electrons, ">= 0");
   const double gamma = camera.gamma.value_or(o.gamma);
@@ -98,9 +100,9 @@ LinearImage ToGrey(const LinearImage& colour) {
 struct Laparoscope::Impl {
   Impl(const CameraCalibration& calibration, const TagCollar& tags, const LaparoscopeOptions& o)
       : options((Check(calibration, o), o)),
-        camera(calibration),
+        camera(render::Finer(calibration, o.parts_per_px)),
         collar(tags, o.hazards.mirrored_tags),
-        rays(calibration),
+        rays(camera.Calibration()),
         light(MakeLight(calibration, o)),
         film(o, calibration.gamma.value_or(o.gamma)) {
     for (const OtherInstrument& other : o.hazards.others) {
@@ -124,14 +126,25 @@ struct Laparoscope::Impl {
   }
 
   void AddAir(LinearImage& image, int frame_number) const {
-    render::DrawSmoke(options.hazards.smoke, frame_number, options.seed, image);
+    render::DrawSmoke(options.hazards.smoke, frame_number, options.seed, options.parts_per_px,
+                      image);
     const auto exposure = static_cast<float>(options.hazards.ExposureAt(frame_number));
     if (exposure == 1.0f) return;
     for (float& v : image.data) v *= exposure;
   }
 
+  /// On the fine grid, before the lens.
+  LinearImage Draw(const ShaftCurve& curve, int frame_number) const;
+
+  /// What falls on the film.
+  LinearImage ThroughLens(LinearImage fine, int frame_number) const {
+    const int parts = options.parts_per_px;
+    render::Blur(fine, parts * options.hazards.BlurAt(frame_number, options.blur_sigma_px));
+    return parts == 1 ? std::move(fine) : render::MeansOver(fine, parts);
+  }
+
   LaparoscopeOptions options;
-  CameraModel camera;
+  CameraModel camera;  // of the fine grid
   render::CollarBody collar;
   std::vector<render::CollarBody> other_collars;
   render::PixelRays rays;
@@ -147,19 +160,29 @@ Laparoscope::~Laparoscope() = default;
 Laparoscope::Laparoscope(Laparoscope&&) noexcept = default;
 Laparoscope& Laparoscope::operator=(Laparoscope&&) noexcept = default;
 
-LinearImage Laparoscope::RenderLinear(const ShaftCurve& curve, int frame_number) const {
+LinearImage Laparoscope::Impl::Draw(const ShaftCurve& curve, int frame_number) const {
   assert(curve.points.size() >= 2 && curve.diameter_m > 0);
-  render::Scene scene(impl_->camera, frame_number);
-  scene.AddInstrument(curve, impl_->collar, impl_->options.hazards);
-  for (std::size_t i = 0; i < impl_->other_collars.size(); ++i) {
-    scene.AddOther(impl_->options.hazards.others[i], impl_->other_collars[i]);
+  render::Scene scene(camera, frame_number);
+  scene.AddInstrument(curve, collar, options.hazards);
+  for (std::size_t i = 0; i < other_collars.size(); ++i) {
+    scene.AddOther(options.hazards.others[i], other_collars[i]);
   }
-  for (const Occluder& occluder : impl_->options.occluders) scene.AddOccluder(occluder);
+  for (const Occluder& occluder : options.occluders) scene.AddOccluder(occluder);
   scene.Finish();
-  LinearImage image = impl_->tissue;
-  render::Raster(impl_->rays, scene, impl_->light).Draw(image);
-  impl_->AddAir(image, frame_number);
-  return impl_->options.grey ? ToGrey(image) : image;
+  LinearImage image = tissue;
+  render::Raster(rays, scene, light).Draw(image);
+  AddAir(image, frame_number);
+  return options.grey ? ToGrey(image) : image;
+}
+
+LinearImage Laparoscope::RenderLinear(const ShaftCurve& curve, int frame_number) const {
+  LinearImage light = impl_->Draw(curve, frame_number);
+  const int parts = impl_->options.parts_per_px;
+  return parts == 1 ? light : render::MeansOver(light, parts);
+}
+
+LinearImage Laparoscope::RenderLight(const ShaftCurve& curve, int frame_number) const {
+  return impl_->ThroughLens(impl_->Draw(curve, frame_number), frame_number);
 }
 
 Image Laparoscope::Render(const ShaftCurve& curve, int frame_number) const {
@@ -168,16 +191,16 @@ Image Laparoscope::Render(const ShaftCurve& curve, int frame_number) const {
 
 Image Laparoscope::Render(std::span<const ShaftCurve> during_exposure, int frame_number) const {
   assert(!during_exposure.empty());
-  LinearImage light = RenderLinear(during_exposure.front(), frame_number);
+  LinearImage light = impl_->Draw(during_exposure.front(), frame_number);
   for (const ShaftCurve& curve : during_exposure.subspan(1)) {
-    const LinearImage more = RenderLinear(curve, frame_number);
+    const LinearImage more = impl_->Draw(curve, frame_number);
     for (std::size_t i = 0; i < light.data.size(); ++i) light.data[i] += more.data[i];
   }
   const float part = 1.0f / static_cast<float>(during_exposure.size());
   if (during_exposure.size() > 1) {
     for (float& v : light.data) v *= part;
   }
-  return impl_->film.Develop(light, frame_number);
+  return impl_->film.Develop(impl_->ThroughLens(std::move(light), frame_number), frame_number);
 }
 
 double Laparoscope::Gamma() const {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 namespace flextip::render {
 namespace {
@@ -47,9 +46,7 @@ std::vector<float> NormalQuantiles() {
 }  // namespace
 
 Film::Film(const LaparoscopeOptions& options, double gamma)
-    : hazards_(options.hazards),
-      blur_sigma_px_(options.blur_sigma_px),
-      electrons_(options.full_well_electrons),
+    : electrons_(options.full_well_electrons),
       read_electrons_(options.read_noise_electrons),
       seed_(options.seed),
       code_(kCodes) {
@@ -60,13 +57,8 @@ Film::Film(const LaparoscopeOptions& options, double gamma)
   if (electrons_ > 0) normal_ = NormalQuantiles();
 }
 
-Image Film::Develop(LinearImage& light, int frame_number) const {
+Image Film::Develop(const LinearImage& light, int frame_number) const {
   const int row_values = light.width_px * light.channels;
-  const double sigma_px = hazards_.BlurAt(frame_number, blur_sigma_px_);
-  if (sigma_px > 0) {
-    cv::Mat view(light.height_px, light.width_px, CV_32FC(light.channels), light.data.data());
-    cv::GaussianBlur(view, view, {0, 0}, sigma_px, sigma_px, cv::BORDER_REPLICATE);
-  }
   Image image(light.width_px, light.height_px, light.channels);
   std::uint64_t frame_state = seed_;
   NextRandom(frame_state);

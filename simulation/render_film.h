@@ -1,4 +1,4 @@
-// From linear light to the camera's 8-bit picture: blur, noise, clipping, gamma.
+// From linear light to the camera's 8-bit picture: noise, clipping, gamma.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,12 @@ class Film {
  public:
   Film(const LaparoscopeOptions& options, double gamma);
 
-  /// Blurs `light` in place, then develops it.
-  Image Develop(LinearImage& light, int frame_number) const;
+  Image Develop(const LinearImage& light, int frame_number) const;
 
  private:
   void DevelopRow(const float* light, std::uint8_t* out, int count, std::uint64_t state) const;
 
-  Hazards hazards_;
-  double blur_sigma_px_, electrons_, read_electrons_;
+  double electrons_, read_electrons_;
   std::uint64_t seed_;
   std::vector<std::uint8_t> code_;  // of the signal's root in steps of 1/65535
   std::vector<float> normal_;       // quantiles of the standard normal distribution

@@ -32,8 +32,10 @@ double Clouds(double x, double y, std::uint64_t seed) {
          7;
 }
 
-cv::Mat1f TransmissionOf(const Smoke& smoke, int frame, std::uint64_t seed, cv::Size size) {
-  cv::Mat1f coarse((size.height + kGrid_px - 1) / kGrid_px, (size.width + kGrid_px - 1) / kGrid_px);
+cv::Mat1f TransmissionOf(const Smoke& smoke, int frame, std::uint64_t seed, int parts_per_px,
+                         cv::Size size) {
+  const int grid = kGrid_px * parts_per_px;
+  cv::Mat1f coarse((size.height + grid - 1) / grid, (size.width + grid - 1) / grid);
   const double drift_px = smoke.drift_px * (frame - smoke.frames.first);
   for (int j = 0; j < coarse.rows; ++j) {
     for (int i = 0; i < coarse.cols; ++i) {
@@ -50,11 +52,12 @@ cv::Mat1f TransmissionOf(const Smoke& smoke, int frame, std::uint64_t seed, cv::
 
 }  // namespace
 
-void DrawSmoke(const std::vector<Smoke>& smoke, int frame, std::uint64_t seed, LinearImage& image) {
+void DrawSmoke(const std::vector<Smoke>& smoke, int frame, std::uint64_t seed, int parts_per_px,
+               LinearImage& image) {
   for (std::size_t k = 0; k < smoke.size(); ++k) {
     if (!smoke[k].frames.Has(frame)) continue;
-    const cv::Mat1f t =
-        TransmissionOf(smoke[k], frame, seed + 7 * k, {image.width_px, image.height_px});
+    const cv::Mat1f t = TransmissionOf(smoke[k], frame, seed + 7 * k, parts_per_px,
+                                       {image.width_px, image.height_px});
     const Eigen::Vector3f light = smoke[k].light_bgr.cast<float>();
     for (int y = 0; y < image.height_px; ++y) {
       for (int x = 0; x < image.width_px; ++x) {

@@ -8,8 +8,10 @@
 
 namespace flextip::render {
 
-/// The smoke of one frame, drawn over `image` (3 channels). Clouds are value noise of three octaves
+/// The smoke of one frame, drawn over `image` (3 channels; Smoke's lengths count `parts_per_px` of
+/// its pixels as one). Clouds are value noise of three octaves
 /// that depends on the seed and drifts to the right.
-void DrawSmoke(const std::vector<Smoke>& smoke, int frame, std::uint64_t seed, LinearImage& image);
+void DrawSmoke(const std::vector<Smoke>& smoke, int frame, std::uint64_t seed, int parts_per_px,
+               LinearImage& image);
 
 }  // namespace flextip::render

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <random>
 
 #include "core/rotation.h"
@@ -68,21 +67,10 @@ ShaftCurve ScopeShaft(const Pose& T_RE) { return render_test::ArcShaft(T_RE, 0.3
 
 LinearImage LightThroughLens(const CameraCalibration& camera, const TagCollar& collar,
                              const Pose& T_RE, double blur_px) {
-  constexpr int kTimes = 3;
-  CameraCalibration large = camera;
-  large.width_px *= kTimes, large.height_px *= kTimes;
-  large.fu_px *= kTimes, large.fv_px *= kTimes;
-  large.cu_px = (camera.cu_px + 0.5) * kTimes - 0.5;
-  large.cv_px = (camera.cv_px + 0.5) * kTimes - 0.5;
-  const Laparoscope scope(large, collar, ScopeOptions(camera));
-  LinearImage fine = scope.RenderLinear(ScopeShaft(T_RE), 0);
-  cv::Mat view(large.height_px, large.width_px, CV_32FC1, fine.data.data());
-  cv::GaussianBlur(view, view, {0, 0}, kTimes * blur_px, kTimes * blur_px, cv::BORDER_REPLICATE);
-  LinearImage light{camera.width_px, camera.height_px, 1, {}};
-  light.data.resize(static_cast<std::size_t>(light.width_px) * light.height_px);
-  cv::Mat averaged(light.height_px, light.width_px, CV_32FC1, light.data.data());
-  cv::resize(view, averaged, averaged.size(), 0, 0, cv::INTER_AREA);
-  return light;
+  LaparoscopeOptions options = ScopeOptions(camera);
+  options.blur_sigma_px = blur_px;
+  options.parts_per_px = 3;
+  return Laparoscope(camera, collar, options).RenderLight(ScopeShaft(T_RE), 0);
 }
 
 Image Film(const LinearImage& light, double gamma, unsigned seed) {

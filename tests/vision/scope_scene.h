@@ -28,9 +28,8 @@ LaparoscopeOptions ScopeOptions(const CameraCalibration& camera);
 /// A slightly bent shaft that ends at T_RE.
 ShaftCurve ScopeShaft(const Pose& T_RE);
 
-/// Linear light of a frame as a lens gives it that blurs before the pixels take their means: drawn
-/// three times as large, blurred, and averaged. (The renderer blurs after the pixels, in steps of
-/// a pixel, which leaves 1.5 grey levels beside a Gaussian at 0.7 px.)
+/// Linear light of a frame behind a lens, blurred on a grid of a third of a pixel. (On a grid of
+/// whole pixels 1.5 grey levels remain beside a Gaussian at 0.7 px.)
 LinearImage LightThroughLens(const CameraCalibration& camera, const TagCollar& collar,
                              const Pose& T_RE, double blur_px);
 
