@@ -97,6 +97,10 @@ struct TipTracker::Impl {
   void Carry(const Images& images, const Sight& sight, TimeNs t_ns,
              const std::optional<TipPrediction>& expected, bool has_model, TipTrack& track);
   void Remember(const Sight& sight, TimeNs t_ns);
+  bool IsSure(const Sight& sight) const {
+    return MaxSd(sight.covariance.bottomRightCorner<3, 3>()) <= options.max_ok_sd_m &&
+           MaxSd(sight.covariance.topLeftCorner<3, 3>()) <= options.max_ok_sd_rad;
+  }
   void Report(const Sight& sight, TipTrack& track) const;
 };
 
@@ -247,13 +251,13 @@ TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
   // Corners that the pixels do not confirm (covered, blurred) are no measurement to rely on.
   const bool confirmed =
       sight.source == TrackSource::kPixels || !options.photometric_fit || !by_images;
-  if (confirmed && sight.Found() &&
-      MaxSd(sight.covariance.bottomRightCorner<3, 3>()) <= options.max_ok_sd_m) {
+  if (confirmed && sight.Found() && IsSure(sight)) {
     Report(sight, track);
     Remember(sight, t_ns);
     return track;
   }
   Carry(images, sight, t_ns, expected, has_model, track);
+  if (confirmed && sight.Found() && !sight.ambiguous) Remember(sight, t_ns);
   return track;
 }
 

@@ -30,7 +30,9 @@ struct TrackerOptions {
   int max_predicted_frames = 3;  ///< then the tip is lost, unless a model is given
   TimeNs max_prediction_ns = 200'000'000;
   double max_predicted_sd_m = 0.01;  ///< a prediction less certain than this is none
-  double max_ok_sd_m = 0.001;  ///< what is seen less certainly (one small tag) counts as predicted
+  /// What is seen less certainly (one small tag, a blurred one) counts as predicted: the tip per
+  /// axis, and the turn.
+  double max_ok_sd_m = 0.0005, max_ok_sd_rad = 0.01;
   double acceleration_noise_m_s2 = 1.0;            ///< how fast a prediction's covariance grows
   double gamma_guess = 2.2, gamma_guess_sd = 0.4;  ///< where the camera's is not known
   /// The shaft before the cameras, where its outline is to be used: beside tags that leave its

@@ -67,7 +67,9 @@ TEST(TipTracker, CovarianceIsHonest) {
   const CameraCalibration camera = TestCamera(true);
   for (const double noise_px : {0.06, 0.3}) {
     std::mt19937 random(11);
-    TipTracker tracker(camera, kCollar);
+    TrackerOptions options;
+    options.max_ok_sd_m = options.max_ok_sd_rad = 0.1;  // corners this noisy are sure of nothing
+    TipTracker tracker(camera, kCollar, options);
     double nees = 0, direction = 0;
     int n = 0;
     for (int i = 0; i < 1500; ++i) {
