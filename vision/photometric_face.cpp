@@ -149,22 +149,23 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
 }
 
 // A straight line through light against whiteness.
-bool PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE, const Optics& optics,
-                                  const ToneCurve& tone) {
+double PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE,
+                                    const Optics& optics, const ToneCurve& tone) {
   const Geometry g = Place(camera, T_CE, optics);
-  if (!g.valid || Pixels() < kFewestPixels) return false;
-  double n = 0, c1 = 0, c2 = 0, l1 = 0, cl = 0;
+  if (!g.valid || Pixels() < kFewestPixels) return 0;
+  double n = 0, c1 = 0, c2 = 0, l1 = 0, l2 = 0, cl = 0;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
     const double c = pattern_.At(at.u, at.v, g.blur).c, light = tone.Light(pixel.grey);
-    n += 1, c1 += c, c2 += c * c, l1 += light, cl += c * light;
+    n += 1, c1 += c, c2 += c * c, l1 += light, l2 += light * light, cl += c * light;
   }
   const double spread = c2 - c1 * c1 / n;
-  if (spread < 1e-3 * n) return false;
+  if (spread < 1e-3 * n) return 0;
   const double contrast = (cl - c1 * l1 / n) / spread;
   const double black = std::max(0.0, (l1 - contrast * c1) / n);
   levels << black, 0, 0, black + contrast, 0, 0;
-  return contrast > 0;
+  const double spread_light = l2 - l1 * l1 / n;
+  return contrast > 0 ? contrast * std::sqrt(spread / spread_light) : 0;
 }
 
 // Black and white at a place on the tag, in light.
@@ -229,7 +230,8 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
     sums.CountError(residual, half_contrast);
     const float weight = rule.Weight(residual);
     if (weight == 0) continue;
-    const float root = std::sqrt(weight), by_light = root * film.by_light;
+    const float curvature = rule.Curvature(weight), root = std::sqrt(curvature);
+    const float by_light = root * film.by_light;
     if (p.flat) {
       row.head<FaceColumns::kLevels>().setZero();
     } else {
@@ -239,8 +241,8 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
     const float by_black = by_light * (1 - p.c), by_white = by_light * p.c;
     row.segment<6>(FaceColumns::kLevels) << by_black, by_black * light.fu, by_black * light.fv,
         by_white, by_white * light.fu, by_white * light.fv;
-    row[FaceColumns::kResidual] = root * residual;
-    sums.Add(row, weight, pixel.grey, film.grey);
+    row[FaceColumns::kResidual] = weight / root * residual;
+    sums.Add(row, {weight, curvature, pixel.grey, film.grey, light.fu, light.fv});
   }
   sums.Finish();
 }

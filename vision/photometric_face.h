@@ -54,10 +54,10 @@ class PhotometricFace {
                     const Pose& T_CE, const Optics& optics, int stride);
   int Pixels() const { return static_cast<int>(pixels_.size()); }
 
-  /// The levels that the pixels show at T_CE, without slopes; false where the tag has no contrast
-  /// there.
-  bool GuessLevels(const CameraModel& camera, const Pose& T_CE, const Optics& optics,
-                   const ToneCurve& tone);
+  /// The levels that the pixels show at T_CE, without slopes, and their correlation with the
+  /// pattern; 0 where the tag has no contrast there.
+  double GuessLevels(const CameraModel& camera, const Pose& T_CE, const Optics& optics,
+                     const ToneCurve& tone);
 
   /// Adds the pixels' residuals and derivatives at T_CE. `pivot_C`: the point about which the pose
   /// turns.

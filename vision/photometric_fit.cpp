@@ -15,7 +15,9 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 // A stage ends with a step below so many pixels, the last with one whose square is below so
 // many of its own variances.
-constexpr double kCoarseStep_px = 0.8, kFineStep_px = 0.25;
+constexpr double kCoarseStep_px = 0.8, kFineStep_px = 0.25, kLastStep_px = 0.05;
+constexpr double kClearScatter = 2.0;   // over that of noise, which 32 patches seldom reach
+constexpr double kLeastLikeness = 0.4;  // of a tag that is within reach
 constexpr double kLastStep = 1.0, kGoodStep = 3.0;  // the second: where the iterations run out
 constexpr double kNear_px = 6.0, kNearPart = 0.03, kNear_rad = 0.12;
 constexpr double kMaxTurn_rad = 0.2;
@@ -53,9 +55,10 @@ struct PhotometricFit::Impl {
     }
   }
 
-  void Select(const Pose& T_RE, int pixels, double extra_blur_px2) {
+  void Select(const Pose& T_RE, int pixels, double extra_blur_px2, double least_likeness = 0) {
     for (std::size_t i = 0; i < views.size(); ++i) {
-      if (present[i]) views[i].Select(cameras[i]->T_CR * T_RE, pixels, extra_blur_px2);
+      if (!present[i]) continue;
+      views[i].Select(cameras[i]->T_CR * T_RE, pixels, extra_blur_px2, least_likeness);
     }
   }
 
@@ -71,11 +74,11 @@ struct PhotometricFit::Impl {
     }
   }
 
-  Sums Linearise(const Pose& T_RE, bool redescending) {
+  Sums Linearise(const Pose& T_RE, Robustness kind) {
     Sums sums;
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (!present[i] || views[i].Faces() == 0) continue;
-      const PoseTerm term = views[i].Linearise(cameras[i]->T_CR * T_RE, redescending);
+      const PoseTerm term = views[i].Linearise(cameras[i]->T_CR * T_RE, kind);
       const double variance = std::pow(std::max(views[i].NoiseGrey(), 0.5), 2);
       const Eigen::Matrix3d R_RC = cameras[i]->T_CR.R.transpose();
       sums.JtJ += Turned(term.JtJ, R_RC) / variance;
@@ -130,12 +133,12 @@ struct PhotometricFit::Impl {
   }
 
   // Gauss-Newton until a step is small.
-  bool Iterate(Pose& T_RE, Sums& sums, int max_iterations, double small_px, bool redescending,
+  bool Iterate(Pose& T_RE, Sums& sums, int max_iterations, double small_px, Robustness kind,
                const Matrix6& near_start = Matrix6::Zero()) {
     const Pose start = T_RE;
     double last_size = HUGE_VAL;
     for (int i = 0; i < max_iterations; ++i) {
-      sums = Linearise(T_RE, redescending);
+      sums = Linearise(T_RE, kind);
       if (sums.pixels == 0) return false;
       const Vector6 gone = PoseDifference(start, T_RE);
       Vector6 step = (sums.JtJ + near_start).ldlt().solve(sums.Jtr - near_start * gone);
@@ -148,8 +151,9 @@ struct PhotometricFit::Impl {
       T_RE = moved;
       const bool settled = Step(step);
       last_size = size;
-      const bool small = moved_px < small_px || (redescending && size < kLastStep);
-      if (small && (settled || !redescending)) return true;
+      const bool robust = kind != Robustness::kHuber;
+      const bool small = moved_px < small_px || (robust && size < kLastStep);
+      if (small && (settled || !robust)) return true;
     }
     return last_size < kGoodStep;
   }
@@ -165,9 +169,32 @@ struct PhotometricFit::Impl {
                        [&](const Eigen::Vector3d& n) { return n.dot(all[0]) > kParallel; });
   }
 
+  Matrix6 ResidualCovariance(const Matrix6& JtJ) const;
   Matrix6 ModelCovariance(const Pose& T_RE) const;
   PhotometricResult Report(const Pose& T_RE, const Sums& sums, bool converged) const;
 };
+
+// By the sandwich of M-estimators: the gradient's scatter over patches of the tags stands for the
+// noise, where it clearly exceeds that of independent pixels (glare, smoke, dirt, a wrong pattern).
+Matrix6 PhotometricFit::Impl::ResidualCovariance(const Matrix6& JtJ) const {
+  Matrix6 scatter = Matrix6::Zero();
+  double white = 0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!present[i] || views[i].Faces() == 0) continue;
+    const double variance = std::pow(std::max(views[i].NoiseGrey(), 0.5), 2);
+    double of_view = 1;
+    scatter += Turned(views[i].ScoreScatter(of_view), cameras[i]->T_CR.R.transpose()) /
+               (variance * variance);
+    white = std::max(white, of_view);
+  }
+  const Eigen::LLT<Matrix6> root(JtJ);
+  const Matrix6 half = root.matrixL().solve(scatter);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(root.matrixL().solve(half.transpose()));
+  Vector6 noise = solver.eigenvalues();
+  for (double& n : noise) n = n > kClearScatter * white ? n : white;
+  const Matrix6 out = root.matrixU().solve(solver.eigenvectors());
+  return out * noise.asDiagonal() * out.transpose();
+}
 
 // As if the corners of all tags were measured with the model's noise.
 Matrix6 PhotometricFit::Impl::ModelCovariance(const Pose& T_RE) const {
@@ -195,8 +222,7 @@ PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sum
   result.one_plane = OnePlane();
   const Eigen::LDLT<Matrix6> solver(sums.JtJ);
   const bool solvable = solver.info() == Eigen::Success && solver.isPositive();
-  const Matrix6 covariance =
-      solvable ? Matrix6(solver.solve(Matrix6::Identity())) : Matrix6::Zero();
+  const Matrix6 covariance = solvable ? ResidualCovariance(sums.JtJ) : Matrix6::Zero();
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (present[i]) result.faces_in_view += views[i].FacesInView(cameras[i]->T_CR * T_RE);
     ViewFit fit;
@@ -258,14 +284,17 @@ PhotometricResult PhotometricFit::Fit(const std::vector<const Image*>& images,
   if (f.Faces() == 0) return {};
   if (coarse) {
     f.Select(T_RE, o.coarse_pixels, o.coarse_extra_blur_px2);
-    f.Iterate(T_RE, sums, o.max_coarse_iterations, kCoarseStep_px, false, f.StayNear(T_RE));
+    f.Iterate(T_RE, sums, o.max_coarse_iterations, kCoarseStep_px, Robustness::kHuber,
+              f.StayNear(T_RE));
   }
-  f.Select(T_RE, o.coarse_pixels, 0);
-  f.Iterate(T_RE, sums, o.max_coarse_iterations, kFineStep_px, true, f.StayNear(T_RE));
+  f.Select(T_RE, o.coarse_pixels, 0, kLeastLikeness);  // after the coarse steps all are known
+  if (f.Faces() == 0) return {};
+  f.Iterate(T_RE, sums, o.max_coarse_iterations, kFineStep_px, Robustness::kTukey,
+            f.StayNear(T_RE));
   f.DropFaces(0.6 * o.min_correlation, 1);
   if (f.Faces() == 0) return {};
   f.Select(T_RE, 0, 0);
-  bool converged = f.Iterate(T_RE, sums, o.max_iterations, 0, true);
+  bool converged = f.Iterate(T_RE, sums, o.max_iterations, kLastStep_px, Robustness::kTukeyNewton);
   const int faces = f.Faces();
   f.DropFaces(o.min_correlation, o.max_contradicted);
   if (f.Faces() == 0) {
@@ -273,7 +302,8 @@ PhotometricResult PhotometricFit::Fit(const std::vector<const Image*>& images,
     poor.status = PhotometricStatus::kPoorFit;
     return poor;
   }
-  if (f.Faces() < faces) converged = f.Iterate(T_RE, sums, o.max_iterations, 0, true);
+  if (f.Faces() < faces)
+    converged = f.Iterate(T_RE, sums, o.max_iterations, kLastStep_px, Robustness::kTukeyNewton);
   return f.Report(T_RE, sums, converged);
 }
 

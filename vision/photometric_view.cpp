@@ -54,7 +54,8 @@ Optics PhotometricView::Widened() const {
   return wide;
 }
 
-void PhotometricView::Select(const Pose& T_CE, int pixels, double extra_blur_px2) {
+void PhotometricView::Select(const Pose& T_CE, int pixels, double extra_blur_px2,
+                             double least_likeness) {
   const double before_px2 = extra_blur_px2_;
   extra_blur_px2_ = extra_blur_px2;
   double area = 0;  // of the seen faces' bounding boxes, roughly
@@ -79,7 +80,8 @@ void PhotometricView::Select(const Pose& T_CE, int pixels, double extra_blur_px2
     if (!s.active) continue;
     faces_[s.face].SelectPixels(camera_, lens_, *image_, T_CE, Widened(), stride);
     if (!s.has_levels) {
-      s.has_levels = s.active = faces_[s.face].GuessLevels(camera_, T_CE, Widened(), tone_);
+      const double likeness = faces_[s.face].GuessLevels(camera_, T_CE, Widened(), tone_);
+      s.has_levels = s.active = likeness > least_likeness;
     }
   }
 }
@@ -157,10 +159,11 @@ void PhotometricView::LearnNoise() {
   noise_grey_ = std::max(kMinNoise_grey, 1.4826 * (bin + within) / FaceSums::kBinsPerGrey);
 }
 
-PoseTerm PhotometricView::Linearise(const Pose& T_CE, bool redescending) {
+PoseTerm PhotometricView::Linearise(const Pose& T_CE, Robustness kind) {
   const bool known = noise_grey_ > 0;
-  const RobustRule rule(known ? noise_grey_ * (redescending ? 1.0 : 1.5) : kFirstScale_grey,
-                        redescending && known);
+  if (!known) kind = Robustness::kHuber;
+  const double wider = kind == Robustness::kHuber ? 1.5 : 1.0;
+  const RobustRule rule(known ? wider * noise_grey_ : kFirstScale_grey, kind);
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
   for (const SeenFace& s : seen_) pivot += T_CE * faces_[s.face].Tag().T_EG.p;
   if (!seen_.empty()) pivot /= static_cast<double>(seen_.size());
@@ -183,6 +186,32 @@ PoseTerm PhotometricView::Linearise(const Pose& T_CE, bool redescending) {
   term.weight = totals.weight;
   term.pixels = totals.pixels;
   return term;
+}
+
+Eigen::Matrix<double, 6, 6> PhotometricView::ScoreScatter(double& white) const {
+  double squares = 0, curvature = 0;
+  std::vector<Eigen::Matrix<double, 6, 1>> scores;
+  Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
+  for (const SeenFace& s : seen_) {
+    if (!s.active) continue;
+    squares += s.sums.WeightedSquares();
+    curvature += s.sums.Curvature();
+    for (int i = 0; i < FaceSums::kPatches; ++i) {
+      const Eigen::Matrix<double, FaceColumns::kResidual, 1> all =
+          s.sums.PatchScores().col(i).cast<double>();
+      const Vector11 rest = all.head<11>() - s.levels.by_rest.transpose() * all.tail<6>();
+      const Eigen::Matrix<double, 6, 1> pose =
+          rest.head<6>() - optics_elimination_.by_rest.transpose() * rest.tail<5>();
+      scores.push_back(to_pivot_.transpose() * pose);
+      mean += scores.back();
+    }
+  }
+  Eigen::Matrix<double, 6, 6> scatter = Eigen::Matrix<double, 6, 6>::Zero();
+  if (scores.empty() || curvature <= 0) return scatter;
+  mean /= static_cast<double>(scores.size());
+  for (const auto& score : scores) scatter += (score - mean) * (score - mean).transpose();
+  white = squares / (curvature * std::pow(std::max(noise_grey_, kMinNoise_grey), 2));
+  return scatter;
 }
 
 void PhotometricView::EliminateLevels(SeenFace& s, Matrix11& A, Vector11& b) const {

@@ -47,8 +47,14 @@ class PhotometricView {
   void Begin(const Image& image, const Pose& T_CE, const OpticsPrior& prior);
 
   /// Chooses the pixels anew, about `pixels` of them (0: all). `extra_blur_px2` widens the model's
-  /// blur and with it the reach of a step.
-  void Select(const Pose& T_CE, int pixels, double extra_blur_px2);
+  /// blur and with it the reach of a step. At the first time, faces whose light correlates less
+  /// than `least_likeness` with their pattern at T_CE are left out.
+  void Select(const Pose& T_CE, int pixels, double extra_blur_px2, double least_likeness = 0);
+
+  /// The scatter of the pose's gradient over the patches of the faces, in the last Linearise: on
+  /// (dw, dp), in grey values to the fourth. `white`: what it would be, over JtJ and the noise
+  /// squared, if the residuals of different pixels had nothing to do with each other.
+  Eigen::Matrix<double, 6, 6> ScoreScatter(double& white) const;
 
   /// Leaves faces out that do not look like their tags; returns how many are left.
   int DropFaces(double min_correlation, double min_contrast, double max_contradicted);
@@ -60,7 +66,7 @@ class PhotometricView {
   std::vector<Eigen::Vector3d> Normals() const;
 
   /// The sums at T_CE under the scale of residuals known so far.
-  PoseTerm Linearise(const Pose& T_CE, bool redescending);
+  PoseTerm Linearise(const Pose& T_CE, Robustness kind);
   /// Moves light, blur and gamma with the pose's step (the last Linearise's). False where the blur
   /// still changed by more than a tenth.
   bool Step(const Eigen::Matrix<double, 6, 1>& step);
