@@ -21,6 +21,10 @@ class TipFilter {
 
   void Measure(TimeNs t_ns, const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance_m2);
 
+  /// The position is known to be `p` with this covariance, all that the filter knows of it
+  /// included: only the velocity follows from the filter.
+  void Replace(TimeNs t_ns, const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance_m2);
+
   /// Position and covariance at `t_ns`, after the last measurement; the filter stays where it is.
   struct Prediction {
     Eigen::Vector3d p;

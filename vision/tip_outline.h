@@ -20,11 +20,12 @@ class TipOutline {
   void SetBlur(std::size_t camera, double blur_px);
 
   /// `seen` and the outlines in the pictures, each with its covariance: a Gauss-Newton step on all
-  /// of them from `seen`, and one more. Unchanged where no outline is found.
-  TipPrediction Join(const std::vector<const Image*>& images, const TipPrediction& seen);
+  /// of them from `seen`, and one more. Empty where no outline is seen that agrees with `seen`.
+  std::optional<TipPrediction> Join(const std::vector<const Image*>& images,
+                                    const TipPrediction& seen);
 
-  /// The pose by the outline in the first camera that shows it, `expected` being the prior; empty
-  /// where it cannot be told.
+  /// The pose by the outlines in all cameras that show one, `expected` being the prior (of which
+  /// roll and mostly depth are taken); empty where it cannot be told, or is not where expected.
   std::optional<TipPrediction> Find(const std::vector<const Image*>& images,
                                     const TipPrediction& expected);
 

@@ -62,6 +62,7 @@ struct TipTracker::Impl {
   TipFilter filter;
   std::optional<BackgroundDetector> background;
   std::optional<TipOutline> outline;
+  std::optional<TipFilter> by_tags;  // the filter as the tags left it, before an outline came in
 
   std::optional<Pose> last_T_RE;         // of the last frame in which the collar was seen
   TimeNs last_ns = 0, last_seen_ns = 0;  // of last_T_RE, and of the last tags
@@ -89,13 +90,17 @@ struct TipTracker::Impl {
   Sight Find(const Images& images, TimeNs t_ns, const std::optional<TipPrediction>& expected);
   Sight FindLost(const Images& images, TimeNs t_ns, const std::optional<Pose>& near_T_RE);
   void JoinOutline(const Images& images, Sight& sight);
+  TipPrediction OutlinePrior(TimeNs t_ns, const TipPrediction& expected,
+                             const std::optional<TipPrediction>& model);
   std::optional<TipPrediction> FollowOutline(const Images& images, TimeNs t_ns,
-                                             const TipPrediction& expected);
+                                             const TipPrediction& expected,
+                                             const std::optional<TipPrediction>& model);
   Sight FindFromTags(const std::vector<TagDetection>& tags);
   TipTrack Finish(const Sight& sight, TimeNs t_ns, const std::optional<TipPrediction>& expected,
-                  bool has_model, const Images& images);
+                  const std::optional<TipPrediction>& model, const Images& images);
   void Carry(const Images& images, const Sight& sight, TimeNs t_ns,
-             const std::optional<TipPrediction>& expected, bool has_model, TipTrack& track);
+             const std::optional<TipPrediction>& expected,
+             const std::optional<TipPrediction>& model, TipTrack& track);
   void Remember(const Sight& sight, TimeNs t_ns);
   void Report(const Sight& sight, TipTrack& track) const;
 };
@@ -174,24 +179,46 @@ double DirectionNoise(const Pose& T_RE, const Matrix6& covariance) {
 // Where the tags leave the direction uncertain, the outline's long base line is worth its time.
 void TipTracker::Impl::JoinOutline(const Images& images, Sight& sight) {
   if (!outline || sight.source != TrackSource::kPixels || sight.ambiguous) return;
-  if (DirectionNoise(sight.T_RE, sight.covariance) < options.outline_from_rad) return;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const Eigen::Vector3d& blur_px2 = sight.pixels.views[i].learned.mean.blur_px2;
-    if (images[i] != nullptr) outline->SetBlur(i, std::sqrt(0.5 * (blur_px2[0] + blur_px2[2])));
+    const ViewFit& view = sight.pixels.views[i];
+    const Eigen::Vector3d& blur_px2 = view.learned.mean.blur_px2;
+    if (view.faces.empty()) continue;
+    outline->SetBlur(i, std::sqrt(std::max(0.0, 0.5 * (blur_px2[0] + blur_px2[2]))));
   }
-  const TipPrediction joined = outline->Join(images, {sight.T_RE, sight.covariance});
-  sight.T_RE = joined.T_RE;
-  sight.covariance = joined.covariance;
+  if (DirectionNoise(sight.T_RE, sight.covariance) < options.outline_from_rad) return;
+  const auto joined = outline->Join(images, {sight.T_RE, sight.covariance});
+  if (!joined) return;
+  sight.T_RE = joined->T_RE;
+  sight.covariance = joined->covariance;
   sight.outline_used = true;
 }
 
+// What is known without the outline, about where the outline was last. Its errors (light, blur) are
+// much the same from frame to frame: a frame must not gain from what the outline said before.
+TipPrediction TipTracker::Impl::OutlinePrior(TimeNs t_ns, const TipPrediction& expected,
+                                             const std::optional<TipPrediction>& model) {
+  if (!by_tags || last_ns == last_seen_ns) by_tags = filter;
+  const Eigen::Matrix3d moved_m2 = by_tags->At(t_ns).covariance_m2;
+  if (model && model->covariance.bottomRightCorner<3, 3>().trace() < moved_m2.trace()) {
+    return *model;
+  }
+  TipPrediction prior = expected;
+  const double sd_rad = 0.01 + 0.5e-9 * static_cast<double>(t_ns - last_seen_ns);
+  prior.covariance.setZero();
+  prior.covariance.topLeftCorner<3, 3>() = sd_rad * sd_rad * Eigen::Matrix3d::Identity();
+  prior.covariance.bottomRightCorner<3, 3>() = moved_m2;
+  return prior;
+}
+
 // The tags are covered: the outline keeps the prediction from growing.
-std::optional<TipPrediction> TipTracker::Impl::FollowOutline(const Images& images, TimeNs t_ns,
-                                                             const TipPrediction& expected) {
-  if (!outline || images.empty() || t_ns - last_seen_ns > options.max_outline_ns) return {};
-  auto found = outline->Find(images, expected);
+std::optional<TipPrediction> TipTracker::Impl::FollowOutline(
+    const Images& images, TimeNs t_ns, const TipPrediction& expected,
+    const std::optional<TipPrediction>& model) {
+  if (!outline || images.empty() || !last_T_RE) return {};
+  if (t_ns - last_seen_ns > options.max_outline_ns) return {};
+  auto found = outline->Find(images, OutlinePrior(t_ns, expected, model));
   if (!found || PositionSd(*found) > options.max_predicted_sd_m) return {};
-  filter.Measure(t_ns, found->T_RE.p, found->covariance.bottomRightCorner<3, 3>());
+  filter.Replace(t_ns, found->T_RE.p, found->covariance.bottomRightCorner<3, 3>());
   last_T_RE = found->T_RE;
   last_ns = t_ns;
   return found;
@@ -211,7 +238,8 @@ Sight TipTracker::Impl::FindFromTags(const std::vector<TagDetection>& tags) {
 
 void TipTracker::Impl::Remember(const Sight& sight, TimeNs t_ns) {
   filter.Measure(t_ns, sight.T_RE.p, sight.covariance.bottomRightCorner<3, 3>());
-  if (last_T_RE) {
+  turn_rate.setZero();
+  if (last_T_RE && last_ns == last_seen_ns) {  // the outline knows no roll
     const double dt_s = 1e-9 * static_cast<double>(t_ns - last_ns);
     turn_rate = LogRotation(sight.T_RE.R * last_T_RE->R.transpose()) / dt_s;
   }
@@ -232,8 +260,8 @@ void TipTracker::Impl::Report(const Sight& sight, TipTrack& track) const {
 }
 
 TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
-                                  const std::optional<TipPrediction>& expected, bool has_model,
-                                  const Images& images) {
+                                  const std::optional<TipPrediction>& expected,
+                                  const std::optional<TipPrediction>& model, const Images& images) {
   TipTrack track;
   const bool by_images = !images.empty();
   track.tags = sight.tags;
@@ -253,27 +281,26 @@ TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
     Remember(sight, t_ns);
     return track;
   }
-  Carry(images, sight, t_ns, expected, has_model, track);
+  Carry(images, sight, t_ns, expected, model, track);
   return track;
 }
 
 // The tags were not seen, or not well: the best of what they say, the outline and the expectation.
 void TipTracker::Impl::Carry(const Images& images, const Sight& sight, TimeNs t_ns,
-                             const std::optional<TipPrediction>& expected, bool has_model,
-                             TipTrack& track) {
+                             const std::optional<TipPrediction>& expected,
+                             const std::optional<TipPrediction>& model, TipTrack& track) {
   std::optional<TipPrediction> best = expected;
   bool measured = false;
   const auto consider = [&](const std::optional<TipPrediction>& other) {
-    if (!other || (best && PositionSd(*best) < PositionSd(*other))) return;
+    if (!other || (best && PositionSd(*best) < PositionSd(*other))) return false;
     best = other;
-    measured = true;
+    return measured = true;
   };
   if (sight.Found()) consider(TipPrediction{sight.T_RE, sight.covariance});
-  if (expected) consider(FollowOutline(images, t_ns, *expected));
-  const bool patient = measured || has_model || predicted_frames < options.max_predicted_frames;
+  if (expected) track.outline_used = consider(FollowOutline(images, t_ns, *expected, model));
+  const bool patient = measured || model || predicted_frames < options.max_predicted_frames;
   if (!best || !patient || PositionSd(*best) > options.max_predicted_sd_m) return;
   if (!measured) ++predicted_frames;
-  track.outline_used = measured && !sight.Found();
   track.tip.status = TipStatus::kPredicted;
   track.tip.p_RE = best->T_RE.p;
   track.tip.covariance_m2 = best->covariance.bottomRightCorner<3, 3>();
@@ -307,13 +334,13 @@ TipTrack TipTracker::Track(const std::vector<const Image*>& images, TimeNs t_ns,
   const std::optional<TipPrediction> expected = impl_->Expect(t_ns, model);
   Sight sight = impl_->Find(images, t_ns, expected);
   impl_->JoinOutline(images, sight);
-  return impl_->Finish(sight, t_ns, expected, model.has_value(), images);
+  return impl_->Finish(sight, t_ns, expected, model, images);
 }
 
 TipTrack TipTracker::Track(const std::vector<TagDetection>& tags, TimeNs t_ns) {
   impl_->ForgetIfStale(t_ns);
   const std::optional<TipPrediction> expected = impl_->Expect(t_ns, {});
-  return impl_->Finish(impl_->FindFromTags(tags), t_ns, expected, false, {});
+  return impl_->Finish(impl_->FindFromTags(tags), t_ns, expected, {}, {});
 }
 
 }  // namespace flextip
