@@ -147,8 +147,10 @@ Sight TipTracker::Impl::Find(const Images& images, TimeNs t_ns,
     sight = finder.FindNear(images, expected->T_RE, SearchRadius(*expected));
   }
   if (sight.Found()) return sight;
+  // The outline knows no roll: after a while it does not tell one planar pose from the other.
+  const bool old_roll = last_ns > last_seen_ns && t_ns - last_seen_ns > options.max_prediction_ns;
   const std::optional<Pose> near_T_RE =
-      expected ? std::optional<Pose>(expected->T_RE) : std::nullopt;
+      expected && !old_roll ? std::optional<Pose>(expected->T_RE) : std::nullopt;
   return FindLost(images, t_ns, near_T_RE);
 }
 
