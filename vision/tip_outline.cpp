@@ -28,6 +28,10 @@ bool IsOutline(const ContourTerm& term, const ContourOptions& options) {
          term.rms_px <= options.most_rms_px;
 }
 
+bool HasEnd(const ContourTerm& term, const ContourOptions& options) {
+  return term.lines_of[2] > 0 && term.points_of[2] >= options.least_end * term.lines_of[2];
+}
+
 // The squared distance of the outline's own pose from one with `information`, at which the term
 // was made, over the covariance of both. (Roll, which the outline does not know, costs nothing.)
 double Disagreement(const ContourTerm& term, const Matrix6& information) {
@@ -76,16 +80,18 @@ const Image& TipOutline::GreyAround(View& view, const Image& image, const Pose& 
   return view.grey;
 }
 
-std::optional<TipPrediction> TipOutline::Join(const std::vector<const Image*>& images,
-                                              const TipPrediction& seen) {
+std::optional<TipOutline::Joined> TipOutline::Join(const std::vector<const Image*>& images,
+                                                   const TipPrediction& seen) {
   const Matrix6 information = seen.covariance.ldlt().solve(Matrix6::Identity());
-  TipPrediction joined = seen;
+  Joined result{seen, false};
+  TipPrediction& joined = result.tip;
   std::vector<Eigen::Vector2d> bends(views_.size(), options_.bend_mean);
   for (int i = 0; i < kJoinSteps; ++i) {
     Matrix6 A = information;
     Vector6 b = -information * PoseDifference(seen.T_RE, joined.T_RE);
     std::vector<ContourTerm> terms(views_.size());
     bool found = false;
+    result.end_seen = false;
     for (std::size_t k = 0; k < views_.size(); ++k) {
       if (images[k] == nullptr) continue;
       const Pose& T_RC = views_[k].camera.Calibration().T_RC;
@@ -95,6 +101,7 @@ std::optional<TipPrediction> TipOutline::Join(const std::vector<const Image*>& i
       const Matrix6 information_C = Turned(information, T_RC.R.transpose());
       if (!IsOutline(term, options_) || Disagreement(term, information_C) > kDisagree) continue;
       found = true;
+      result.end_seen |= HasEnd(term, options_);
       terms[k] = term;
       A += Turned(term.JtJ, T_RC.R);
       b -= Turned(term.Jtr, T_RC.R);
@@ -108,7 +115,7 @@ std::optional<TipPrediction> TipOutline::Join(const std::vector<const Image*>& i
       bends[k] += terms[k].bend_step + terms[k].bend_by_pose * Turned(step, R_CR);
     }
   }
-  return joined;
+  return result;
 }
 
 std::optional<TipPrediction> TipOutline::Find(const std::vector<const Image*>& images,

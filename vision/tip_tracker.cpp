@@ -19,6 +19,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // How much of the corner noise seen so far is remembered from frame to frame.
 constexpr double kNoiseMemory = 0.9;
 constexpr double kMinSearch_px = 8.0, kMaxSearch_px = 60.0;
+// How much of an outline's agreement with the tags is new from check to check; from what on an
+// outline is believed without them; every how many frames it is then checked again.
+constexpr double kNewAgreement = 0.3, kBelieved = 0.5;
+constexpr int kCheckOutlineEvery = 5;
 constexpr int kThoroughEvery = 5;  // of the frames of a lost tip, at full resolution
 
 const TagCollar& Checked(const TagCollar& collar) {
@@ -63,6 +67,8 @@ struct TipTracker::Impl {
   std::optional<BackgroundDetector> background;
   std::optional<TipOutline> outline;
   std::optional<TipFilter> by_tags;  // the filter as the tags left it, before an outline came in
+  double outline_agreement = 0;      // with the tags, fading
+  int frames_since_outline = 0;
 
   std::optional<Pose> last_T_RE;         // of the last frame in which the collar was seen
   TimeNs last_ns = 0, last_seen_ns = 0;  // of last_T_RE, and of the last tags
@@ -178,7 +184,9 @@ double DirectionNoise(const Pose& T_RE, const Matrix6& covariance) {
   return std::sqrt(0.5 * of_direction.trace());
 }
 
-// Where the tags leave the direction uncertain, the outline's long base line is worth its time.
+// Where the tags leave the direction uncertain, the outline's long base line is worth its time. Now
+// and then it is looked at all the same: one that is not where the tags say (another diameter,
+// another end) is not believed later without them.
 void TipTracker::Impl::JoinOutline(const Images& images, Sight& sight) {
   if (!outline || sight.source != TrackSource::kPixels || sight.ambiguous) return;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -187,11 +195,15 @@ void TipTracker::Impl::JoinOutline(const Images& images, Sight& sight) {
     if (view.faces.empty()) continue;
     outline->SetBlur(i, std::sqrt(std::max(0.0, 0.5 * (blur_px2[0] + blur_px2[2]))));
   }
-  if (DirectionNoise(sight.T_RE, sight.covariance) < options.outline_from_rad) return;
+  const bool wanted = DirectionNoise(sight.T_RE, sight.covariance) >= options.outline_from_rad;
+  const bool due = outline_agreement < kBelieved || ++frames_since_outline >= kCheckOutlineEvery;
+  if (!wanted && !due) return;
   const auto joined = outline->Join(images, {sight.T_RE, sight.covariance});
-  if (!joined) return;
-  sight.T_RE = joined->T_RE;
-  sight.covariance = joined->covariance;
+  frames_since_outline = 0;
+  outline_agreement += kNewAgreement * ((joined && joined->end_seen ? 1 : 0) - outline_agreement);
+  if (!joined || !wanted) return;
+  sight.T_RE = joined->tip.T_RE;
+  sight.covariance = joined->tip.covariance;
   sight.outline_used = true;
 }
 
@@ -216,7 +228,7 @@ TipPrediction TipTracker::Impl::OutlinePrior(TimeNs t_ns, const TipPrediction& e
 std::optional<TipPrediction> TipTracker::Impl::FollowOutline(
     const Images& images, TimeNs t_ns, const TipPrediction& expected,
     const std::optional<TipPrediction>& model) {
-  if (!outline || images.empty() || !last_T_RE) return {};
+  if (!outline || images.empty() || !last_T_RE || outline_agreement < kBelieved) return {};
   if (t_ns - last_seen_ns > options.max_outline_ns) return {};
   auto found = outline->Find(images, OutlinePrior(t_ns, expected, model));
   if (!found || PositionSd(*found) > options.max_predicted_sd_m) return {};

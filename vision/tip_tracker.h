@@ -37,7 +37,7 @@ struct TrackerOptions {
   /// direction less certain than `outline_from_rad`, and to carry a prediction on while they hide.
   std::optional<TubeShape> tube;
   ContourOptions outline;
-  double outline_from_rad = 0.0008;
+  double outline_from_rad = 0.003;
   TimeNs max_outline_ns = 2'000'000'000;  ///< so long the outline alone may carry a prediction
   double print_offset_sd_m = 3e-5;  ///< how well the tags' places along their normals are known
 };

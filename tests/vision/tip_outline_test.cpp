@@ -84,10 +84,10 @@ TEST_F(Outline, MakesTheDirectionBetterAndThePositionNoWorse) {
     const auto joined = outline.Join({&image}, seen);
     ASSERT_TRUE(joined) << i;
     before += std::pow(DirectionError(seen, truth), 2) / kFrames;
-    after += std::pow(DirectionError(*joined, truth), 2) / kFrames;
-    direction_nees += DirectionNees(*joined, truth) / kFrames;
+    after += std::pow(DirectionError(joined->tip, truth), 2) / kFrames;
+    direction_nees += DirectionNees(joined->tip, truth) / kFrames;
     const double nees =
-        PositionNees(joined->T_RE.p, joined->covariance.bottomRightCorner<3, 3>(), truth);
+        PositionNees(joined->tip.T_RE.p, joined->tip.covariance.bottomRightCorner<3, 3>(), truth);
     EXPECT_LT(nees, 21.1) << i;  // 99.99 %
     position_nees += nees / kFrames;
   }
@@ -113,7 +113,7 @@ TEST_F(Outline, BringsAMovedPoseBack) {
       TipPrediction seen{MovePose(truth, Turned(off_C, R_RC)), Spread(sd)};
       const auto joined = outline.Join({&image}, seen);
       ASSERT_TRUE(joined) << by << axis;
-      const Vector6 left = Turned(PoseDifference(truth, joined->T_RE), R_RC.transpose());
+      const Vector6 left = Turned(PoseDifference(truth, joined->tip.T_RE), R_RC.transpose());
       EXPECT_LT(std::abs(left[2 + axis]), 0.1 * std::abs(off_C[2 + axis])) << by << axis;
     }
   }
@@ -134,12 +134,12 @@ TEST_F(Outline, TheJoinedPoseIsTheCheapestAround) {
   const TipPrediction seen = Drawn(truth, Spread(sd), random);
   const auto joined = outline.Join({&image}, seen);
   ASSERT_TRUE(joined);
-  const double here = Cost(image, bend, seen, joined->T_RE);
-  const Eigen::SelfAdjointEigenSolver<Matrix6> axes(joined->covariance);
+  const double here = Cost(image, bend, seen, joined->tip.T_RE);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> axes(joined->tip.covariance);
   for (int i = 0; i < 6; ++i) {
     const Vector6 step = 3 * std::sqrt(axes.eigenvalues()[i]) * axes.eigenvectors().col(i);
     for (const double sign : {-1.0, 1.0}) {
-      const double grown = Cost(image, bend, seen, MovePose(joined->T_RE, sign * step)) - here;
+      const double grown = Cost(image, bend, seen, MovePose(joined->tip.T_RE, sign * step)) - here;
       EXPECT_GT(grown, 3) << i;
       EXPECT_LT(grown, 18) << i;
     }

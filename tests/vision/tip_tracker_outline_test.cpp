@@ -109,6 +109,23 @@ TEST_F(TipTrackerOutline, DoesNotGrowSureByRepetition) {
   EXPECT_GT(sd, 0.9 * std::sqrt(sight.dot(once->covariance.bottomRightCorner<3, 3>() * sight)));
 }
 
+// An outline that is not where the tags say (another diameter, another end) is never believed.
+TEST_F(TipTrackerOutline, AWrongShaftDoesNoHarm) {
+  for (const double diameter_m : {0.0035, 0.0042, 0.005, 0.0055, 0.0065}) {
+    for (const bool round : {true, false}) {
+      if (diameter_m == 0.005 && round) continue;  // the true one
+      TrackerOptions options;
+      options.tube = TubeOf(ScopeCollar(), diameter_m, round);
+      TipTracker tracker(ScopeCamera(), ScopeCollar(), options);
+      for (int i = 0; i < kFirstCovered + 6; ++i) {
+        const TipTrack track = tracker.Track(pictures_[i], i * kFrame_ns);
+        EXPECT_FALSE(track.outline_used) << diameter_m << round << i;
+        EXPECT_EQ(track.tip.status == TipStatus::kOk, !IsCovered(i)) << diameter_m << round << i;
+      }
+    }
+  }
+}
+
 TEST_F(TipTrackerOutline, GivesUpAfterItsTime) {
   TrackerOptions options = WithOutline();
   options.max_outline_ns = 10 * kFrame_ns;
