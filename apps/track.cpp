@@ -33,7 +33,9 @@ struct TrackOptions {
   TrackerOptions tracker;
   std::vector<double> black_white;
   double rate_hz = 0.0;
-  long max_frames = 0;  // 0: all
+  std::string end;          // of the shaft, where its outline is used
+  double diameter_m = 0.0;  // of the shaft; 0: the recording's
+  long max_frames = 0;      // 0: all
   bool no_model = false, overlay = false, force = false, resume = false;
 
   std::string InputName() const {
@@ -56,6 +58,19 @@ void CheckOptions(TrackOptions& options) {
   if (options.resume && !options.input.live.empty()) {
     throw InputError("--resume: a live source cannot be seen again");
   }
+}
+
+// The shaft whose outline carries a tip on. A recording does not say how its shaft ends, and its
+// outer_diameter_m may be that of the part that bends: so only where it was asked for.
+std::optional<TubeShape> ShaftSeen(const TrackOptions& options, const TrackInput& input) {
+  if (options.end.empty()) return {};
+  const double diameter_m =
+      options.diameter_m > 0 ? options.diameter_m : input.recording.instrument.outer_diameter_m;
+  if (!(diameter_m > 0)) {
+    throw InputError::At(options.InputName(), 0,
+                         "is no recording, expected --diameter METRES with --outline");
+  }
+  return TubeOf(*input.recording.tags0, diameter_m, options.end == "round");
 }
 
 std::string Remark(const TipTrack& track) {
@@ -133,6 +148,7 @@ void RunTrack(TrackOptions options, bool quiet) {
                       {.force = options.force, .inputs = inputs, .resume = options.resume});
   TrackInput input = OpenTrackInput(options.input);
   output.Warn(input.warnings);
+  options.tracker.tube = ShaftSeen(options, input);
   std::optional<Series<Eigen::Vector3d>> truth;
   if (input.is_recording || !options.truth.empty()) {
     truth = ReadTipTruth(options.input.source, options.truth);
@@ -207,6 +223,19 @@ void AddTrack(CLI::App& app, AppContext& context) {
       ->capture_default_str();
   command->add_flag("--no-model", options->no_model,
                     "Carry a hidden tip on by its motion alone, not by wrist0 and the shaft");
+  auto* outline =
+      command
+          ->add_option("--outline", options->end,
+                       "Carry a tip whose tags are covered on by the shaft's outline; its end is "
+                       "round or flat")
+          ->check(CLI::IsMember({"round", "flat"}))
+          ->type_name("END");
+  command
+      ->add_option("--diameter", options->diameter_m,
+                   "Of the shaft as it is seen; without it the recording's outer_diameter_m")
+      ->check(CLI::PositiveNumber)
+      ->needs(outline)
+      ->type_name("METRES");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->add_flag("--resume", options->resume, "Go on where an interrupted run ended");
   command->footer(
@@ -222,6 +251,8 @@ void AddTrack(CLI::App& app, AppContext& context) {
       "  flextip track --live 0 --camera sensor.yaml --collar collar.yaml -o OUT\n"
       "  flextip track --live rtsp://HOST/STREAM --camera sensor.yaml --collar collar.yaml -o "
       "OUT\n"
+      "tags that another instrument covers for a while, on a shaft with a round end\n"
+      "  flextip track RECORDING --outline round -o OUT\n"
       "after an interruption\n"
       "  flextip track RECORDING -o OUT --resume\n");
   OnRun(*command, context, [options, &context] { RunTrack(*options, context.quiet); });

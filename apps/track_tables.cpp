@@ -157,7 +157,9 @@ void TrackTables::AddFrame(TimeNs t_ns, const TipTrack& track,
       row.AddEmpty();
     }
   };
-  row.Add(t_ns).Add(std::string(flextip::Name(track.tip.status))).Add(std::string(Name(source)));
+  const bool by_outline = track.tip.status == TipStatus::kPredicted && track.outline_used;
+  row.Add(t_ns).Add(std::string(flextip::Name(track.tip.status)));
+  row.Add(std::string(by_outline ? "outline" : Name(source)));
   row.Add(static_cast<TimeNs>(ok ? track.tags_used : 0));
   add(source == TrackSource::kCorners, track.rms_px);
   add(source == TrackSource::kPixels, track.noise_grey);
