@@ -80,16 +80,6 @@ std::string Remark(const TipTrack& track) {
                      Name(track.tip.status));
 }
 
-// Tracks the frames before `tables` goes on once more: what the tracker learns of the optics, and
-// the model of the load, is never quite forgotten, and the tables shall be those of one run.
-void WarmUp(FrameSets& frames, TipFollower& follower, long done) {
-  for (long i = 0; i < done; ++i) {
-    const std::optional<FrameSet> set = frames.Next();
-    if (!set) return;
-    (void)follower.Follow(*set);
-  }
-}
-
 void TrackFrames(const TrackOptions& options, TrackInput& input,
                  const std::optional<Series<Eigen::Vector3d>>& truth, OutputFolder& output,
                  TrackTables& tables, bool quiet) {
@@ -97,7 +87,10 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
   const CameraCalibration& camera = input.recording.cam0->calibration;
   TipFollower follower(input.recording, options.tracker, !options.no_model);
   const long before = tables.sums.frames;
-  WarmUp(*input.frames, follower, before);
+  if (before > 0) {
+    follower.SetState(tables.state());
+    input.frames->Skip(static_cast<std::size_t>(before));
+  }
   const auto count = static_cast<long>(input.frames->Count());
   const long total = options.max_frames > 0 && (count == 0 || options.max_frames < count)
                          ? options.max_frames
@@ -112,7 +105,7 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
     const TipTrack track = follower.Follow(*set);
     tables.sums.seconds += std::chrono::duration<double>(Clock::now() - start).count();
     tables.Add(set->t_ns, track, truth ? ValueAt(*truth, set->t_ns) : std::nullopt, camera.T_RC);
-    tables.SaveWhenDue();
+    if (tables.IsSaveDue()) tables.Save(follower.State());
     overlay.Add(*set, track, camera, *input.recording.tags0);
     progress.Update(static_cast<std::size_t>(tables.sums.frames - before), Remark(track));
   }

@@ -59,6 +59,14 @@ void TipOutline::SetBlur(std::size_t camera, double blur_px) {
   view.contour = ShaftContour(view.camera, tube_, WithBlur(options_, blur_px));
 }
 
+void TipOutline::VisitState(StateText& state) {
+  for (View& view : views_) {
+    state(view.blur_px);
+    if (!state.Reading()) continue;
+    view.contour = ShaftContour(view.camera, tube_, WithBlur(options_, view.blur_px));
+  }
+}
+
 // Grey values where the outline may be looked for.
 const Image& TipOutline::GreyAround(View& view, const Image& image, const Pose& T_CE) const {
   if (image.channels == 1) return image;

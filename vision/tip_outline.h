@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/state_text.h"
 #include "vision/shaft_contour.h"
 #include "vision/tip_prediction.h"
 
@@ -18,6 +19,9 @@ class TipOutline {
 
   /// The blur of a camera's pictures (px), as the tags show it.
   void SetBlur(std::size_t camera, double blur_px);
+
+  /// The blurs.
+  void VisitState(StateText& state);
 
   struct Joined {
     TipPrediction tip;

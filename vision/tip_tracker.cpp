@@ -90,6 +90,7 @@ struct TipTracker::Impl {
     background.emplace(detector);
   }
 
+  void VisitState(StateText& state);
   void ForgetIfStale(TimeNs t_ns);
   std::optional<TipPrediction> Expect(TimeNs t_ns, const std::optional<TipPrediction>& model) const;
   double SearchRadius(const TipPrediction& expected) const;
@@ -110,6 +111,27 @@ struct TipTracker::Impl {
   void Remember(const Sight& sight, TimeNs t_ns);
   void Report(const Sight& sight, TipTrack& track) const;
 };
+
+void TipTracker::Impl::VisitState(StateText& state) {
+  state(finder);
+  state(filter);
+  if (state.IsThere(by_tags.has_value())) {
+    if (!by_tags) by_tags = filter;
+    state(*by_tags);
+  } else {
+    by_tags.reset();
+  }
+  state(last_T_RE);
+  state(last_ns);
+  state(last_seen_ns);
+  state(turn_rate);
+  for (int* count : {&predicted_frames, &lost_frames, &frames_since_outline}) state(*count);
+  for (double* value : {&noise_sum_px2, &noise_dof, &outline_agreement}) state(*value);
+  if (state.IsThere(outline.has_value()) != outline.has_value()) {
+    throw InputError("saved state: of a run with another --outline");
+  }
+  if (outline) state(*outline);
+}
 
 void TipTracker::Impl::ForgetIfStale(TimeNs t_ns) {
   if (!filter.Started()) return;
@@ -350,6 +372,8 @@ TipTrack TipTracker::Track(const std::vector<const Image*>& images, TimeNs t_ns,
   impl_->JoinOutline(images, sight);
   return impl_->Finish(sight, t_ns, expected, model, images);
 }
+
+void TipTracker::VisitState(StateText& state) { impl_->VisitState(state); }
 
 TipTrack TipTracker::Track(const std::vector<TagDetection>& tags, TimeNs t_ns) {
   impl_->ForgetIfStale(t_ns);
