@@ -20,9 +20,9 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 constexpr double kNoiseMemory = 0.9;
 constexpr double kMinSearch_px = 8.0, kMaxSearch_px = 60.0;
 // How much of an outline's agreement with the tags is new from check to check; from what on an
-// outline is believed without them; every how many frames it is then checked again.
+// outline is believed without them; how many frames are checked at first, then one in how many.
 constexpr double kNewAgreement = 0.3, kBelieved = 0.5;
-constexpr int kCheckOutlineEvery = 5;
+constexpr int kFirstOutlineChecks = 4, kCheckOutlineEvery = 5;
 constexpr int kThoroughEvery = 5;  // of the frames of a lost tip, at full resolution
 
 const TagCollar& Checked(const TagCollar& collar) {
@@ -68,7 +68,7 @@ struct TipTracker::Impl {
   std::optional<TipOutline> outline;
   std::optional<TipFilter> by_tags;  // the filter as the tags left it, before an outline came in
   double outline_agreement = 0;      // with the tags, fading
-  int frames_since_outline = 0;
+  int outline_checks = 0, frames_since_outline = 0;
 
   std::optional<Pose> last_T_RE;         // of the last frame in which the collar was seen
   TimeNs last_ns = 0, last_seen_ns = 0;  // of last_T_RE, and of the last tags
@@ -125,7 +125,8 @@ void TipTracker::Impl::VisitState(StateText& state) {
   state(last_ns);
   state(last_seen_ns);
   state(turn_rate);
-  for (int* count : {&predicted_frames, &lost_frames, &frames_since_outline}) state(*count);
+  for (int* count : {&predicted_frames, &lost_frames, &outline_checks, &frames_since_outline})
+    state(*count);
   for (double* value : {&noise_sum_px2, &noise_dof, &outline_agreement}) state(*value);
   if (state.IsThere(outline.has_value()) != outline.has_value()) {
     throw InputError("saved state: of a run with another --outline");
@@ -218,10 +219,12 @@ void TipTracker::Impl::JoinOutline(const Images& images, Sight& sight) {
     outline->SetBlur(i, std::sqrt(std::max(0.0, 0.5 * (blur_px2[0] + blur_px2[2]))));
   }
   const bool wanted = DirectionNoise(sight.T_RE, sight.covariance) >= options.outline_from_rad;
-  const bool due = outline_agreement < kBelieved || ++frames_since_outline >= kCheckOutlineEvery;
+  const bool due =
+      ++frames_since_outline >= kCheckOutlineEvery || outline_checks < kFirstOutlineChecks;
   if (!wanted && !due) return;
   const auto joined = outline->Join(images, {sight.T_RE, sight.covariance});
   frames_since_outline = 0;
+  ++outline_checks;
   outline_agreement += kNewAgreement * ((joined && joined->end_seen ? 1 : 0) - outline_agreement);
   if (!joined || !wanted) return;
   sight.T_RE = joined->tip.T_RE;
