@@ -1,5 +1,7 @@
 #include "apps/tip_follower.h"
 
+#include "core/error.h"
+
 namespace flextip {
 namespace {
 
@@ -23,6 +25,26 @@ TipTrack TipFollower::Follow(const FrameSet& frames) {
     model_->Seen(frames.t_ns, track.T_RE, track.covariance);
   }
   return track;
+}
+
+void TipFollower::VisitState(StateText& state) {
+  state(tracker_);
+  if (state.IsThere(model_.has_value()) != model_.has_value()) {
+    throw InputError("saved state: of a run with another --no-model");
+  }
+  if (model_) state(*model_);
+  state.Finish();
+}
+
+std::string TipFollower::State() {
+  StateText state;
+  VisitState(state);
+  return state.Text();
+}
+
+void TipFollower::SetState(const std::string& text) {
+  StateText state(text);
+  VisitState(state);
 }
 
 }  // namespace flextip

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "apps/frame_sets.h"
 #include "apps/tip_model.h"
@@ -18,7 +19,15 @@ class TipFollower {
 
   TipTrack Follow(const FrameSet& frames);
 
+  /// What is needed to go on in another run. A run that is to give the same results must have asked
+  /// for it after the same frames: the model's solvers start afresh there.
+  std::string State();
+  /// Throws InputError where `state` is not of a follower with the same options.
+  void SetState(const std::string& state);
+
  private:
+  void VisitState(StateText& state);
+
   TipTracker tracker_;
   std::optional<TipModel> model_;
 };

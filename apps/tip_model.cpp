@@ -150,8 +150,27 @@ void TipModel::Seen(TimeNs t_ns, const Pose& T_RE, const Matrix6& covariance) {
                  *rod,
                  estimate.model.p_RP,
                  estimate.model.f_tip_N,
-                 estimate.covariance};
+                 estimate.covariance.bottomRightCorner<6, 6>()};
   LearnDrift();
+}
+
+void TipModel::Sight::VisitState(StateText& state) {
+  state(t_ns);
+  state(T_RE);
+  state(covariance);
+  state(rod);
+  state(p_RP);
+  state(f_tip_N);
+  state(parameters);
+}
+
+void TipModel::VisitState(StateText& state) {
+  blind_.Reset();
+  seeing_.Reset();
+  rod_.Reset();
+  state(sight_);
+  state(earlier_);
+  state(drift_variance_N2_s_);
 }
 
 // How far the load has wandered in the last third of a second, by what that does to the tip: the
@@ -166,7 +185,7 @@ void TipModel::LearnDrift() {
     const double variance_s = square / std::max(J.squaredNorm(), 1e-18) / seconds;
     drift_variance_N2_s_ = kMemory * drift_variance_N2_s_ + (1 - kMemory) * variance_s;
   }
-  earlier_ = sight_;
+  earlier_ = Load{sight_->t_ns, sight_->f_tip_N};
 }
 
 std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements& z) {
@@ -183,7 +202,7 @@ std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements
   // What is not known of port and load matters as far as its effect has changed; the wrist's noise
   // is another one each time.
   const Eigen::Matrix<double, 6, 6> changed = (now->J - then.J).rightCols<6>();
-  P += changed * sight_->parameters.bottomRightCorner<6, 6>() * changed.transpose();
+  P += changed * sight_->parameters * changed.transpose();
   const double wrist_variance = z.wrist_position_noise_m * z.wrist_position_noise_m;
   for (const RodTip* tip : {&then, &*now}) {
     P += wrist_variance * tip->J.leftCols<3>() * tip->J.leftCols<3>().transpose();

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/pose.h"
+#include "core/state_text.h"
 #include "core/time_series.h"
 #include "estimation/shaft_estimator.h"
 #include "recording/recording.h"
@@ -44,6 +45,10 @@ class TipModel {
   /// measured, it stays where it was seen, and nothing is known of it before.
   std::optional<TipPrediction> Predict(TimeNs t_ns);
 
+  /// What the frames so far have left. The solvers start afresh after it, whether it is written or
+  /// read: so both go on alike.
+  void VisitState(StateText& state);
+
   /// The tip was seen; `covariance` of (dw, dp) in R as in TipPrediction.
   void Seen(TimeNs t_ns, const Pose& T_RE, const Matrix6& covariance);
 
@@ -54,14 +59,28 @@ class TipModel {
     Pose T_RE;
     Matrix6x9 J;
     bool has_roll = false;
+    void VisitState(StateText& state) {
+      state(T_RE);
+      state(J);
+      state(has_roll);
+    }
   };
   struct Sight {
-    TimeNs t_ns;
+    TimeNs t_ns = 0;
     Pose T_RE;
     Matrix6 covariance;
     RodTip rod;  // by the model, with this port and load
     Eigen::Vector3d p_RP, f_tip_N;
-    Matrix9d parameters;  // covariance of wrist, port and tip force
+    Matrix6 parameters;  // covariance of port and tip force
+    void VisitState(StateText& state);
+  };
+  struct Load {
+    TimeNs t_ns = 0;
+    Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
+    void VisitState(StateText& state) {
+      state(t_ns);
+      state(f_tip_N);
+    }
   };
 
   void LearnDrift();
@@ -77,8 +96,9 @@ class TipModel {
   EstimatorOptions estimator_options_;
   ShaftEstimator blind_, seeing_;
   ShaftRod rod_;
-  std::optional<Sight> sight_, earlier_;  // earlier_: what the drift is learnt against
-  double drift_variance_N2_s_;            // of each component, gained in a second
+  std::optional<Sight> sight_;
+  std::optional<Load> earlier_;  // what the drift is learnt against
+  double drift_variance_N2_s_;   // of each component, gained in a second
 };
 
 }  // namespace flextip

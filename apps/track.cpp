@@ -33,7 +33,9 @@ struct TrackOptions {
   TrackerOptions tracker;
   std::vector<double> black_white;
   double rate_hz = 0.0;
-  long max_frames = 0;  // 0: all
+  std::string end;          // of the shaft, where its outline is used
+  double diameter_m = 0.0;  // of the shaft; 0: the recording's
+  long max_frames = 0;      // 0: all
   bool no_model = false, overlay = false, force = false, resume = false;
 
   std::string InputName() const {
@@ -58,21 +60,24 @@ void CheckOptions(TrackOptions& options) {
   }
 }
 
+// The shaft whose outline carries a tip on. A recording does not say how its shaft ends, and its
+// outer_diameter_m may be that of the part that bends: so only where it was asked for.
+std::optional<TubeShape> ShaftSeen(const TrackOptions& options, const TrackInput& input) {
+  if (options.end.empty()) return {};
+  const double diameter_m =
+      options.diameter_m > 0 ? options.diameter_m : input.recording.instrument.outer_diameter_m;
+  if (!(diameter_m > 0)) {
+    throw InputError::At(options.InputName(), 0,
+                         "is no recording, expected --diameter METRES with --outline");
+  }
+  return TubeOf(*input.recording.tags0, diameter_m, options.end == "round");
+}
+
 std::string Remark(const TipTrack& track) {
   if (track.tip.status == TipStatus::kLost) return "tip lost";
   const Eigen::Vector3d p_mm = 1e3 * track.tip.p_RE;
   return fmt::format("tip {:.2f} {:.2f} {:.2f} mm {}", p_mm.x(), p_mm.y(), p_mm.z(),
                      Name(track.tip.status));
-}
-
-// Tracks the frames before `tables` goes on once more: what the tracker learns of the optics, and
-// the model of the load, is never quite forgotten, and the tables shall be those of one run.
-void WarmUp(FrameSets& frames, TipFollower& follower, long done) {
-  for (long i = 0; i < done; ++i) {
-    const std::optional<FrameSet> set = frames.Next();
-    if (!set) return;
-    (void)follower.Follow(*set);
-  }
 }
 
 void TrackFrames(const TrackOptions& options, TrackInput& input,
@@ -82,7 +87,10 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
   const CameraCalibration& camera = input.recording.cam0->calibration;
   TipFollower follower(input.recording, options.tracker, !options.no_model);
   const long before = tables.sums.frames;
-  WarmUp(*input.frames, follower, before);
+  if (before > 0) {
+    follower.SetState(tables.state());
+    input.frames->Skip(static_cast<std::size_t>(before));
+  }
   const auto count = static_cast<long>(input.frames->Count());
   const long total = options.max_frames > 0 && (count == 0 || options.max_frames < count)
                          ? options.max_frames
@@ -97,7 +105,7 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
     const TipTrack track = follower.Follow(*set);
     tables.sums.seconds += std::chrono::duration<double>(Clock::now() - start).count();
     tables.Add(set->t_ns, track, truth ? ValueAt(*truth, set->t_ns) : std::nullopt, camera.T_RC);
-    tables.SaveWhenDue();
+    if (tables.IsSaveDue()) tables.Save(follower.State());
     overlay.Add(*set, track, camera, *input.recording.tags0);
     progress.Update(static_cast<std::size_t>(tables.sums.frames - before), Remark(track));
   }
@@ -133,6 +141,7 @@ void RunTrack(TrackOptions options, bool quiet) {
                       {.force = options.force, .inputs = inputs, .resume = options.resume});
   TrackInput input = OpenTrackInput(options.input);
   output.Warn(input.warnings);
+  options.tracker.tube = ShaftSeen(options, input);
   std::optional<Series<Eigen::Vector3d>> truth;
   if (input.is_recording || !options.truth.empty()) {
     truth = ReadTipTruth(options.input.source, options.truth);
@@ -207,6 +216,19 @@ void AddTrack(CLI::App& app, AppContext& context) {
       ->capture_default_str();
   command->add_flag("--no-model", options->no_model,
                     "Carry a hidden tip on by its motion alone, not by wrist0 and the shaft");
+  auto* outline =
+      command
+          ->add_option("--outline", options->end,
+                       "Carry a tip whose tags are covered on by the shaft's outline; its end is "
+                       "round or flat")
+          ->check(CLI::IsMember({"round", "flat"}))
+          ->type_name("END");
+  command
+      ->add_option("--diameter", options->diameter_m,
+                   "Of the shaft as it is seen; without it the recording's outer_diameter_m")
+      ->check(CLI::PositiveNumber)
+      ->needs(outline)
+      ->type_name("METRES");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->add_flag("--resume", options->resume, "Go on where an interrupted run ended");
   command->footer(
@@ -222,6 +244,8 @@ void AddTrack(CLI::App& app, AppContext& context) {
       "  flextip track --live 0 --camera sensor.yaml --collar collar.yaml -o OUT\n"
       "  flextip track --live rtsp://HOST/STREAM --camera sensor.yaml --collar collar.yaml -o "
       "OUT\n"
+      "tags that another instrument covers for a while, on a shaft with a round end\n"
+      "  flextip track RECORDING --outline round -o OUT\n"
       "after an interruption\n"
       "  flextip track RECORDING -o OUT --resume\n");
   OnRun(*command, context, [options, &context] { RunTrack(*options, context.quiet); });

@@ -12,9 +12,8 @@ namespace flextip {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
-constexpr auto kSaveEvery = std::chrono::milliseconds(500);
+constexpr long kSaveEvery = 10;
 
 const std::vector<std::string> kTagColumns = {
     "id []",     "c0_x [px]", "c0_y [px]", "c1_x [px]",          "c1_y [px]", "c2_x [px]",
@@ -120,6 +119,7 @@ void TrackTables::Resume() {
                                        mark.at("input").get<std::string>(), input_));
     }
     sums = SumsFromJson(mark.at("sums"));
+    state_ = mark.at("state");
     for (GrowingTable* table : {&vision_, &tags_, &frames_}) {
       const auto bytes = mark.at("bytes").at(table->name).get<std::uintmax_t>();
       fs::resize_file(folder_ / table->name, bytes);
@@ -157,7 +157,9 @@ void TrackTables::AddFrame(TimeNs t_ns, const TipTrack& track,
       row.AddEmpty();
     }
   };
-  row.Add(t_ns).Add(std::string(flextip::Name(track.tip.status))).Add(std::string(Name(source)));
+  const bool by_outline = track.tip.status == TipStatus::kPredicted && track.outline_used;
+  row.Add(t_ns).Add(std::string(flextip::Name(track.tip.status)));
+  row.Add(std::string(by_outline ? "outline" : Name(source)));
   row.Add(static_cast<TimeNs>(ok ? track.tags_used : 0));
   add(source == TrackSource::kCorners, track.rms_px);
   add(source == TrackSource::kPixels, track.noise_grey);
@@ -183,7 +185,9 @@ void TrackTables::Count(const TipTrack& track) {
   }
 }
 
-void TrackTables::Save() {
+bool TrackTables::IsSaveDue() const { return sums.frames % kSaveEvery == 0; }
+
+void TrackTables::Save(const std::string& state) {
   nlohmann::json bytes;
   for (GrowingTable* table : {&vision_, &tags_, &frames_}) {
     table->stream << table->rows.TakeText() << std::flush;
@@ -192,20 +196,16 @@ void TrackTables::Save() {
     }
     bytes[table->name] = static_cast<long>(table->stream.tellp());
   }
-  const nlohmann::json mark = {{"input", input_}, {"bytes", bytes}, {"sums", ToJson(sums)}};
+  const nlohmann::json mark = {
+      {"input", input_}, {"bytes", bytes}, {"sums", ToJson(sums)}, {"state", state}};
   fs::path fresh = mark_;
   fresh += ".new";
   WriteTextFile(fresh, mark.dump());
   fs::rename(fresh, mark_);  // at once: the mark is whole at any time
-  saved_ = Clock::now();
-}
-
-void TrackTables::SaveWhenDue() {
-  if (Clock::now() - saved_ >= kSaveEvery) Save();
 }
 
 void TrackTables::Finish(const TagCollar& collar, double rate_hz) {
-  Save();
+  Save("");
   VisionStream stream;
   stream.rate_hz = rate_hz;
   stream.comment = "tip by tags";

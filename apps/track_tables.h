@@ -2,8 +2,6 @@
 // number and an interrupted run can go on.
 #pragma once
 
-#include <chrono>
-
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -28,8 +26,9 @@ struct TrackSums {
   TipScore score, score_predicted;       ///< of the ok and the predicted ones
 };
 
-/// FOLDER/vision0, FOLDER/tags0 and FOLDER/frames.csv. Rows reach the disk at least once a second,
-/// and with them FOLDER/unfinished.json: how far the tables are whole, and the sums up to there.
+/// FOLDER/vision0, FOLDER/tags0 and FOLDER/frames.csv. Rows reach the disk every ten frames, and
+/// with them FOLDER/unfinished.json: how far the tables are whole, the sums and the state up to
+/// there.
 class TrackTables {
  public:
   /// Goes on where `resume` finds an unfinished run of the same `input`, else from the beginning.
@@ -42,19 +41,21 @@ class TrackTables {
   /// `p_RE`: the true tip, to be scored against.
   void Add(TimeNs t_ns, const TipTrack& track, const std::optional<Eigen::Vector3d>& p_RE,
            const Pose& T_RC);
-  /// After the first frame and twice a second; after the frame's part of `sums` is complete.
-  void SaveWhenDue();
+  /// Whether so many frames have come that they are to be saved: the same in every run.
+  bool IsSaveDue() const;
+  /// `state`: of what makes the frames, handed out by `state` when a run goes on.
+  void Save(const std::string& state);
+  const std::string& state() const { return state_; }
   /// Writes both sensor.yaml beside the tables and takes unfinished.json away.
   void Finish(const TagCollar& collar, double rate_hz);
 
  private:
   void Resume();
-  void Save();
   void AddFrame(TimeNs t_ns, const TipTrack& track, const std::optional<Eigen::Vector3d>& p_RE);
   void Count(const TipTrack& track);
 
   std::filesystem::path folder_, mark_;
-  std::string input_;
+  std::string input_, state_;
   /// One of the files, and its rows that are not yet there.
   struct GrowingTable {
     std::string name;
@@ -62,7 +63,6 @@ class TrackTables {
     std::ofstream stream = {};
   };
   GrowingTable vision_, tags_, frames_;
-  std::chrono::steady_clock::time_point saved_ = {};  // long ago: the first frame is saved at once
 };
 
 }  // namespace flextip

@@ -16,6 +16,7 @@
 #include "core/rotation.h"
 #include "recording/text.h"
 #include "vision/tip_tracker.h"
+#include "vision/tube_geometry.h"
 
 namespace flextip {
 namespace {
@@ -24,7 +25,7 @@ struct Arguments {
   int frames = 10000, frames_each = 100, width_px = 640, only = -1;
   std::uint64_t seed = 1;
   std::vector<std::string> events, families = {"tag36h11", "tag25h9", "tagStandard41h12"};
-  bool wrist = false, summarize = false;
+  bool wrist = false, outline = false, summarize = false;
   double drift_mm = 1.0, drift_deg = 1.0;
   std::filesystem::path out, pictures, sheet;
 };
@@ -40,6 +41,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
       ->check(CLI::IsMember(VisionEvents()));
   app.add_option("--families", a.families, "Tag families to draw from")->delimiter(',');
   app.add_flag("--wrist", a.wrist, "Give the tracker a model's prediction of each frame");
+  app.add_flag("--outline", a.outline, "Give the tracker the shaft's outline");
   app.add_option("--drift-mm", a.drift_mm, "Standard error of the prediction, per axis");
   app.add_option("--drift-deg", a.drift_deg, "Of its rotation, per axis");
   app.add_option("--sequence", a.only, "Only the sequence of this number");
@@ -138,7 +140,9 @@ void WriteSheet(const Arguments& a) {
 SequenceScore RunSequence(const Arguments& a, int number) {
   const VisionSequence s = SequenceOf(a, number);
   const Laparoscope scope(s.camera, s.collar, s.options);
-  TipTracker tracker(s.camera, s.collar);
+  TrackerOptions options;
+  if (a.outline) options.tube = TubeOf(s.collar, s.shaft_diameter_m, true);
+  TipTracker tracker(s.camera, s.collar, options);
   WristModel model(a.drift_deg * M_PI / 180, 1e-3 * a.drift_mm, a.seed + number);
   SequenceScore score{
       number, s.events, s.collar.family, s.tag_px, s.speed_m_s, a.wrist, s.camera.gamma.has_value(),

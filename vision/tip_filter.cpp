@@ -49,6 +49,22 @@ void TipFilter::Measure(TimeNs t_ns, const Eigen::Vector3d& p,
   P_ = 0.5 * (updated + updated.transpose());
 }
 
+// The velocity given the position stays as it is; the position's distribution is another.
+void TipFilter::Replace(TimeNs t_ns, const Eigen::Vector3d& p,
+                        const Eigen::Matrix3d& covariance_m2) {
+  if (!started_) return Measure(t_ns, p, covariance_m2);
+  Advance(t_ns, x_, P_);
+  t_ns_ = t_ns;
+  const Eigen::Matrix3d before = P_.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d gain = before.ldlt().solve(P_.topRightCorner<3, 3>()).transpose();
+  const Eigen::Matrix3d velocity =
+      P_.bottomRightCorner<3, 3>() + gain * (covariance_m2 - before) * gain.transpose();
+  x_.tail<3>() += gain * (p - x_.head<3>());
+  x_.head<3>() = p;
+  P_ << covariance_m2, covariance_m2 * gain.transpose(), gain * covariance_m2,
+      0.5 * (velocity + velocity.transpose());
+}
+
 TipFilter::Prediction TipFilter::At(TimeNs t_ns) const {
   Vector6 x = x_;
   Matrix6 P = P_;

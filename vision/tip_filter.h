@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 
+#include "core/state_text.h"
 #include "core/time_series.h"
 
 namespace flextip {
@@ -20,6 +21,17 @@ class TipFilter {
   TimeNs LastTime() const { return t_ns_; }
 
   void Measure(TimeNs t_ns, const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance_m2);
+
+  /// The position is known to be `p` with this covariance, all that the filter knows of it
+  /// included: only the velocity follows from the filter.
+  void Replace(TimeNs t_ns, const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance_m2);
+
+  void VisitState(StateText& state) {
+    state(started_);
+    state(t_ns_);
+    state(x_);
+    state(P_);
+  }
 
   /// Position and covariance at `t_ns`, after the last measurement; the filter stays where it is.
   struct Prediction {

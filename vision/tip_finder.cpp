@@ -81,6 +81,17 @@ void TipFinder::Learn(const Sight& sight) {
   }
 }
 
+void TipFinder::VisitState(StateText& state) {
+  state(noise_grey_);
+  for (OpticsPrior& prior : priors_) {
+    state(prior.mean.blur_px2);
+    for (double* value : {&prior.mean.gamma, &prior.mean.print_offset_m, &prior.blur_sd_px2,
+                          &prior.gamma_sd, &prior.print_offset_sd_m, &prior.noise_grey}) {
+      state(*value);
+    }
+  }
+}
+
 bool TipFinder::MightSee(const Pose& T_RE) const {
   for (const auto& model : models_) {
     const CameraCalibration& c = model->Calibration();

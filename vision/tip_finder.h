@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/state_text.h"
 #include "vision/background_detector.h"
 #include "vision/collar_search.h"
 #include "vision/tip_tracker.h"
@@ -47,6 +48,8 @@ class TipFinder {
   bool MightSee(const Pose& T_RE) const;
   /// What was learnt about the optics is kept for the next pictures.
   void Learn(const Sight& sight);
+  /// What was learnt.
+  void VisitState(StateText& state);
   /// Forgets the blur; what does not change is kept.
   void Forget();
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/state_text.h"
 #include "vision/shaft_contour.h"
 #include "vision/tip_prediction.h"
 
@@ -19,12 +20,19 @@ class TipOutline {
   /// The blur of a camera's pictures (px), as the tags show it.
   void SetBlur(std::size_t camera, double blur_px);
 
-  /// `seen` and the outlines in the pictures, each with its covariance: a Gauss-Newton step on all
-  /// of them from `seen`, and one more. Unchanged where no outline is found.
-  TipPrediction Join(const std::vector<const Image*>& images, const TipPrediction& seen);
+  /// The blurs.
+  void VisitState(StateText& state);
 
-  /// The pose by the outline in the first camera that shows it, `expected` being the prior; empty
-  /// where it cannot be told.
+  struct Joined {
+    TipPrediction tip;
+    bool end_seen = false;  ///< most of the shaft's end, in one of the pictures, where `tip` has it
+  };
+  /// `seen` and the outlines in the pictures, each with its covariance: a Gauss-Newton step on all
+  /// of them from `seen`, and one more. Empty where no outline is seen that agrees with `seen`.
+  std::optional<Joined> Join(const std::vector<const Image*>& images, const TipPrediction& seen);
+
+  /// The pose by the outlines in all cameras that show one, `expected` being the prior (of which
+  /// roll and mostly depth are taken); empty where it cannot be told, or is not where expected.
   std::optional<TipPrediction> Find(const std::vector<const Image*>& images,
                                     const TipPrediction& expected);
 

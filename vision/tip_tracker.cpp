@@ -19,6 +19,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // How much of the corner noise seen so far is remembered from frame to frame.
 constexpr double kNoiseMemory = 0.9;
 constexpr double kMinSearch_px = 8.0, kMaxSearch_px = 60.0;
+// How much of an outline's agreement with the tags is new from check to check; from what on an
+// outline is believed without them; how many frames are checked at first, then one in how many.
+constexpr double kNewAgreement = 0.3, kBelieved = 0.5;
+constexpr int kFirstOutlineChecks = 4, kCheckOutlineEvery = 5;
 constexpr int kThoroughEvery = 5;  // of the frames of a lost tip, at full resolution
 
 const TagCollar& Checked(const TagCollar& collar) {
@@ -62,6 +66,9 @@ struct TipTracker::Impl {
   TipFilter filter;
   std::optional<BackgroundDetector> background;
   std::optional<TipOutline> outline;
+  std::optional<TipFilter> by_tags;  // the filter as the tags left it, before an outline came in
+  double outline_agreement = 0;      // with the tags, fading
+  int outline_checks = 0, frames_since_outline = 0;
 
   std::optional<Pose> last_T_RE;         // of the last frame in which the collar was seen
   TimeNs last_ns = 0, last_seen_ns = 0;  // of last_T_RE, and of the last tags
@@ -83,19 +90,24 @@ struct TipTracker::Impl {
     background.emplace(detector);
   }
 
+  void VisitState(StateText& state);
   void ForgetIfStale(TimeNs t_ns);
   std::optional<TipPrediction> Expect(TimeNs t_ns, const std::optional<TipPrediction>& model) const;
   double SearchRadius(const TipPrediction& expected) const;
   Sight Find(const Images& images, TimeNs t_ns, const std::optional<TipPrediction>& expected);
   Sight FindLost(const Images& images, TimeNs t_ns, const std::optional<Pose>& near_T_RE);
   void JoinOutline(const Images& images, Sight& sight);
+  TipPrediction OutlinePrior(TimeNs t_ns, const TipPrediction& expected,
+                             const std::optional<TipPrediction>& model);
   std::optional<TipPrediction> FollowOutline(const Images& images, TimeNs t_ns,
-                                             const TipPrediction& expected);
+                                             const TipPrediction& expected,
+                                             const std::optional<TipPrediction>& model);
   Sight FindFromTags(const std::vector<TagDetection>& tags);
   TipTrack Finish(const Sight& sight, TimeNs t_ns, const std::optional<TipPrediction>& expected,
-                  bool has_model, const Images& images);
+                  const std::optional<TipPrediction>& model, const Images& images);
   void Carry(const Images& images, const Sight& sight, TimeNs t_ns,
-             const std::optional<TipPrediction>& expected, bool has_model, TipTrack& track);
+             const std::optional<TipPrediction>& expected,
+             const std::optional<TipPrediction>& model, TipTrack& track);
   void Remember(const Sight& sight, TimeNs t_ns);
   bool IsSure(const Sight& sight) const {
     return MaxSd(sight.covariance.bottomRightCorner<3, 3>()) <= options.max_ok_sd_m &&
@@ -103,6 +115,28 @@ struct TipTracker::Impl {
   }
   void Report(const Sight& sight, TipTrack& track) const;
 };
+
+void TipTracker::Impl::VisitState(StateText& state) {
+  state(finder);
+  state(filter);
+  if (state.IsThere(by_tags.has_value())) {
+    if (!by_tags) by_tags = filter;
+    state(*by_tags);
+  } else {
+    by_tags.reset();
+  }
+  state(last_T_RE);
+  state(last_ns);
+  state(last_seen_ns);
+  state(turn_rate);
+  for (int* count : {&predicted_frames, &lost_frames, &outline_checks, &frames_since_outline})
+    state(*count);
+  for (double* value : {&noise_sum_px2, &noise_dof, &outline_agreement}) state(*value);
+  if (state.IsThere(outline.has_value()) != outline.has_value()) {
+    throw InputError("saved state: of a run with another --outline");
+  }
+  if (outline) state(*outline);
+}
 
 void TipTracker::Impl::ForgetIfStale(TimeNs t_ns) {
   if (!filter.Started()) return;
@@ -146,8 +180,10 @@ Sight TipTracker::Impl::Find(const Images& images, TimeNs t_ns,
     sight = finder.FindNear(images, expected->T_RE, SearchRadius(*expected));
   }
   if (sight.Found()) return sight;
+  // The outline knows no roll: after a while it does not tell one planar pose from the other.
+  const bool old_roll = last_ns > last_seen_ns && t_ns - last_seen_ns > options.max_prediction_ns;
   const std::optional<Pose> near_T_RE =
-      expected ? std::optional<Pose>(expected->T_RE) : std::nullopt;
+      expected && !old_roll ? std::optional<Pose>(expected->T_RE) : std::nullopt;
   return FindLost(images, t_ns, near_T_RE);
 }
 
@@ -175,27 +211,57 @@ double DirectionNoise(const Pose& T_RE, const Matrix6& covariance) {
   return std::sqrt(0.5 * of_direction.trace());
 }
 
-// Where the tags leave the direction uncertain, the outline's long base line is worth its time.
+// Where the tags leave the direction uncertain, the outline's long base line is worth its time. Now
+// and then it is looked at all the same: one that is not where the tags say (another diameter,
+// another end) is not believed later without them.
 void TipTracker::Impl::JoinOutline(const Images& images, Sight& sight) {
   if (!outline || sight.source != TrackSource::kPixels || sight.ambiguous) return;
-  if (DirectionNoise(sight.T_RE, sight.covariance) < options.outline_from_rad) return;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const Eigen::Vector3d& blur_px2 = sight.pixels.views[i].learned.mean.blur_px2;
-    if (images[i] != nullptr) outline->SetBlur(i, std::sqrt(0.5 * (blur_px2[0] + blur_px2[2])));
+    const ViewFit& view = sight.pixels.views[i];
+    const Eigen::Vector3d& blur_px2 = view.learned.mean.blur_px2;
+    if (view.faces.empty()) continue;
+    outline->SetBlur(i, std::sqrt(std::max(0.0, 0.5 * (blur_px2[0] + blur_px2[2]))));
   }
-  const TipPrediction joined = outline->Join(images, {sight.T_RE, sight.covariance});
-  sight.T_RE = joined.T_RE;
-  sight.covariance = joined.covariance;
+  const bool wanted = DirectionNoise(sight.T_RE, sight.covariance) >= options.outline_from_rad;
+  const bool due =
+      ++frames_since_outline >= kCheckOutlineEvery || outline_checks < kFirstOutlineChecks;
+  if (!wanted && !due) return;
+  const auto joined = outline->Join(images, {sight.T_RE, sight.covariance});
+  frames_since_outline = 0;
+  ++outline_checks;
+  outline_agreement += kNewAgreement * ((joined && joined->end_seen ? 1 : 0) - outline_agreement);
+  if (!joined || !wanted) return;
+  sight.T_RE = joined->tip.T_RE;
+  sight.covariance = joined->tip.covariance;
   sight.outline_used = true;
 }
 
+// What is known without the outline, about where the outline was last. Its errors (light, blur) are
+// much the same from frame to frame: a frame must not gain from what the outline said before.
+TipPrediction TipTracker::Impl::OutlinePrior(TimeNs t_ns, const TipPrediction& expected,
+                                             const std::optional<TipPrediction>& model) {
+  if (!by_tags || last_ns == last_seen_ns) by_tags = filter;
+  const Eigen::Matrix3d moved_m2 = by_tags->At(t_ns).covariance_m2;
+  if (model && model->covariance.bottomRightCorner<3, 3>().trace() < moved_m2.trace()) {
+    return *model;
+  }
+  TipPrediction prior = expected;
+  const double sd_rad = 0.01 + 0.5e-9 * static_cast<double>(t_ns - last_seen_ns);
+  prior.covariance.setZero();
+  prior.covariance.topLeftCorner<3, 3>() = sd_rad * sd_rad * Eigen::Matrix3d::Identity();
+  prior.covariance.bottomRightCorner<3, 3>() = moved_m2;
+  return prior;
+}
+
 // The tags are covered: the outline keeps the prediction from growing.
-std::optional<TipPrediction> TipTracker::Impl::FollowOutline(const Images& images, TimeNs t_ns,
-                                                             const TipPrediction& expected) {
-  if (!outline || images.empty() || t_ns - last_seen_ns > options.max_outline_ns) return {};
-  auto found = outline->Find(images, expected);
+std::optional<TipPrediction> TipTracker::Impl::FollowOutline(
+    const Images& images, TimeNs t_ns, const TipPrediction& expected,
+    const std::optional<TipPrediction>& model) {
+  if (!outline || images.empty() || !last_T_RE || outline_agreement < kBelieved) return {};
+  if (t_ns - last_seen_ns > options.max_outline_ns) return {};
+  auto found = outline->Find(images, OutlinePrior(t_ns, expected, model));
   if (!found || PositionSd(*found) > options.max_predicted_sd_m) return {};
-  filter.Measure(t_ns, found->T_RE.p, found->covariance.bottomRightCorner<3, 3>());
+  filter.Replace(t_ns, found->T_RE.p, found->covariance.bottomRightCorner<3, 3>());
   last_T_RE = found->T_RE;
   last_ns = t_ns;
   return found;
@@ -215,7 +281,8 @@ Sight TipTracker::Impl::FindFromTags(const std::vector<TagDetection>& tags) {
 
 void TipTracker::Impl::Remember(const Sight& sight, TimeNs t_ns) {
   filter.Measure(t_ns, sight.T_RE.p, sight.covariance.bottomRightCorner<3, 3>());
-  if (last_T_RE) {
+  turn_rate.setZero();
+  if (last_T_RE && last_ns == last_seen_ns) {  // the outline knows no roll
     const double dt_s = 1e-9 * static_cast<double>(t_ns - last_ns);
     turn_rate = LogRotation(sight.T_RE.R * last_T_RE->R.transpose()) / dt_s;
   }
@@ -236,8 +303,8 @@ void TipTracker::Impl::Report(const Sight& sight, TipTrack& track) const {
 }
 
 TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
-                                  const std::optional<TipPrediction>& expected, bool has_model,
-                                  const Images& images) {
+                                  const std::optional<TipPrediction>& expected,
+                                  const std::optional<TipPrediction>& model, const Images& images) {
   TipTrack track;
   const bool by_images = !images.empty();
   track.tags = sight.tags;
@@ -256,28 +323,27 @@ TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
     Remember(sight, t_ns);
     return track;
   }
-  Carry(images, sight, t_ns, expected, has_model, track);
-  if (confirmed && sight.Found() && !sight.ambiguous) Remember(sight, t_ns);
+  Carry(images, sight, t_ns, expected, model, track);
+  if (confirmed && sight.Found() && !sight.ambiguous && !track.outline_used) Remember(sight, t_ns);
   return track;
 }
 
 // The tags were not seen, or not well: the best of what they say, the outline and the expectation.
 void TipTracker::Impl::Carry(const Images& images, const Sight& sight, TimeNs t_ns,
-                             const std::optional<TipPrediction>& expected, bool has_model,
-                             TipTrack& track) {
+                             const std::optional<TipPrediction>& expected,
+                             const std::optional<TipPrediction>& model, TipTrack& track) {
   std::optional<TipPrediction> best = expected;
   bool measured = false;
   const auto consider = [&](const std::optional<TipPrediction>& other) {
-    if (!other || (best && PositionSd(*best) < PositionSd(*other))) return;
+    if (!other || (best && PositionSd(*best) < PositionSd(*other))) return false;
     best = other;
-    measured = true;
+    return measured = true;
   };
   if (sight.Found()) consider(TipPrediction{sight.T_RE, sight.covariance});
-  if (expected) consider(FollowOutline(images, t_ns, *expected));
-  const bool patient = measured || has_model || predicted_frames < options.max_predicted_frames;
+  if (expected) track.outline_used = consider(FollowOutline(images, t_ns, *expected, model));
+  const bool patient = measured || model || predicted_frames < options.max_predicted_frames;
   if (!best || !patient || PositionSd(*best) > options.max_predicted_sd_m) return;
   if (!measured) ++predicted_frames;
-  track.outline_used = measured && !sight.Found();
   track.tip.status = TipStatus::kPredicted;
   track.tip.p_RE = best->T_RE.p;
   track.tip.covariance_m2 = best->covariance.bottomRightCorner<3, 3>();
@@ -311,13 +377,15 @@ TipTrack TipTracker::Track(const std::vector<const Image*>& images, TimeNs t_ns,
   const std::optional<TipPrediction> expected = impl_->Expect(t_ns, model);
   Sight sight = impl_->Find(images, t_ns, expected);
   impl_->JoinOutline(images, sight);
-  return impl_->Finish(sight, t_ns, expected, model.has_value(), images);
+  return impl_->Finish(sight, t_ns, expected, model, images);
 }
+
+void TipTracker::VisitState(StateText& state) { impl_->VisitState(state); }
 
 TipTrack TipTracker::Track(const std::vector<TagDetection>& tags, TimeNs t_ns) {
   impl_->ForgetIfStale(t_ns);
   const std::optional<TipPrediction> expected = impl_->Expect(t_ns, {});
-  return impl_->Finish(impl_->FindFromTags(tags), t_ns, expected, false, {});
+  return impl_->Finish(impl_->FindFromTags(tags), t_ns, expected, {}, {});
 }
 
 }  // namespace flextip

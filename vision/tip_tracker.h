@@ -8,6 +8,7 @@
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/pose.h"
+#include "core/state_text.h"
 #include "core/tag_collar.h"
 #include "core/time_series.h"
 #include "core/tip_observation.h"
@@ -39,7 +40,7 @@ struct TrackerOptions {
   /// direction less certain than `outline_from_rad`, and to carry a prediction on while they hide.
   std::optional<TubeShape> tube;
   ContourOptions outline;
-  double outline_from_rad = 0.0008;
+  double outline_from_rad = 0.003;
   TimeNs max_outline_ns = 2'000'000'000;  ///< so long the outline alone may carry a prediction
   double print_offset_sd_m = 3e-5;  ///< how well the tags' places along their normals are known
 };
@@ -85,6 +86,10 @@ class TipTracker {
   /// One image a camera, taken at the same time; null where a camera has none.
   TipTrack Track(const std::vector<const Image*>& images, TimeNs t_ns,
                  const std::optional<TipPrediction>& model = {});
+
+  /// All that the frames so far have left: a tracker of the same cameras, collar and options that
+  /// reads it goes on as this one would. Not what a detection in the background is at.
+  void VisitState(StateText& state);
 
   /// From tags that were detected elsewhere, in the first camera.
   TipTrack Track(const std::vector<TagDetection>& tags, TimeNs t_ns);

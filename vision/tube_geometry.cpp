@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/rotation.h"
+#include "vision/tag_cells.h"
 
 namespace flextip {
 namespace {
@@ -15,6 +16,8 @@ using Eigen::Vector3d;
 constexpr double kClear_px = 4.0;   // from the end's corner and from the collar
 constexpr double kLeastSine = 0.2;  // of the angle between tube and line of sight
 constexpr int kWalkSteps = 24;
+// What a collar may stick out beyond its tags' white margins: of a tag's size, and at least.
+constexpr double kBodyMargin = 0.05, kBodyMargin_m = 0.0003;
 
 struct View {
   const CameraModel& camera;
@@ -167,6 +170,28 @@ void AddFlatEnd(const View& v, int at_end, std::vector<ContourPoint>& points) {
 }
 
 }  // namespace
+
+TubeShape TubeOf(const TagCollar& collar, double diameter_m, bool round_end) {
+  TubeShape tube;
+  tube.diameter_m = diameter_m;
+  tube.round_end = round_end;
+  TubeShape::Collar body{HUGE_VAL, -HUGE_VAL, 0.0};
+  for (const CollarTag& tag : collar.tags) {
+    const TagCells cells = ReadTagCells(collar.family, tag.id);
+    const double margin_m = kBodyMargin_m + kBodyMargin * tag.size_m;
+    const double half_m = 0.5 * tag.size_m * cells.cells / cells.border_cells + margin_m;
+    for (const double u : {-half_m, half_m}) {
+      for (const double v : {-half_m, half_m}) {
+        const Vector3d corner = tag.T_EG * Vector3d(u, v, 0);
+        body.from_m = std::min(body.from_m, corner.x());
+        body.to_m = std::max(body.to_m, corner.x());
+        body.radius_m = std::max(body.radius_m, corner.tail<2>().norm());
+      }
+    }
+  }
+  if (!collar.tags.empty()) tube.collar = body;
+  return tube;
+}
 
 CentreLinePoint TubeCentre(const Eigen::Vector2d& bend, double s_m) {
   const double s2 = s_m * s_m;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/pose.h"
+#include "core/tag_collar.h"
 #include "vision/camera_model.h"
 
 namespace flextip {
@@ -21,6 +22,10 @@ struct TubeShape {
   bool round_end = true;   ///< a half sphere within the length; else a flat disc at E
   std::optional<Collar> collar;
 };
+
+/// The instrument's shaft with the body that carries its tags, their white margins included. Throws
+/// InputError where a tag does not exist.
+TubeShape TubeOf(const TagCollar& collar, double diameter_m, bool round_end);
 
 /// A point of the centre line at the distance `s_m` behind E, and the tangent there, toward the tip
 /// (both in E). `bend` (1/m^2) is c_y, c_z: the curvature about E's axes grows as kappa = c s, as

@@ -215,7 +215,7 @@ TEST_F(TrackCommand, AKilledRunIsResumedToTheSameTables) {
   const auto whole = RunProgram(Arguments("many", "whole"));
   ASSERT_EQ(whole.exit_code, 0) << whole.err;
   KillAtFileSize(Arguments("many", "out", {"--quiet"}),
-                 fs::file_size(folder_ / "whole/frames.csv") * 3 / 4);
+                 fs::file_size(folder_ / "whole/tags0/data.csv") * 3 / 4);
   ASSERT_FALSE(fs::exists(folder_ / "out"));
   const auto resumed = RunProgram(Arguments("many", "out", {"--resume"}));
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;

@@ -109,8 +109,8 @@ class OnePixelAtATime {
     optics.print_offset_m += d[FaceColumns::kOffset];
     face.levels = levels_ + d.tail<6>();
     FaceSums sums;
-    face.Accumulate(model_, T_CE, pivot, optics, ToneCurve(optics.gamma), RobustRule(1e6, Robustness::kHuber),
-                    sums);
+    face.Accumulate(model_, T_CE, pivot, optics, ToneCurve(optics.gamma),
+                    RobustRule(1e6, Robustness::kHuber), sums);
     return sums.A();
   }
 

@@ -176,5 +176,33 @@ TEST(TubeOutlineCollar, LeavesOutWhatACollarMayCover) {
   }
 }
 
+// What the renderer draws of a collar lies within the body that its tags' sizes tell.
+TEST(TubeOutlineCollar, KnowsTheBodyFromTheTags) {
+  const CameraCalibration camera = render_test::SmallCamera();
+  for (const char* family : {"tag36h11", "tagStandard41h12"}) {
+    TagCollar collar = render_test::HexagonCollar();
+    collar.family = family;
+    const TubeShape tube = TubeOf(collar, 0.005, true);
+    EXPECT_EQ(tube.diameter_m, 0.005);
+    const Laparoscope with(camera, collar, render_test::PlainOptions());
+    const Laparoscope without(camera, {}, render_test::PlainOptions());
+    const Pose T_CE{ExpRotation({0, M_PI + 0.3, 0}), {-0.02, 0.002, 0.06}};
+    const ShaftCurve shaft = render_test::ArcShaft(T_CE, 0.15, 1e3, 0.005);
+    const LinearImage a = with.RenderLinear(shaft, 0), b = without.RenderLinear(shaft, 0);
+    std::vector<Vector2d> collar_px;
+    for (int y = 0; y < a.height_px; ++y) {
+      for (int x = 0; x < a.width_px; ++x) {
+        if (a.At(x, y)[0] != b.At(x, y)[0]) collar_px.emplace_back(x, y);
+      }
+    }
+    ASSERT_GT(collar_px.size(), 500U);
+    const auto points = TubeContour(CameraModel(camera), tube, T_CE, {0, 0}, 40, 9);
+    ASSERT_GT(points.size(), 40U) << family;
+    for (const ContourPoint& p : points) {
+      for (const Vector2d& px : collar_px) ASSERT_GT((px - p.px).norm(), 2.0) << family;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace flextip
