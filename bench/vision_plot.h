@@ -13,7 +13,7 @@ struct PlotLine {
 };
 struct Plot {
   std::string title, x_label, y_label;
-  bool log_y = false;  ///< points that are not positive are left out
+  bool log_x = false, log_y = false;  ///< points that are not positive are left out
   std::vector<PlotLine> lines;
 };
 
