@@ -17,7 +17,8 @@ struct Plot {
   std::vector<PlotLine> lines;
 };
 
-/// Panels side by side, `columns` in a row, with one legend.
+/// Panels side by side, `columns` in a row; names stand at the ends of their lines. Where x is
+/// logarithmic it must be positive.
 std::string PlotsSvg(const std::vector<Plot>& plots, const std::string& title, int columns);
 
 }  // namespace flextip

@@ -170,7 +170,8 @@ std::vector<Plot> ComparePlots(const std::vector<CompareRow>& rows, const std::s
     auto plot = std::find_if(plots.begin(), plots.end(),
                              [&](const Plot& p) { return p.title == row.sweep; });
     if (plot == plots.end()) {
-      plot = plots.insert(plots.end(), {row.sweep, row.unit, y_label, false, log_y, {}});
+      plot = plots.insert(plots.end(),
+                          {row.sweep, row.unit, y_label, row.sweep != "angle", log_y, {}});
     }
     for (const PeerFigures& f : row.peers) {
       auto line = std::find_if(plot->lines.begin(), plot->lines.end(),
