@@ -10,7 +10,7 @@
 namespace flextip {
 namespace {
 
-constexpr int kWidth = 600, kHeight = 330, kLeft = 70, kRight = 186, kTop = 44, kBottom = 52;
+constexpr int kWidth = 624, kHeight = 330, kLeft = 70, kRight = 208, kTop = 44, kBottom = 52;
 constexpr double kLabelStep = 15;
 
 struct Style {
