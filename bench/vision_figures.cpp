@@ -1,10 +1,7 @@
 #include "bench/vision_figures.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "core/rotation.h"
 #include "vision/collar_pose.h"
@@ -28,9 +25,11 @@ double Apart2(const TagCorners& a, const TagCorners& b, bool any_order) {
   return least;
 }
 
-// A dash where there was nothing to measure.
-std::string Cell(const char* format, double value, bool measured) {
-  return measured ? fmt::format(fmt::runtime(format), value) : "–";
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace
@@ -38,7 +37,7 @@ std::string Cell(const char* format, double value, bool measured) {
 void PeerScore::Add(const PeerAnswer& answer, const PictureTruth& truth, bool any_order) {
   ++figures_.pictures;
   figures_.tags += static_cast<int>(truth.corners_px.size());
-  ms_sum_ += answer.ms;
+  ms_.push_back(answer.ms);
   TagsFound left = truth.corners_px;
   for (const auto& [id, corners] : answer.corners_px) {
     auto best = left.end();
@@ -91,94 +90,16 @@ void PeerScore::AddPose(const Pose& T_CE, const PictureTruth& truth) {
 PeerFigures PeerScore::Figures(const std::string& name) const {
   PeerFigures f = figures_;
   const auto mean = [](double sum, int count) { return count > 0 ? sum / count : 0.0; };
-  const int good = f.poses - f.false_poses;
+  const int good = f.GoodPoses();
   f.name = name;
   f.corner_rms_px = std::sqrt(mean(corner_sum_px2_, corners_));
   f.pose_corner_rms_px = std::sqrt(mean(pose_corner_sum_px2_, pose_corners_));
   f.tip_rms_mm = std::sqrt(mean(tip_sum_mm2_, good));
-  std::vector<double> sorted = tip_mm_;
-  std::sort(sorted.begin(), sorted.end());
-  if (!sorted.empty()) f.tip_median_mm = sorted[sorted.size() / 2];
+  f.tip_median_mm = Median(tip_mm_);
   f.depth_bias_mm = mean(depth_sum_mm_, good);
   f.turn_rms_deg = std::sqrt(mean(turn_sum_deg2_, good));
-  f.ms = mean(ms_sum_, f.pictures);
+  f.ms = Median(ms_);
   return f;
-}
-
-std::string CompareTable(const CompareRow& row, bool with_pose) {
-  std::string table =
-      with_pose ? "| | corner RMS px | of the pose's corners px | tip RMS mm | "
-                  "median mm | largest mm | depth bias mm | turn deg | tags found | poses | "
-                  "false poses | ms |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n"
-                : "| | corner RMS px | tags found | other tags | ms |\n"
-                  "|---|---|---|---|---|\n";
-  for (const PeerFigures& f : row.peers) {
-    const std::string found = fmt::format("{} of {}", f.tags_found, f.tags);
-    const auto corner = [&](double v) { return Cell("{:.3f}", v, f.tags_found > 0); };
-    const auto pose = [&](double v) { return Cell("{:.3f}", v, f.poses > f.false_poses); };
-    if (with_pose) {
-      table +=
-          fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} | {} | {:.1f} |\n",
-                      f.name, corner(f.corner_rms_px), pose(f.pose_corner_rms_px),
-                      pose(f.tip_rms_mm), pose(f.tip_median_mm), pose(f.tip_largest_mm),
-                      Cell("{:+.3f}", f.depth_bias_mm, f.poses > f.false_poses),
-                      pose(f.turn_rms_deg), found, f.poses, f.pictures, f.false_poses, f.ms);
-    } else {
-      table += fmt::format("| {} | {} | {} | {} | {:.1f} |\n", f.name, corner(f.corner_rms_px),
-                           found, f.false_tags, f.ms);
-    }
-  }
-  return table;
-}
-
-std::string CompareJson(const std::vector<CompareRow>& rows) {
-  nlohmann::json all = nlohmann::json::array();
-  for (const CompareRow& row : rows) {
-    nlohmann::json one = {{"sweep", row.sweep}, {"value", row.value}, {"unit", row.unit}};
-    for (const PeerFigures& f : row.peers) {
-      const auto measured = [](double v, bool is) {
-        return is ? nlohmann::json(v) : nlohmann::json();
-      };
-      const auto corner = [&](double v) { return measured(v, f.tags_found > 0); };
-      const auto pose = [&](double v) { return measured(v, f.poses > f.false_poses); };
-      one["peers"][f.name] = {{"corner_rms_px", corner(f.corner_rms_px)},
-                              {"pose_corner_rms_px", pose(f.pose_corner_rms_px)},
-                              {"tip_rms_mm", pose(f.tip_rms_mm)},
-                              {"tip_median_mm", pose(f.tip_median_mm)},
-                              {"tip_largest_mm", pose(f.tip_largest_mm)},
-                              {"depth_bias_mm", pose(f.depth_bias_mm)},
-                              {"turn_rms_deg", pose(f.turn_rms_deg)},
-                              {"pictures", f.pictures},
-                              {"tags", f.tags},
-                              {"tags_found", f.tags_found},
-                              {"false_tags", f.false_tags},
-                              {"recall", f.Recall()},
-                              {"poses", f.poses},
-                              {"false_poses", f.false_poses},
-                              {"ms", f.ms}};
-    }
-    all.push_back(one);
-  }
-  return all.dump(2) + "\n";
-}
-
-std::vector<Plot> ComparePlots(const std::vector<CompareRow>& rows, const std::string& y_label,
-                               double (*figure)(const PeerFigures&), bool log_y) {
-  std::vector<Plot> plots;
-  for (const CompareRow& row : rows) {
-    auto plot = std::find_if(plots.begin(), plots.end(),
-                             [&](const Plot& p) { return p.title == row.sweep; });
-    if (plot == plots.end()) {
-      plot = plots.insert(plots.end(), {row.sweep, row.unit, y_label, log_y, {}});
-    }
-    for (const PeerFigures& f : row.peers) {
-      auto line = std::find_if(plot->lines.begin(), plot->lines.end(),
-                               [&](const PlotLine& l) { return l.name == f.name; });
-      if (line == plot->lines.end()) line = plot->lines.insert(plot->lines.end(), {f.name, {}});
-      line->points.emplace_back(row.value, figure(f));
-    }
-  }
-  return plots;
 }
 
 }  // namespace flextip

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bench/vision_peer.h"
-#include "bench/vision_plot.h"
 #include "vision/camera_model.h"
 
 namespace flextip {
@@ -29,16 +28,11 @@ struct PeerFigures {
   double pose_corner_rms_px = 0;  ///< the same of the corners that the pose says
   double tip_rms_mm = 0, tip_median_mm = 0, tip_largest_mm = 0;
   double depth_bias_mm = 0;  ///< mean error along the optical axis; positive: too far
-  double turn_rms_deg = 0, ms = 0;
+  double turn_rms_deg = 0;
+  double ms = 0;  ///< the median
 
   double Recall() const { return tags > 0 ? double(tags_found) / tags : 0; }
-};
-
-/// One line of a table: all peers under one condition.
-struct CompareRow {
-  std::string sweep, unit;
-  double value = 0;
-  std::vector<PeerFigures> peers;
+  int GoodPoses() const { return poses - false_poses; }
 };
 
 /// Gathers what a peer says.
@@ -56,16 +50,9 @@ class PeerScore {
   TagCollar collar_;
   PeerFigures figures_;
   double corner_sum_px2_ = 0, pose_corner_sum_px2_ = 0, tip_sum_mm2_ = 0, depth_sum_mm_ = 0,
-         turn_sum_deg2_ = 0, ms_sum_ = 0;
+         turn_sum_deg2_ = 0;
   int corners_ = 0, pose_corners_ = 0;
-  std::vector<double> tip_mm_;
+  std::vector<double> tip_mm_, ms_;
 };
-
-/// A Markdown table.
-std::string CompareTable(const CompareRow& row, bool with_pose);
-std::string CompareJson(const std::vector<CompareRow>& rows);
-/// One figure against each sweep's value, a panel a sweep.
-std::vector<Plot> ComparePlots(const std::vector<CompareRow>& rows, const std::string& y_label,
-                               double (*figure)(const PeerFigures&), bool log_y);
 
 }  // namespace flextip

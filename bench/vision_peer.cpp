@@ -108,25 +108,25 @@ class ArucoPeer : public VisionPeer {
 class FlextipPeer : public VisionPeer {
  public:
   FlextipPeer(const CameraCalibration& camera, const TagCollar& collar)
-      : T_CR_(camera.T_RC.Inverse()), tracker_(camera, collar), collar_(collar) {}
-  std::string Name() const override { return "flextip"; }
+      : camera_(camera), collar_(collar) {}
+  std::string Name() const override {
+    return camera_.gamma ? "flextip" : "flextip, gamma not stated";
+  }
   PeerAnswer See(const Image& grey) override {
-    t_ns_ += 10'000'000'000;  // so late that nothing of the frame before counts
+    TipTracker tracker(camera_, collar_);
     PeerAnswer answer;
     TipTrack track;
-    answer.ms = TimeMs([&] { track = tracker_.Track(grey, t_ns_); });
+    answer.ms = TimeMs([&] { track = tracker.Track(grey, 0); });
     for (const TagDetection& tag : track.tags) {
       if (InCollar(collar_, tag.id)) answer.corners_px.emplace(tag.id, tag.corners_px);
     }
-    if (track.tip.status == TipStatus::kOk) answer.T_CE = T_CR_ * track.T_RE;
+    if (track.tip.status == TipStatus::kOk) answer.T_CE = camera_.T_RC.Inverse() * track.T_RE;
     return answer;
   }
 
  private:
-  Pose T_CR_;
-  TipTracker tracker_;
+  CameraCalibration camera_;
   TagCollar collar_;
-  TimeNs t_ns_ = 0;
 };
 
 class FlextipDetector : public VisionPeer {
@@ -261,6 +261,11 @@ std::vector<std::unique_ptr<VisionPeer>> MakePeers(const CameraCalibration& came
   peers.push_back(MakeArucoPeer(camera, collar, ArucoRefinement::kSubpixel));
   peers.push_back(MakeArucoPeer(camera, collar, ArucoRefinement::kAprilTag));
   peers.push_back(MakeFlextipPeer(camera, collar));
+  if (camera.gamma) {
+    CameraCalibration silent = camera;
+    silent.gamma.reset();
+    peers.push_back(MakeFlextipPeer(silent, collar));
+  }
   return peers;
 }
 

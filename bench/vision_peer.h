@@ -2,7 +2,7 @@
 // the collar.
 #pragma once
 
-#include <chrono>
+#include <ctime>
 #include <map>
 #include <memory>
 #include <optional>
@@ -45,12 +45,14 @@ std::unique_ptr<VisionPeer> MakeArucoPeer(const CameraCalibration& camera, const
 /// Null where ViSP is not installed.
 std::unique_ptr<VisionPeer> MakeVispPeer(const CameraCalibration& camera, const TagCollar& collar,
                                          double quad_decimate);
+/// The tracker, afresh for every picture. Its name says so where the camera's gamma is not stated.
 std::unique_ptr<VisionPeer> MakeFlextipPeer(const CameraCalibration& camera,
                                             const TagCollar& collar);
 /// flextip's detection of tags alone, without a pose.
 std::unique_ptr<VisionPeer> MakeFlextipDetector(const TagCollar& collar);
 
-/// All of them that are there: AprilTag 3, ViSP, ArUco with both refinements, flextip.
+/// All of them that are there: AprilTag 3, ViSP, ArUco with both refinements, flextip, and flextip
+/// without the camera's gamma where that is stated.
 std::vector<std::unique_ptr<VisionPeer>> MakePeers(const CameraCalibration& camera,
                                                    const TagCollar& collar);
 
@@ -72,13 +74,18 @@ class VispTracker {
 std::unique_ptr<VispTracker> MakeVispTracker(const CameraCalibration& camera,
                                              const TagCollar& collar);
 
-/// Milliseconds of a call.
+/// Milliseconds of processor time of a call, of all threads: other work on the machine does not
+/// count.
 template <class Work>
 double TimeMs(Work&& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto now_ms = [] {
+    std::timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+  };
+  const double start_ms = now_ms();
   work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
+  return now_ms() - start_ms;
 }
 
 }  // namespace flextip

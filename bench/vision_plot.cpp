@@ -5,24 +5,36 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 namespace flextip {
 namespace {
 
-constexpr int kWidth = 430, kHeight = 300, kLeft = 66, kRight = 14, kTop = 40, kBottom = 48;
-constexpr const char* kOwnColour = "#1b7f5c";
-constexpr std::array<const char*, 7> kColours = {"#c2491d", "#7a5195", "#2b6cb0", "#d99a00",
-                                                 "#b03060", "#4aa3a2", "#555555"};
+constexpr int kWidth = 624, kHeight = 330, kLeft = 70, kRight = 208, kTop = 44, kBottom = 52;
+constexpr double kLabelStep = 15;
+
+struct Style {
+  const char* colour;
+  double width;
+  const char* dashes;
+};
+constexpr Style kOwn = {"#1b7f5c", 3.2, "none"};
+// Some of them lie on one another: those that come later are dashed.
+constexpr std::array<Style, 5> kOthers = {{{"#c2491d", 2.2, "none"},
+                                           {"#5b3fa0", 2.2, "3 5"},
+                                           {"#2b6cb0", 1.8, "none"},
+                                           {"#c98a00", 1.8, "none"},
+                                           {"#111111", 1.3, "7 4"}}};
 
 // flextip has its own; the others take theirs in turn.
-const char* ColourOf(const std::string& name, const std::vector<std::string>& names) {
-  if (name == "flextip") return kOwnColour;
+Style StyleOf(const std::string& name, const std::vector<std::string>& names) {
+  if (name == "flextip") return kOwn;
   std::size_t before = 0;
   for (const std::string& other : names) {
     if (other == name) break;
     before += other != "flextip";
   }
-  return kColours[before % kColours.size()];
+  return kOthers[before % kOthers.size()];
 }
 
 class Axis {
@@ -87,55 +99,110 @@ std::string Frame(const Plot& plot, const Axis& x, const Axis& y, int x0, int y0
   const int right = x0 + kWidth - kRight, low = y0 + kHeight - kBottom;
   std::string svg = fmt::format(
       "<text x='{}' y='{}' font-size='15' font-weight='bold'>{}</text>\n"
-      "<text x='{}' y='{}' font-size='12' text-anchor='middle' fill='#555'>{}</text>\n"
-      "<text transform='translate({},{}) rotate(-90)' font-size='12' text-anchor='middle' "
+      "<text x='{}' y='{}' font-size='13' text-anchor='middle' fill='#555'>{}</text>\n"
+      "<text transform='translate({},{}) rotate(-90)' font-size='13' text-anchor='middle' "
       "fill='#555'>{}</text>\n",
-      x0 + kLeft, y0 + 24, plot.title, x0 + (kLeft + kWidth - kRight) / 2, low + 36, plot.x_label,
-      x0 + 16, y0 + (kTop + kHeight - kBottom) / 2, plot.y_label);
+      x0 + kLeft, y0 + 26, plot.title, x0 + (kLeft + kWidth - kRight) / 2, low + 38, plot.x_label,
+      x0 + 18, y0 + (kTop + kHeight - kBottom) / 2, plot.y_label);
   for (const double t : y.Ticks()) {
     svg += fmt::format(
         "<line x1='{}' y1='{:.1f}' x2='{}' y2='{:.1f}' stroke='#e3e3e3'/>\n"
-        "<text x='{}' y='{:.1f}' font-size='11' text-anchor='end'>{:g}</text>\n",
+        "<text x='{}' y='{:.1f}' font-size='12' text-anchor='end'>{:g}</text>\n",
         x0 + kLeft, y.At(t), right, y.At(t), x0 + kLeft - 6, y.At(t) + 4, t);
   }
-  for (const double t : x.Ticks()) {
+  std::set<double> measured;
+  for (const PlotLine& line : plot.lines) {
+    for (const auto& p : line.points) measured.insert(p.first);
+  }
+  for (const double t : measured) {
     svg += fmt::format(
-        "<line x1='{0:.1f}' y1='{1}' x2='{0:.1f}' y2='{2}' stroke='#aaa'/>\n"
-        "<text x='{0:.1f}' y='{3}' font-size='11' text-anchor='middle'>{4:g}</text>\n",
-        x.At(t), low, low + 4, low + 18, t);
+        "<line x1='{0:.1f}' y1='{1}' x2='{0:.1f}' y2='{2}' stroke='#888'/>\n"
+        "<text x='{0:.1f}' y='{3}' font-size='12' text-anchor='middle'>{4:.3g}</text>\n",
+        x.At(t), low, low + 4, low + 19, t);
   }
   return svg + fmt::format("<path d='M{0} {1}V{2}H{3}' fill='none' stroke='#888'/>\n", x0 + kLeft,
                            y0 + kTop, low, right);
+}
+
+struct Label {
+  const PlotLine* line;
+  double x, y, at_y;  // the line's last point, and where its name is written
+};
+
+// Names beside the ends of their lines, moved apart where they would overlap.
+std::string Labels(std::vector<Label> labels, const std::vector<std::string>& names, int x0,
+                   int y0) {
+  std::stable_sort(labels.begin(), labels.end(),
+                   [](const Label& a, const Label& b) { return a.y < b.y; });
+  const double low = y0 + kHeight - kBottom;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    labels[i].at_y = i == 0 ? labels[i].y : std::max(labels[i].y, labels[i - 1].at_y + kLabelStep);
+  }
+  for (std::size_t i = labels.size(); i-- > 0;) {
+    const double below = i + 1 < labels.size() ? labels[i + 1].at_y - kLabelStep : low;
+    labels[i].at_y = std::min(labels[i].at_y, below);
+  }
+  std::string svg;
+  const int right = x0 + kWidth - kRight;
+  for (const Label& label : labels) {
+    const Style style = StyleOf(label.line->name, names);
+    svg += fmt::format(
+        "<path d='M{:.1f} {:.1f}L{} {:.1f}' stroke='{}' stroke-width='0.7' "
+        "stroke-dasharray='1 2' fill='none'/>\n"
+        "<text x='{}' y='{:.1f}' font-size='12' fill='{}'{}>{}</text>\n",
+        label.x + 4, label.y, right + 16, label.at_y, style.colour, right + 19, label.at_y + 4,
+        style.colour, label.line->name == "flextip" ? " font-weight='bold'" : "", label.line->name);
+  }
+  return svg;
+}
+
+// The line, broken where there is nothing to show.
+std::string Line(const Plot& plot, const PlotLine& line, const Style& style, const Axis& x,
+                 const Axis& y) {
+  std::string path, dots;
+  bool pen_down = false;
+  for (const auto& p : line.points) {
+    const bool shown = Shown(plot, p);
+    if (shown) {
+      path += fmt::format("{}{:.1f} {:.1f}", pen_down ? "L" : "M", x.At(p.first), y.At(p.second));
+      dots += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{:.1f}' fill='{}'/>\n", x.At(p.first),
+                          y.At(p.second), 1 + 0.7 * style.width, style.colour);
+    }
+    pen_down = shown;
+  }
+  return fmt::format(
+      "<path d='{}' fill='none' stroke='{}' stroke-width='{}' stroke-dasharray='{}'/>\n{}", path,
+      style.colour, style.width, style.dashes, dots);
 }
 
 std::string Panel(const Plot& plot, const std::vector<std::string>& names, int x0, int y0) {
   Range in_x, in_y;
   for (const PlotLine& line : plot.lines) {
     for (const auto& p : line.points) {
-      if (!Shown(plot, p)) continue;
       in_x.Take(p.first);
-      in_y.Take(p.second);
+      if (Shown(plot, p)) in_y.Take(p.second);
     }
   }
-  if (in_x.low > in_x.high) return {};
+  if (in_y.low > in_y.high) return {};
   if (!plot.log_y) in_y.Take(0);
-  const Axis x(in_x.low, in_x.high, false, x0 + kLeft, x0 + kWidth - kRight);
-  const Axis y(in_y.low, in_y.high, plot.log_y, y0 + kHeight - kBottom, y0 + kTop);
+  const double room = plot.log_y ? std::pow(in_y.high / in_y.low, 0.05) : 1;
+  const Axis x(in_x.low, in_x.high, plot.log_x, x0 + kLeft + 10, x0 + kWidth - kRight - 6);
+  const Axis y(in_y.low / room, in_y.high * room, plot.log_y, y0 + kHeight - kBottom, y0 + kTop);
   std::string svg = Frame(plot, x, y, x0, y0);
-  for (const PlotLine& line : plot.lines) {
-    const char* colour = ColourOf(line.name, names);
-    std::string path, dots;
-    for (const auto& p : line.points) {
-      if (!Shown(plot, p)) continue;
-      path +=
-          fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x.At(p.first), y.At(p.second));
-      dots += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='2.6' fill='{}'/>\n", x.At(p.first),
-                          y.At(p.second), colour);
-    }
-    svg += fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.8'/>\n", path, colour);
-    svg += dots;
+  std::vector<Label> labels;
+  // flextip's first, so that no other is hidden under its thick line.
+  std::vector<const PlotLine*> lines;
+  for (const PlotLine& line : plot.lines) lines.push_back(&line);
+  std::stable_partition(lines.begin(), lines.end(),
+                        [](const PlotLine* line) { return line->name == "flextip"; });
+  for (const PlotLine* line : lines) {
+    svg += Line(plot, *line, StyleOf(line->name, names), x, y);
+    const auto last = std::find_if(line->points.rbegin(), line->points.rend(),
+                                   [&](const auto& p) { return Shown(plot, p); });
+    if (last == line->points.rend()) continue;
+    labels.push_back({line, x.At(last->first), y.At(last->second), 0});
   }
-  return svg;
+  return svg + Labels(labels, names, x0, y0);
 }
 
 }  // namespace
@@ -149,32 +216,17 @@ std::string PlotsSvg(const std::vector<Plot>& plots, const std::string& title, i
       }
     }
   }
+  constexpr int kHead = 44;
   const int rows = (static_cast<int>(plots.size()) + columns - 1) / columns;
-  const int width = columns * kWidth;
-  int x = 12, y = 50;
-  std::string legend;
-  for (const std::string& name : names) {
-    const int wide = 42 + 8 * static_cast<int>(name.size());
-    if (x + wide > width && x > 12) {
-      x = 12;
-      y += 22;
-    }
-    legend += fmt::format(
-        "<rect x='{}' y='{}' width='18' height='5' fill='{}'/><text x='{}' y='{}' "
-        "font-size='13'>{}</text>\n",
-        x, y - 4, ColourOf(name, names), x + 24, y + 4, name);
-    x += wide;
-  }
-  const int head = y + 20;
   std::string svg = fmt::format(
       "<svg xmlns='http://www.w3.org/2000/svg' width='{0}' height='{1}' viewBox='0 0 {0} {1}' "
       "font-family='DejaVu Sans, Arial, sans-serif' fill='#222'>\n"
       "<rect width='{0}' height='{1}' fill='#fff'/>\n"
-      "<text x='12' y='28' font-size='19' font-weight='bold'>{2}</text>\n{3}",
-      width, head + rows * kHeight, title, legend);
+      "<text x='12' y='30' font-size='19' font-weight='bold'>{2}</text>\n",
+      columns * kWidth, kHead + rows * kHeight, title);
   for (std::size_t i = 0; i < plots.size(); ++i) {
     const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-    svg += Panel(plots[i], names, column * kWidth, head + row * kHeight);
+    svg += Panel(plots[i], names, column * kWidth, kHead + row * kHeight);
   }
   return svg + "</svg>\n";
 }

@@ -13,11 +13,12 @@ struct PlotLine {
 };
 struct Plot {
   std::string title, x_label, y_label;
-  bool log_y = false;  ///< points that are not positive are left out
+  bool log_x = false, log_y = false;  ///< points that are not positive are left out
   std::vector<PlotLine> lines;
 };
 
-/// Panels side by side, `columns` in a row, with one legend.
+/// Panels side by side, `columns` in a row; names stand at the ends of their lines. Where x is
+/// logarithmic it must be positive.
 std::string PlotsSvg(const std::vector<Plot>& plots, const std::string& title, int columns);
 
 }  // namespace flextip

@@ -65,8 +65,8 @@ ShaftCurve ArcShaft(const Pose& T_RE, double radius_m, double diameter_m) {
 Pose CollarSeen(const Eigen::Vector3d& middle_C, double around, double lean, double roll,
                 double behind_tip_m) {
   const Eigen::Vector3d view = middle_C.normalized();
-  const Eigen::Matrix<double, 3, 2> across = NormalBasis(view);
-  const Eigen::Vector3d side = std::cos(around) * across.col(0) + std::sin(around) * across.col(1);
+  const Eigen::Vector3d down = view.cross(Eigen::Vector3d::UnitX()).normalized();
+  const Eigen::Vector3d side = std::cos(around) * down.cross(view) + std::sin(around) * down;
   const Eigen::Vector3d d_C = std::cos(lean) * side + std::sin(lean) * view;
   const Eigen::Vector3d out =
       (-view + view.dot(d_C) * d_C).normalized();  // to the camera, across the shaft

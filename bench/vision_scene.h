@@ -28,8 +28,9 @@ double RingApothem_m(const std::string& family, double size_m, int sides, double
 /// A shaft of 0.3 m on an arc of `radius_m` that ends at T_RE.
 ShaftCurve ArcShaft(const Pose& T_RE, double radius_m, double diameter_m);
 
-/// T_CE of a shaft that leans out of the picture by `lean` (rad, away from the camera where
-/// positive), with E's y axis to the camera but for `roll`; the collar's middle is at `middle_C`.
+/// T_CE of a shaft that points to the picture's right turned by `around` (rad, right to down) and
+/// leans out of the picture by `lean` (away from the camera where positive), with E's y axis to the
+/// camera but for `roll`; the collar's middle is at `middle_C`. Smooth in all of them.
 Pose CollarSeen(const Eigen::Vector3d& middle_C, double around, double lean, double roll,
                 double behind_tip_m);
 

@@ -5,21 +5,19 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/utility.hpp>
 
 #include "bench/tool.h"
+#include "bench/vision_clip.h"
 #include "bench/vision_figures.h"
-#include "bench/vision_scene.h"
+#include "bench/vision_plot.h"
 #include "recording/text.h"
-#include "simulation/laparoscope.h"
 #include "vision/tip_tracker.h"
 
 namespace flextip {
 namespace {
 
-constexpr double kDepth_m = 0.11, kBehindTip_m = 0.03;
 constexpr TimeNs kStep_ns = 33'333'333;
 
 struct Arguments {
@@ -31,61 +29,9 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--frames", a.frames, "Of each case")->check(CLI::Range(5, 1000));
   app.add_option("--repeats", a.repeats, "Each frame's least time of so many")
       ->check(CLI::PositiveNumber);
-  app.add_option("-o,--out", a.out, "Folder for speed.json, speed.md, speed.svg")->required();
+  app.add_option("-o,--out", a.out, "Folder for speed.json, speed.md, vision_speed.svg")
+      ->required();
   app.footer("Example:\n  flextip_vision_speed -o speed\n");
-}
-
-struct SpeedCase {
-  std::string name;
-  int width_px = 1280;
-  double step_px = 5;  ///< the collar's way between two frames
-  int tags = 0;        ///< in a row along the shaft, all to the camera; 0: a hexagon around it
-};
-
-// A collar of 45 px tags on a circle of 120 px.
-struct Clip {
-  CameraCalibration camera;
-  TagCollar collar;
-  std::vector<Image> frames;
-  std::vector<Pose> T_CE;
-};
-
-TagCollar RowCollar(double size_m, int tags) {
-  TagCollar collar;
-  for (int i = 0; i < tags; ++i) {
-    const double back_m = kBehindTip_m + (i - 0.5 * (tags - 1)) * 1.35 * size_m;
-    CollarTag tag = RingCollar("tag36h11", size_m, 6, 1.0, back_m, i).tags[0];
-    collar.tags.push_back(tag);
-  }
-  return collar;
-}
-
-Clip MakeClip(const SpeedCase& one, int frames) {
-  Clip clip;
-  clip.camera = BenchCamera(one.width_px, 2.2);
-  const double f_px = clip.camera.fu_px, size_m = 45 * kDepth_m / f_px;
-  clip.collar = one.tags > 0 ? RowCollar(size_m, one.tags)
-                             : RingCollar("tag36h11", size_m, 6, 1.0, kBehindTip_m);
-  LaparoscopeOptions o;
-  o.grey = true;
-  o.exposure = 0.7;
-  o.exposure_distance_m = kDepth_m;
-  o.tissue.point_R = clip.camera.T_RC * Eigen::Vector3d(0, 0, kDepth_m + 0.05);
-  o.tissue.normal_R = clip.camera.T_RC.R * Eigen::Vector3d(0.2, -0.3, -1).normalized();
-  const Laparoscope scope(clip.camera, clip.collar, o);
-  constexpr double kCircle_px = 120;
-  for (int i = 0; i < frames; ++i) {
-    const double angle = i * one.step_px / kCircle_px;
-    const Eigen::Vector3d middle_C(kCircle_px * kDepth_m / f_px * std::cos(angle),
-                                   kCircle_px * kDepth_m / f_px * std::sin(angle), kDepth_m);
-    const double slow = 2 * std::numbers::pi * i / 90;
-    const double lean = 0.3 * std::sin(slow);
-    const Pose T_CE = CollarSeen(middle_C, 0.6 + 0.2 * std::cos(slow), lean,
-                                 0.3 * std::sin(1.3 * slow), kBehindTip_m);
-    clip.T_CE.push_back(T_CE);
-    clip.frames.push_back(scope.Render(ArcShaft(clip.camera.T_RC * T_CE, 1.0, 0.004), i));
-  }
-  return clip;
 }
 
 struct SpeedFigures {
@@ -215,7 +161,7 @@ std::string Table(const std::vector<SpeedFigures>& all) {
   for (const SpeedFigures& f : all) {
     table += fmt::format("| {} | {:.3f} | {:.2f} | {:.1f} | {} of {} | {:.3f} |\n", f.name,
                          f.median_ms, f.largest_ms, f.median_ms / all[0].median_ms,
-                         f.seen.poses - f.seen.false_poses, f.seen.pictures, f.seen.tip_rms_mm);
+                         f.seen.GoodPoses(), f.seen.pictures, f.seen.tip_rms_mm);
   }
   return table;
 }
@@ -226,25 +172,63 @@ void AddTo(Plot& plot, double x, const std::vector<SpeedFigures>& all) {
                              [&](const PlotLine& l) { return l.name == f.name; });
     if (line == plot.lines.end()) line = plot.lines.insert(plot.lines.end(), {f.name, {}});
     line->points.emplace_back(x, f.median_ms);
+    std::sort(line->points.begin(), line->points.end());
   }
+}
+
+// The first one is in the plots against the picture's size and the tags'.
+std::vector<ClipCase> Cases() {
+  std::vector<ClipCase> cases = {{"1280x720, 45 px tags, 5 px a frame"},
+                                 {"30 px a frame", 1280, 30}};
+  for (const int width : {640, 960, 1600, 1920}) {
+    cases.push_back({fmt::format("{}x{}", width, width * 9 / 16), width});
+  }
+  for (const double tag_px : {20.0, 30.0, 70.0, 100.0}) {
+    cases.push_back({fmt::format("{} px tags", tag_px), 1280, 5, 0, tag_px});
+  }
+  for (int tags = 1; tags <= 4; ++tags) {
+    cases.push_back({fmt::format("{} tags seen", tags), 1280, 5, tags});
+  }
+  return cases;
+}
+
+struct Plots {
+  Plot by_size{"Size of the picture", "megapixels", "ms a frame", true, true, {}};
+  Plot by_tag_px{"Size of the tags", "side of a tag, px", "ms a frame", true, true, {}};
+  Plot by_tags{"Tags seen", "tags", "ms a frame", false, true, {}};
+
+  void Add(const ClipCase& c, const Clip& clip, const std::vector<SpeedFigures>& all) {
+    const ClipCase base;
+    if (c.step_px != base.step_px) return;
+    if (c.tags > 0) {
+      AddTo(by_tags, c.tags, all);
+      return;
+    }
+    if (c.tag_px == base.tag_px) AddTo(by_size, 1e-6 * c.width_px * clip.camera.height_px, all);
+    if (c.width_px == base.width_px) AddTo(by_tag_px, c.tag_px, all);
+  }
+};
+
+nlohmann::json Json(const std::vector<SpeedFigures>& all) {
+  nlohmann::json json;
+  for (const SpeedFigures& f : all) {
+    json[f.name] = {{"median_ms", f.median_ms},
+                    {"largest_ms", f.largest_ms},
+                    {"times_flextip", f.median_ms / all[0].median_ms},
+                    {"frames", f.seen.pictures},
+                    {"right", f.seen.GoodPoses()},
+                    {"tip_rms_mm", f.seen.tip_rms_mm}};
+  }
+  return json;
 }
 
 void Run(Arguments& a) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   cv::setNumThreads(1);
-  std::vector<SpeedCase> cases = {{"1280x720, 5 px a frame", 1280, 5, 0},
-                                  {"1280x720, 30 px a frame", 1280, 30, 0}};
-  for (const int width : {640, 960, 1280, 1600, 1920}) {
-    cases.push_back({fmt::format("{}x{}", width, width * 9 / 16), width, 5, 0});
-  }
-  for (int tags = 1; tags <= 4; ++tags) {
-    cases.push_back({fmt::format("{} tags seen", tags), 1280, 5, tags});
-  }
-  Plot by_size{"image size", "megapixels", "ms a frame", true, {}};
-  Plot by_tags{"tags seen", "tags", "ms a frame", true, {}};
+  Plots plots;
   nlohmann::json json;
   std::string page;
-  for (const SpeedCase& c : cases) {
+  for (const ClipCase& c : Cases()) {
     const Clip clip = MakeClip(c, a.frames);
     std::vector<SpeedFigures> all;
     for (const auto& contender : Contenders(clip))
@@ -253,23 +237,14 @@ void Run(Arguments& a) {
     fmt::print("{}", text);
     std::fflush(stdout);
     page += text;
-    for (const SpeedFigures& f : all) {
-      json[c.name][f.name] = {{"median_ms", f.median_ms},
-                              {"largest_ms", f.largest_ms},
-                              {"times_flextip", f.median_ms / all[0].median_ms},
-                              {"frames", f.seen.pictures},
-                              {"right", f.seen.poses - f.seen.false_poses},
-                              {"tip_rms_mm", f.seen.tip_rms_mm}};
-    }
-    if (c.tags > 0) AddTo(by_tags, c.tags, all);
-    if (c.tags == 0 && c.name.find("frame") == std::string::npos) {
-      AddTo(by_size, 1e-6 * c.width_px * clip.camera.height_px, all);
-    }
+    json[c.name] = Json(all);
+    plots.Add(c, clip, all);
   }
   WriteTextFile(a.out / "speed.json", json.dump(2) + "\n");
   WriteTextFile(a.out / "speed.md", page);
-  WriteTextFile(a.out / "speed.svg",
-                PlotsSvg({by_size, by_tags}, "Time of a frame, one thread", 2));
+  WriteTextFile(
+      a.out / "vision_speed.svg",
+      PlotsSvg({plots.by_size, plots.by_tag_px, plots.by_tags}, "Time of a frame, one thread", 2));
 }
 
 }  // namespace

@@ -8,11 +8,10 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "tests/vision/optics_reference.h"
 
 namespace flextip {
 namespace {
-
-double Cdf(double x) { return 0.5 * std::erfc(-x * M_SQRT1_2); }
 
 // Beyond the tag its outermost cells go on.
 bool IsWhite(const TagCells& tag, int column, int row) {
@@ -35,7 +34,7 @@ double Mean(const TagCells& tag, double u, double v, double su, double sv, doubl
       double white = 0;
       for (int row = -8; row < tag.cells + 8; ++row) {
         if (!IsWhite(tag, column, row)) continue;
-        white += Cdf((row + 1 - centre) / s) - Cdf((row - centre) / s);
+        white += NormalCdf((row + 1 - centre) / s) - NormalCdf((row - centre) / s);
       }
       sum += std::exp(-0.5 * x * x) / std::sqrt(2 * M_PI) * white * (to - from) / steps;
     }
@@ -49,8 +48,8 @@ double MeanUncorrelated(const TagCells& tag, double u, double v, double su, doub
   for (int column = -8; column < tag.cells + 8; ++column) {
     for (int row = -8; row < tag.cells + 8; ++row) {
       if (!IsWhite(tag, column, row)) continue;
-      sum += (Cdf((column + 1 - u) / su) - Cdf((column - u) / su)) *
-             (Cdf((row + 1 - v) / sv) - Cdf((row - v) / sv));
+      sum += (NormalCdf((column + 1 - u) / su) - NormalCdf((column - u) / su)) *
+             (NormalCdf((row + 1 - v) / sv) - NormalCdf((row - v) / sv));
     }
   }
   return sum;

@@ -8,11 +8,12 @@
 
 #include "core/derivative_check.h"
 #include "core/error.h"
+#include "tests/vision/optics_reference.h"
 
 namespace flextip {
 namespace {
 
-CameraCalibration Camera(Distortion distortion, std::vector<double> coefficients) {
+CameraCalibration Plain() {
   CameraCalibration c;
   c.width_px = 1280;
   c.height_px = 720;
@@ -20,21 +21,7 @@ CameraCalibration Camera(Distortion distortion, std::vector<double> coefficients
   c.fv_px = 940;
   c.cu_px = 646.5;
   c.cv_px = 355.5;
-  c.distortion = distortion;
-  c.distortion_coefficients = std::move(coefficients);
   return c;
-}
-
-std::vector<CameraCalibration> Cameras() {
-  return {
-      Camera(Distortion::kRadialTangential, {0, 0, 0, 0}),
-      Camera(Distortion::kRadialTangential, {-0.22, 0.08, 0.0006, -0.0004}),
-      Camera(Distortion::kOpenCv, {-0.28, 0.07, 0.0012, -0.0002, 0.02}),
-      Camera(Distortion::kOpenCv, {0.5, -0.2, 0.001, 0.0007, 0.05, 0.8, -0.1, 0.03}),
-      Camera(Distortion::kOpenCv,
-             {-0.2, 0.06, 0.0003, -0.001, 0.01, 0.05, 0.02, 0.004, 0.002, -0.001, 0.0015, 0.0007}),
-      Camera(Distortion::kEquidistant, {-0.02, 0.005, -0.003, 0.0004}),
-  };
 }
 
 Eigen::Vector2d ByOpenCv(const CameraCalibration& c, const Eigen::Vector3d& x) {
@@ -63,7 +50,7 @@ std::vector<Eigen::Vector3d> Points(unsigned seed, int count) {
 }
 
 TEST(CameraModel, AgreesWithOpenCv) {
-  for (const CameraCalibration& c : Cameras()) {
+  for (const CameraCalibration& c : WithEachLens(Plain())) {
     const CameraModel model(c);
     for (const Eigen::Vector3d& x : Points(1, 300)) {
       const auto px = model.Project(x);
@@ -74,7 +61,7 @@ TEST(CameraModel, AgreesWithOpenCv) {
 }
 
 TEST(CameraModel, JacobianAgreesWithCentralDifferences) {
-  for (const CameraCalibration& c : Cameras()) {
+  for (const CameraCalibration& c : WithEachLens(Plain())) {
     const CameraModel model(c);
     for (const Eigen::Vector3d& x : Points(2, 100)) {
       Eigen::Matrix<double, 2, 3> J;
@@ -88,7 +75,7 @@ TEST(CameraModel, JacobianAgreesWithCentralDifferences) {
 }
 
 TEST(CameraModel, RoundTripOverTheWholePicture) {
-  for (const CameraCalibration& c : Cameras()) {
+  for (const CameraCalibration& c : WithEachLens(Plain())) {
     const CameraModel model(c);
     for (double v = 0; v < c.height_px; v += 23.7) {
       for (double u = 0; u < c.width_px; u += 31.3) {
@@ -107,7 +94,7 @@ TEST(CameraModel, RoundTripOverTheWholePicture) {
 }
 
 TEST(CameraModel, NothingBehindTheCamera) {
-  for (const CameraCalibration& c : Cameras()) {
+  for (const CameraCalibration& c : WithEachLens(Plain())) {
     const CameraModel model(c);
     EXPECT_FALSE(model.Project({0.01, 0.01, -0.1}));
     EXPECT_FALSE(model.Project({0.01, 0.01, 0.0}));
@@ -117,7 +104,7 @@ TEST(CameraModel, NothingBehindTheCamera) {
 
 TEST(CameraModel, NothingBeyondTheTurningPointOfTheDistortion) {
   // r (1 - 0.3 r^2) turns at r = sqrt(1/0.9) and reaches 2/3 r there.
-  const CameraModel model(Camera(Distortion::kRadialTangential, {-0.3, 0, 0, 0}));
+  const CameraModel model(WithLens(Plain(), Distortion::kRadialTangential, {-0.3, 0, 0, 0}));
   const double r = std::sqrt(1.0 / 0.9);
   EXPECT_NEAR(std::tan(model.MaxAngle()), r, 1e-9);
   EXPECT_TRUE(model.Project({0.999 * r, 0, 1}));
@@ -128,11 +115,13 @@ TEST(CameraModel, NothingBeyondTheTurningPointOfTheDistortion) {
 }
 
 TEST(CameraModel, RejectsAWrongNumberOfCoefficients) {
-  EXPECT_THROW(CameraModel(Camera(Distortion::kRadialTangential, {0, 0, 0, 0, 0})), InputError);
-  EXPECT_THROW(CameraModel(Camera(Distortion::kOpenCv, {0, 0, 0, 0})), InputError);
-  EXPECT_THROW(CameraModel(Camera(Distortion::kEquidistant, {0, 0})), InputError);
-  EXPECT_THROW(CameraModel(Camera(Distortion::kOpenCv, {0, 0, 0, 0, std::nan("")})), InputError);
-  CameraCalibration no_focal = Camera(Distortion::kEquidistant, {0, 0, 0, 0});
+  EXPECT_THROW(CameraModel(WithLens(Plain(), Distortion::kRadialTangential, {0, 0, 0, 0, 0})),
+               InputError);
+  EXPECT_THROW(CameraModel(WithLens(Plain(), Distortion::kOpenCv, {0, 0, 0, 0})), InputError);
+  EXPECT_THROW(CameraModel(WithLens(Plain(), Distortion::kEquidistant, {0, 0})), InputError);
+  EXPECT_THROW(CameraModel(WithLens(Plain(), Distortion::kOpenCv, {0, 0, 0, 0, std::nan("")})),
+               InputError);
+  CameraCalibration no_focal = WithLens(Plain(), Distortion::kEquidistant, {0, 0, 0, 0});
   no_focal.fu_px = 0;
   EXPECT_THROW(CameraModel{no_focal}, InputError);
 }

@@ -25,30 +25,13 @@ Pose RandomPose(std::mt19937& random) {
   return T_CE;
 }
 
-std::vector<TagDetection> Detections(const CameraCalibration& camera, const Pose& T_CE,
-                                     double noise_px, std::mt19937& random,
-                                     double max_angle_rad = 1.1) {
-  std::normal_distribution<double> noise(0, 1);
-  std::vector<TagDetection> tags;
-  for (const PlacedTag& placed : FacingTags(kCollar, T_CE, max_angle_rad)) {
-    TagDetection tag;
-    tag.id = placed.id;
-    const auto corners = TrueCorners(camera, placed);
-    for (int i = 0; i < 4; ++i) {
-      tag.corners_px[i] = corners[i] + noise_px * Eigen::Vector2d(noise(random), noise(random));
-    }
-    tags.push_back(tag);
-  }
-  return tags;
-}
-
 TEST(CollarPose, ExactCornersGiveTheExactPose) {
   const CameraCalibration camera = TestCamera(true);
   const CameraModel model(camera);
   std::mt19937 random(3);
   for (int i = 0; i < 200; ++i) {
     const Pose T_CE = RandomPose(random);
-    auto tags = Detections(camera, T_CE, 0, random);
+    auto tags = NoisyTags(camera, kCollar, T_CE, 0, random);
     ASSERT_FALSE(tags.empty());
     if (i % 3 == 0) tags.resize(1);
     const CollarPose pose = EstimateCollarPose(model, kCollar, tags);
@@ -103,7 +86,7 @@ TEST(CollarPose, CovarianceMatchesTheScatterForKnownNoise) {
     int n = 0;
     for (int i = 0; i < 1500; ++i) {
       const Pose T_CE = RandomPose(random);
-      const auto tags = Detections(camera, T_CE, noise_px, random);
+      const auto tags = NoisyTags(camera, kCollar, T_CE, noise_px, random);
       if (tags.size() < 2) continue;  // one tag alone may flip: another test
       const CollarPose pose = EstimateCollarPose(model, kCollar, tags, options);
       ASSERT_TRUE(pose.IsUsable());
@@ -130,7 +113,7 @@ TEST(CollarPose, OneTagFacingTheCameraIsAmbiguousAndSaysSo) {
   double nees = 0;
   constexpr int kTrials = 200;
   for (int i = 0; i < kTrials; ++i) {
-    auto tags = Detections(camera, T_CE, 0.1, random, 0.4);
+    auto tags = NoisyTags(camera, kCollar, T_CE, 0.1, random, 0.4);
     ASSERT_EQ(tags.size(), 1u);
     const CollarPose pose = EstimateCollarPose(model, kCollar, tags);
     ASSERT_TRUE(pose.IsUsable());
@@ -154,7 +137,7 @@ TEST(CollarPose, ATagInTheWrongPlaceIsLeftOut) {
   std::mt19937 random(7);
   for (int i = 0; i < 20; ++i) {
     const Pose T_CE = RandomPose(random);
-    auto tags = Detections(camera, T_CE, 0.02, random, 1.4);
+    auto tags = NoisyTags(camera, kCollar, T_CE, 0.02, random, 1.4);
     if (tags.size() < 3) continue;
     for (Eigen::Vector2d& corner : tags[1].corners_px) corner += Eigen::Vector2d(25, -10);
     const CollarPose pose = EstimateCollarPose(CameraModel(camera), kCollar, tags);
@@ -169,7 +152,7 @@ TEST(CollarPose, StatusWithoutUsableTags) {
   const CameraModel model(camera);
   std::mt19937 random(8);
   EXPECT_EQ(EstimateCollarPose(model, kCollar, {}).status, CollarPoseStatus::kNoTags);
-  auto tags = Detections(camera, RandomPose(random), 0, random);
+  auto tags = NoisyTags(camera, kCollar, RandomPose(random), 0, random);
   for (TagDetection& tag : tags) tag.id += 100;
   EXPECT_EQ(EstimateCollarPose(model, kCollar, tags).status, CollarPoseStatus::kNoTags);
   TagDetection flat;  // corners in a line

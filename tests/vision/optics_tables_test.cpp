@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/derivative_check.h"
+#include "tests/vision/optics_reference.h"
 #include "vision/lens_map.h"
 #include "vision/normal_table.h"
 #include "vision/tone_curve.h"
@@ -11,17 +12,16 @@
 namespace flextip {
 namespace {
 
-double Cdf(double x) { return 0.5 * std::erfc(-x * M_SQRT1_2); }
 double Density(double x) { return std::exp(-0.5 * x * x) / std::sqrt(2 * M_PI); }
 
 TEST(NormalTable, IsTheDistributionCutAtItsReach) {
   const NormalTable& table = NormalTable::Get();
-  const double low = Cdf(-NormalTable::kReach), part = 1 - 2 * low;
+  const double low = NormalCdf(-NormalTable::kReach), part = 1 - 2 * low;
   for (double x = -3.4999; x < 3.5; x += 0.00137) {
     const NormalTable::Value value = table.At(static_cast<float>(x));
-    EXPECT_NEAR(value.cdf, (Cdf(x) - low) / part, 1e-5) << x;
+    EXPECT_NEAR(value.cdf, (NormalCdf(x) - low) / part, 1e-5) << x;
     EXPECT_NEAR(value.density, Density(x) / part, 1e-5) << x;
-    EXPECT_NEAR(value.cdf, Cdf(x), 2.5e-4) << x;  // the tails
+    EXPECT_NEAR(value.cdf, NormalCdf(x), 2.5e-4) << x;  // the tails
   }
 }
 
@@ -93,7 +93,7 @@ TEST(ToneCurve, LightIsItsInverse) {
   }
 }
 
-CameraCalibration Camera(Distortion distortion, std::vector<double> coefficients) {
+CameraCalibration Plain() {
   CameraCalibration c;
   c.width_px = 643;  // no multiple of the nodes' distance
   c.height_px = 365;
@@ -101,20 +101,11 @@ CameraCalibration Camera(Distortion distortion, std::vector<double> coefficients
   c.fv_px = 470;
   c.cu_px = 323;
   c.cv_px = 177.5;
-  c.distortion = distortion;
-  c.distortion_coefficients = std::move(coefficients);
   return c;
 }
 
 TEST(LensMap, IsTheCamerasRayOnEveryLensModel) {
-  const std::vector<CameraCalibration> cameras = {
-      Camera(Distortion::kRadialTangential, {0, 0, 0, 0}),
-      Camera(Distortion::kRadialTangential, {-0.22, 0.08, 0.0006, -0.0004}),
-      Camera(Distortion::kOpenCv, {-0.28, 0.07, 0.0012, -0.0002, 0.02}),
-      Camera(Distortion::kOpenCv, {0.5, -0.2, 0.001, 0.0007, 0.05, 0.8, -0.1, 0.03}),
-      Camera(Distortion::kOpenCv,
-             {-0.2, 0.06, 0.0003, -0.001, 0.01, 0.05, 0.02, 0.004, 0.002, -0.001, 0.0015, 0.0007}),
-      Camera(Distortion::kEquidistant, {-0.02, 0.005, -0.003, 0.0004})};
+  const std::vector<CameraCalibration> cameras = WithEachLens(Plain());
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     SCOPED_TRACE(i);
     const CameraModel camera(cameras[i]);
@@ -140,7 +131,7 @@ TEST(LensMap, IsTheCamerasRayOnEveryLensModel) {
 
 // A lens that folds over within the picture: no ray there, and none invented far beyond its rim.
 TEST(LensMap, HasNoRayWhereTheLensSeesNothing) {
-  const CameraModel camera(Camera(Distortion::kRadialTangential, {-0.9, 0, 0, 0}));
+  const CameraModel camera(WithLens(Plain(), Distortion::kRadialTangential, {-0.9, 0, 0, 0}));
   const LensMap map(camera);
   int blind = 0, missed = 0;
   for (int y = 0; y < 365; ++y) {

@@ -104,6 +104,23 @@ struct Painter {
 
 }  // namespace
 
+std::vector<TagDetection> NoisyTags(const CameraCalibration& camera, const TagCollar& collar,
+                                    const Pose& T_CE, double noise_px, std::mt19937& random,
+                                    double max_angle_rad) {
+  std::normal_distribution<double> noise(0, 1);
+  std::vector<TagDetection> tags;
+  for (const PlacedTag& placed : FacingTags(collar, T_CE, max_angle_rad)) {
+    TagDetection tag;
+    tag.id = placed.id;
+    const auto corners = TrueCorners(camera, placed);
+    for (int i = 0; i < 4; ++i) {
+      tag.corners_px[i] = corners[i] + noise_px * Eigen::Vector2d(noise(random), noise(random));
+    }
+    tags.push_back(tag);
+  }
+  return tags;
+}
+
 CameraCalibration TestCamera(bool distorted) {
   CameraCalibration c;
   c.width_px = 1280;

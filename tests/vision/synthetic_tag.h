@@ -2,12 +2,14 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <random>
 #include <vector>
 
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/pose.h"
 #include "core/tag_collar.h"
+#include "vision/tag_detector.h"
 
 namespace flextip {
 
@@ -39,6 +41,11 @@ TagCollar PrismCollar(int count, double size_m, double apothem_m, double centre_
 
 /// Pixels of the tag's corners in the order of TagDetection.
 std::vector<Eigen::Vector2d> TrueCorners(const CameraCalibration& camera, const PlacedTag& tag);
+
+/// What a detector would say of a collar: the tags that face the camera, noise on their corners.
+std::vector<TagDetection> NoisyTags(const CameraCalibration& camera, const TagCollar& collar,
+                                    const Pose& T_CE, double noise_px, std::mt19937& random,
+                                    double max_angle_rad = 1.1);
 
 CameraCalibration TestCamera(bool distorted);
 

@@ -24,22 +24,6 @@ Pose SweepPose(int frame) {
   return T_CE;
 }
 
-std::vector<TagDetection> Detections(const CameraCalibration& camera, const Pose& T_CE,
-                                     double noise_px, std::mt19937& random) {
-  std::normal_distribution<double> noise(0, noise_px);
-  std::vector<TagDetection> tags;
-  for (const PlacedTag& placed : FacingTags(kCollar, T_CE, 1.1)) {
-    TagDetection tag;
-    tag.id = placed.id;
-    const auto corners = TrueCorners(camera, placed);
-    for (int i = 0; i < 4; ++i) {
-      tag.corners_px[i] = corners[i] + Eigen::Vector2d(noise(random), noise(random));
-    }
-    tags.push_back(tag);
-  }
-  return tags;
-}
-
 TEST(TipTracker, FollowsTheTipInPictures) {
   const CameraCalibration camera = TestCamera(true);
   TipTracker tracker(camera, kCollar);
@@ -75,7 +59,7 @@ TEST(TipTracker, CovarianceIsHonest) {
     for (int i = 0; i < 1500; ++i) {
       const Pose T_CE = SweepPose(i % 20);
       const TipTrack track =
-          tracker.Track(Detections(camera, T_CE, noise_px, random), i * kFrame_ns);
+          tracker.Track(NoisyTags(camera, kCollar, T_CE, noise_px, random), i * kFrame_ns);
       ASSERT_EQ(track.tip.status, TipStatus::kOk);
       if (i < 20) continue;  // the first frames learn the noise
       const Pose T_RE = camera.T_RC * T_CE;
@@ -97,7 +81,7 @@ TEST(TipTracker, PredictsBrieflyThenIsLostThenRecovers) {
   std::mt19937 random(12);
   int frame = 0;
   for (; frame < 10; ++frame) {
-    tracker.Track(Detections(camera, SweepPose(frame), 0.05, random), frame * kFrame_ns);
+    tracker.Track(NoisyTags(camera, kCollar, SweepPose(frame), 0.05, random), frame * kFrame_ns);
   }
   double trace = 0;
   for (int i = 0; i < 3; ++i, ++frame) {
@@ -114,7 +98,7 @@ TEST(TipTracker, PredictsBrieflyThenIsLostThenRecovers) {
     EXPECT_EQ(track.tip.status, TipStatus::kLost);
   }
   const TipTrack again =
-      tracker.Track(Detections(camera, SweepPose(frame), 0.05, random), frame * kFrame_ns);
+      tracker.Track(NoisyTags(camera, kCollar, SweepPose(frame), 0.05, random), frame * kFrame_ns);
   EXPECT_EQ(again.tip.status, TipStatus::kOk);
 }
 
@@ -123,7 +107,7 @@ TEST(TipTracker, NothingIsPredictedBeforeTheFirstSightOrAfterALongGap) {
   TipTracker tracker(camera, kCollar);
   EXPECT_EQ(tracker.Track(std::vector<TagDetection>{}, 0).tip.status, TipStatus::kLost);
   std::mt19937 random(13);
-  tracker.Track(Detections(camera, SweepPose(1), 0.05, random), kFrame_ns);
+  tracker.Track(NoisyTags(camera, kCollar, SweepPose(1), 0.05, random), kFrame_ns);
   const TimeNs second_ns = 1'000'000'000;
   EXPECT_EQ(tracker.Track(std::vector<TagDetection>{}, second_ns).tip.status, TipStatus::kLost);
 }
