@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/rotation.h"
 #include "vision/reprojection.h"
@@ -16,7 +17,10 @@ constexpr double kAmbiguousRatio = 30.0;     // twice the log of the odds
 constexpr double kAmbiguousPerPixel = 0.15;  // log of the ratio of the noises
 constexpr double kCornerFallback_px = 0.35;  // what corners alone may be wrong by: gamma, blur
 constexpr double kMaxTurn_rad = 0.5, kMaxTurnUnsure_rad = 0.25;  // from one picture to the next
+constexpr int kPlanarChecksSpared = 4;
+constexpr double kSmallTurn_rad = 0.08;
 constexpr double kFirstBlurSd_px2 = 3.0;
+constexpr double kLinearGamma = 1.0;  // the second guess where a camera's is not known
 constexpr int kDetectMargin_px = 12;
 
 TagDetectorOptions DetectorFor(const TagCollar& collar, TagDetectorOptions options) {
@@ -67,6 +71,7 @@ TipFinder::TipFinder(const std::vector<CameraCalibration>& cameras, const TagCol
 
 void TipFinder::Forget() {
   noise_grey_ = 0;
+  planar_checks_spared_ = 0;
   for (OpticsPrior& prior : priors_) {
     prior.mean.blur_px2 = Optics().blur_px2;
     prior.blur_sd_px2 = kFirstBlurSd_px2;
@@ -83,6 +88,7 @@ void TipFinder::Learn(const Sight& sight) {
 
 void TipFinder::VisitState(StateText& state) {
   state(noise_grey_);
+  state(planar_checks_spared_);
   for (OpticsPrior& prior : priors_) {
     state(prior.mean.blur_px2);
     for (double* value : {&prior.mean.gamma, &prior.mean.print_offset_m, &prior.blur_sd_px2,
@@ -168,7 +174,7 @@ Sight TipFinder::FindNear(const Images& images, const Pose& T_RE, double radius_
       sight = FitPixels(images, T_RC * searches_[i].Shifted(T_CE, match.shift_px));
     }
     if (IsTrusted(sight, T_RE)) {
-      CheckOtherPlanarPose(images, T_RE, sight);
+      if (!MaySkipPlanarCheck(sight, T_RE)) CheckOtherPlanarPose(images, T_RE, sight);
       if (IsTrusted(sight, T_RE)) return sight;
     }
   }
@@ -269,24 +275,53 @@ Sight TipFinder::Acquired(const Images& images, const Sight& corners,
 
 // What the corners say, made better by the pixels where those agree.
 Sight TipFinder::Refined(const Images& images, const Sight& corners) {
-  Sight sight = FitPixels(images, corners.T_RE);
-  if (corners.alternative_T_RE) {
-    const Sight other = FitPixels(images, *corners.alternative_T_RE);
-    const bool better =
-        other.Found() && (!sight.Found() || LogLikelihoodRatio2(other.pixels, sight.pixels) > 0);
-    if (better) sight = other;
+  Sight sight = FitCandidates(images, corners);
+  if (!sight.Found() && noise_grey_ == 0) {  // nothing fitted yet: the gamma's guess may be wrong
+    const std::vector<OpticsPrior> guessed = priors_;
+    for (OpticsPrior& prior : priors_) {
+      if (prior.gamma_sd > 0) prior.mean.gamma = kLinearGamma;
+    }
+    sight = FitCandidates(images, corners);
+    priors_ = guessed;
   }
   if (!sight.Found()) return corners;
   sight.rms_px = corners.rms_px;
-  sight.tags = corners.tags;
+  const std::vector<TagDetection> fitted = std::exchange(sight.tags, corners.tags);
+  for (TagDetection& tag : sight.tags) {
+    const auto same = std::find_if(fitted.begin(), fitted.end(),
+                                   [&](const TagDetection& f) { return f.id == tag.id; });
+    if (same == fitted.end()) continue;
+    tag.corners_px = same->corners_px;
+    tag.refined = true;
+  }
   return sight;
+}
+
+// The likelier of the fits from the corners' two poses.
+Sight TipFinder::FitCandidates(const Images& images, const Sight& corners) {
+  Sight sight = FitPixels(images, corners.T_RE);
+  if (!corners.alternative_T_RE) return sight;
+  const Sight other = FitPixels(images, *corners.alternative_T_RE);
+  const bool better =
+      other.Found() && (!sight.Found() || LogLikelihoodRatio2(other.pixels, sight.pixels) > 0);
+  return better ? other : sight;
+}
+
+// Where the other planar pose was clearly worse, it is for some frames: a tip does not jump to it.
+bool TipFinder::MaySkipPlanarCheck(const Sight& sight, const Pose& expected_T_RE) {
+  const double turn = PoseDifference(expected_T_RE, sight.T_RE).head<3>().norm();
+  if (planar_checks_spared_ == 0 || turn > kSmallTurn_rad) return false;
+  --planar_checks_spared_;
+  return true;
 }
 
 // With one plane in view two poses may fit: tries the other, keeps the likelier, and where both
 // are nearly as likely takes the one that is expected.
 void TipFinder::CheckOtherPlanarPose(const Images& images, const std::optional<Pose>& near_T_RE,
                                      Sight& sight) {
+  planar_checks_spared_ = 0;
   if (sight.source != TrackSource::kPixels || !sight.pixels.one_plane) return;
+  planar_checks_spared_ = kPlanarChecksSpared;
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (images[i] == nullptr || sight.pixels.views[i].faces.empty()) continue;
     const auto tag = std::find_if(
@@ -310,6 +345,7 @@ void TipFinder::CheckOtherPlanarPose(const Images& images, const std::optional<P
     if (swap) std::swap(sight, second);
     sight.alternative_T_RE = second.T_RE;
     sight.ambiguous = unclear;
+    if (unclear) planar_checks_spared_ = 0;
     if (unclear && !near_T_RE) {
       const Eigen::Matrix<double, 6, 1> difference = PoseDifference(sight.T_RE, second.T_RE);
       sight.covariance += 0.5 * difference * difference.transpose();

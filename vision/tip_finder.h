@@ -59,6 +59,8 @@ class TipFinder {
   bool IsTrusted(const Sight& sight, const Pose& expected_T_RE) const;
   Sight Acquired(const Images& images, const Sight& corners, const std::optional<Pose>& near_T_RE);
   Sight Refined(const Images& images, const Sight& corners);
+  Sight FitCandidates(const Images& images, const Sight& corners);
+  bool MaySkipPlanarCheck(const Sight& sight, const Pose& expected_T_RE);
   void CheckOtherPlanarPose(const Images& images, const std::optional<Pose>& near_T_RE,
                             Sight& sight);
   std::vector<TagDetection> DetectNear(const Image& image, std::size_t camera, const Pose& T_RE,
@@ -74,7 +76,8 @@ class TipFinder {
   TagDetector detector_;
   PhotometricFit fit_;
   std::vector<OpticsPrior> priors_;
-  double noise_grey_ = 0;  // of the fits so far, fading; 0: none
+  int planar_checks_spared_ = 0;  // frames left in which the other planar pose need not be tried
+  double noise_grey_ = 0;         // of the fits so far, fading; 0: none
 };
 
 }  // namespace flextip

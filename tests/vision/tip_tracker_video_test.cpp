@@ -71,6 +71,43 @@ TEST(TipTrackerVideo, OneFlatTagDoesNotFlip) {
   EXPECT_GE(ok, kFrames - 3);
 }
 
+// A blurred picture of a linear camera that does not say so: from the usual gamma alone the pixels
+// cannot be fitted.
+TEST(TipTrackerVideo, AnUnstatedGammaOfOneIsFound) {
+  CameraCalibration camera = ScopeCamera();
+  camera.gamma.reset();
+  for (const double blur_px : {1.0, 1.6}) {
+    const Pose T_RE = ScopePose(0.2, 0.25);
+    const Image image = Film(LightThroughLens(camera, ScopeCollar(), T_RE, blur_px), 1.0, 3);
+    TipTracker tracker(camera, ScopeCollar());
+    const TipTrack track = tracker.Track(image, 0);
+    ASSERT_EQ(track.tip.status, TipStatus::kOk) << blur_px;
+    EXPECT_LT(Error_mm(track, T_RE), 0.1) << blur_px;
+  }
+}
+
+TEST(TipTrackerVideo, TheFirstPicturesCornersAreThoseOfTheFit) {
+  const Pose T_RE = ScopePose(0.2, 0.25);
+  const CameraCalibration camera = ScopeCamera();
+  const CameraModel model(camera);
+  const Image image = Film(LightThroughLens(camera, ScopeCollar(), T_RE, 0.8), 2.2, 4);
+  const TagCollar collar = ScopeCollar();
+  TipTracker tracker(camera, collar);
+  const TipTrack track = tracker.Track(image, 0);
+  ASSERT_EQ(track.tip.status, TipStatus::kOk);
+  ASSERT_GE(track.tags.size(), 2u);
+  for (const TagDetection& found : track.tags) {
+    const CollarTag& tag = collar.tags.at(static_cast<std::size_t>(found.id));
+    ASSERT_EQ(tag.id, found.id);
+    const auto corners_E = CornersInE(tag);
+    for (int i = 0; i < 4; ++i) {
+      const auto px = model.Project(camera.T_RC.Inverse() * (T_RE * corners_E[i]));
+      ASSERT_TRUE(px);
+      EXPECT_LT((found.corners_px[i] - *px).norm(), 0.05) << found.id;
+    }
+  }
+}
+
 TEST(TipTrackerVideo, TheModelCarriesAHiddenTip) {
   const Scene scene;
   TipTracker tracker(ScopeCamera(), ScopeCollar());
