@@ -297,7 +297,7 @@ OpticsPrior PhotometricView::Learned(const Eigen::Matrix<double, 6, 6>& covarian
   next.blur_sd_px2 = kBlurChange * (optics_.blur_px2[0] + optics_.blur_px2[2]) + 0.1;
   if (prior_.gamma_sd > 0) next.gamma_sd = std::min(prior_.gamma_sd, std::max(0.003, sd[3]));
   if (prior_.print_offset_sd_m > 0) {
-    next.print_offset_sd_m = std::min(prior_.print_offset_sd_m, std::max(2e-6, sd[4]));
+    next.print_offset_sd_m = std::min(prior_.print_offset_sd_m, std::max(5e-7, sd[4]));
   }
   return next;
 }
