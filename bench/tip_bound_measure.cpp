@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kWarmUp = 3;
+constexpr int kWarmUp = 10;
 constexpr TimeNs kPeriod_ns = 33'333'333;
 
 struct Sums {

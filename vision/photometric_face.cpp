@@ -26,12 +26,18 @@ struct PhotometricFace::Geometry {
   Eigen::Matrix2f m_of_px;  // derivative of the ray at the tag's centre
   Eigen::Vector3f normal;   // into the tag
   PatternBlur blur;         // on the tag, in cells, at its centre
+  Eigen::Vector3f bend;     // of the light: by fu^2, fu fv, fv^2
   float half = 0;
   bool valid = false;
 
   struct Place {
     float u, v, z;
   };
+  // How the light of a matt surface, lit from the lens, bends over the tag: it falls with the
+  // square of the distance and aslant, |p|^-3 in all. The linear part is left to the slopes.
+  float Falloff(float fu, float fv) const {
+    return 1 + bend[0] * fu * fu + bend[1] * fu * fv + bend[2] * fv * fv;
+  }
   Place At(float mx, float my) const {
     const float w = to_tag(2, 0) * mx + to_tag(2, 1) * my + to_tag(2, 2);
     const float z = 1 / w;
@@ -81,6 +87,11 @@ PhotometricFace::Geometry PhotometricFace::Place(const CameraModel& camera, cons
   g.to_tag = to_tag.cast<float>();
   g.normal = T_CG.R.col(2).cast<float>();
   g.half = static_cast<float>(half);
+  const double distance2 = T_CG.p.squaredNorm(), side2 = std::pow(half * cell_m_, 2) / distance2;
+  const Eigen::Vector2d along = T_CG.R.leftCols<2>().transpose() * T_CG.p / std::sqrt(distance2);
+  g.bend = (side2 * Eigen::Vector3d(7.5 * along[0] * along[0] - 1.5, 15 * along[0] * along[1],
+                                    7.5 * along[1] * along[1] - 1.5))
+               .cast<float>();
 
   Eigen::Matrix2d spread_px;
   spread_px << optics.blur_px2[0] + kPixelVariance, optics.blur_px2[1], optics.blur_px2[1],
@@ -223,8 +234,9 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
     const auto at = g.At(pixel.mx, pixel.my);
     const PatternValue p = pattern_.At(at.u, at.v, g.blur);
     light.At(at.u, at.v);
-    const float contrast = light.white - light.black;
-    const ToneCurve::Value film = tone.At(light.black + p.c * contrast);
+    const float falloff = g.Falloff(light.fu, light.fv);
+    const float contrast = falloff * (light.white - light.black);
+    const ToneCurve::Value film = tone.At(falloff * light.black + p.c * contrast);
     const float residual = pixel.grey - film.grey;
     if (film.by_light == 0 && pixel.grey > kSaturated_grey) continue;  // says nothing
     sums.CountError(residual, half_contrast);
@@ -238,7 +250,8 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
       DifferentiatePlace(pixel, g, p, pivot, by_light * contrast, row);
     }
     row[FaceColumns::kGamma] = root * film.by_gamma;
-    const float by_black = by_light * (1 - p.c), by_white = by_light * p.c;
+    const float by_level = by_light * falloff;
+    const float by_black = by_level * (1 - p.c), by_white = by_level * p.c;
     row.segment<6>(FaceColumns::kLevels) << by_black, by_black * light.fu, by_black * light.fv,
         by_white, by_white * light.fu, by_white * light.fv;
     row[FaceColumns::kResidual] = weight / root * residual;
