@@ -57,7 +57,7 @@ class TipModel {
   /// The tip by the rod, and its derivative (dw, dp) by wrist, port and tip force.
   struct RodTip {
     Pose T_RE;
-    Matrix6x9 J;
+    Matrix6x9 J = Matrix6x9::Zero();
     bool has_roll = false;
     void VisitState(StateText& state) {
       state(T_RE);
@@ -68,10 +68,10 @@ class TipModel {
   struct Sight {
     TimeNs t_ns = 0;
     Pose T_RE;
-    Matrix6 covariance;
+    Matrix6 covariance = Matrix6::Zero();
     RodTip rod;  // by the model, with this port and load
-    Eigen::Vector3d p_RP, f_tip_N;
-    Matrix6 parameters;  // covariance of port and tip force
+    Eigen::Vector3d p_RP = Eigen::Vector3d::Zero(), f_tip_N = Eigen::Vector3d::Zero();
+    Matrix6 parameters = Matrix6::Zero();  // covariance of port and tip force
     void VisitState(StateText& state);
   };
   struct Load {

@@ -50,7 +50,7 @@ class StateText {
   template <typename T>
   void operator()(std::optional<T>& value) {
     if (IsThere(value.has_value())) {
-      if (!value) value.emplace();
+      if (!value) value.emplace(T{});
       (*this)(*value);
     } else {
       value.reset();

@@ -202,7 +202,7 @@ Eigen::Matrix<double, 6, 6> PhotometricView::ScoreScatter(double& white) const {
       const Vector11 rest = all.head<11>() - s.levels.by_rest.transpose() * all.tail<6>();
       const Eigen::Matrix<double, 6, 1> pose =
           rest.head<6>() - optics_elimination_.by_rest.transpose() * rest.tail<5>();
-      scores.push_back(to_pivot_.transpose() * pose);
+      scores.emplace_back(to_pivot_.transpose() * pose);
       mean += scores.back();
     }
   }
