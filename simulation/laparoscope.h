@@ -56,8 +56,8 @@ struct LaparoscopeOptions {
   double vignetting = 2.0;         ///< the light falls as cos(angle off the axis) to this power
   double blur_sigma_px = 0.7;      ///< of the lens, Gaussian; 0: none
   /// The blur is computed on a grid that many times finer than the pixels, 1 to 4. At 1 it follows
-  /// the pixels in place of preceding them, which moves edges by up to 0.02 px with their place in
-  /// the pixel; 3 leaves a ninth of that and takes nine times as long.
+  /// the pixels in place of preceding them: an edge blurred by 0.6 px is off by 4 % of its contrast
+  /// in some pixels, below 1 % at 4. Time and memory grow with the square.
   int parts_per_px = 1;
   double full_well_electrons = 15000;  ///< shot noise: variance = mean, in electrons; 0: none
   double read_noise_electrons = 15;

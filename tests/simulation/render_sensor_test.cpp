@@ -292,5 +292,59 @@ TEST(RenderInput, BadInputIsRefused) {
   EXPECT_THROW(Laparoscope(camera, {}, options), InputError);
 }
 
+// The grid on which the lens blurs changes neither a pixel's light nor, where no lens blurs, what
+// falls on the film.
+TEST(RenderLens, AFinerGridHasTheSameLightInAPixel) {
+  const CameraCalibration camera = SmallCamera();
+  LaparoscopeOptions o = PlainOptions();
+  o.blur_sigma_px = 0;
+  const LinearImage plain = Laparoscope(camera, TagAt(0.1), o).RenderLinear(TagsOnly(), 0);
+  o.parts_per_px = 3;
+  const Laparoscope fine(camera, TagAt(0.1), o);
+  const LinearImage means = fine.RenderLinear(TagsOnly(), 0);
+  ASSERT_EQ(means.data.size(), plain.data.size());
+  for (std::size_t i = 0; i < plain.data.size(); ++i) {
+    ASSERT_NEAR(means.data[i], plain.data[i], 2e-3) << i;
+  }
+  EXPECT_EQ(fine.RenderLight(TagsOnly(), 0).data, means.data);
+  o.parts_per_px = 5;
+  EXPECT_THROW(Laparoscope(camera, TagAt(0.1), o), InputError);
+}
+
+// A blurred edge of a tag on the axis is the normal distribution, averaged over each pixel,
+// wherever in its pixel the edge lies; blurred after the pixels it is not.
+TEST(RenderLens, BlursBeforeThePixelsTakeTheirMeans) {
+  constexpr double kSigma_px = 0.6, kDistance_m = 0.1;
+  LaparoscopeOptions o = PlainOptions();
+  o.blur_sigma_px = kSigma_px;
+  const auto largest_error = [&](int parts) {
+    o.parts_per_px = parts;
+    double largest = 0;
+    for (const double offset_px : {0.0, 0.3, 0.5, 0.8}) {
+      CameraCalibration camera = SmallCamera();
+      camera.cu_px += offset_px;
+      const LinearImage light =
+          Laparoscope(camera, TagAt(kDistance_m), o).RenderLight(TagsOnly(), 0);
+      // The tag's outer black border toward -x, on a row through its middle.
+      const double edge_px = camera.cu_px - camera.fu_px * 0.008 / kDistance_m;
+      const int y = static_cast<int>(std::lround(camera.cv_px));
+      const int first = static_cast<int>(std::lround(edge_px)) - 3;
+      const double white = light.At(first - 1, y)[1], black = light.At(first + 7, y)[1];
+      for (int x = first; x <= first + 6; ++x) {
+        double mean = 0;
+        for (int k = 0; k < 100; ++k) {
+          const double at = x - 0.5 + (k + 0.5) / 100;
+          mean += 0.5 * std::erfc((at - edge_px) / kSigma_px / std::sqrt(2.0)) / 100;
+        }
+        const double part = (light.At(x, y)[1] - black) / (white - black);
+        largest = std::max(largest, std::abs(part - mean));
+      }
+    }
+    return largest;
+  };
+  EXPECT_LT(largest_error(4), 0.01);  // of the contrast
+  EXPECT_GT(largest_error(1), 0.03);
+}
+
 }  // namespace
 }  // namespace flextip

@@ -7,6 +7,7 @@
 #include "tests/vision/optics_reference.h"
 #include "vision/lens_map.h"
 #include "vision/normal_table.h"
+#include "vision/photometric_sums.h"
 #include "vision/tone_curve.h"
 
 namespace flextip {
@@ -32,6 +33,21 @@ TEST(NormalTable, EndsAtItsReach) {
     EXPECT_EQ(NormalTable::Get().At(-x).cdf, 0);
     EXPECT_EQ(NormalTable::Get().At(-x).density, 0);
   }
+}
+
+// Where it is not held positive.
+TEST(RobustRule, NewtonsCurvatureIsTheDerivativeOfTheWeightedResidual) {
+  const RobustRule rule(2.5, Robustness::kTukeyNewton);
+  for (float r = -4.5f; r < 4.6f; r += 0.13f) {
+    const float step = 0.01f;
+    const float rise = rule.Weight(r + step) * (r + step) - rule.Weight(r - step) * (r - step);
+    EXPECT_NEAR(rule.Curvature(rule.Weight(r)), rise / (2 * step), 2e-3) << r;
+  }
+  for (float r = 5; r < 11.7f; r += 0.31f) {
+    EXPECT_GT(rule.Curvature(rule.Weight(r)), 0) << r;
+  }
+  const RobustRule plain(2.5, Robustness::kTukey);
+  EXPECT_EQ(plain.Curvature(plain.Weight(3)), plain.Weight(3));
 }
 
 TEST(ToneCurve, IsThePowerLaw) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -85,6 +86,49 @@ TEST(PhotometricFit, CovarianceIsThatOfTheScatter) {
     EXPECT_LT(s.bias_mm, 0.01) << lean;
     EXPECT_LT(s.rms_mm, 0.015) << lean;
   }
+}
+
+// Light and dark patches some pixels wide over the picture, as of glare and smoke: residuals that
+// go together say less than their number.
+Image Patchy(Image image, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> x(0, image.width_px), y(0, image.height_px);
+  std::normal_distribution<double> height(0, 4);
+  std::vector<double> field(image.data.size());
+  constexpr int kWidth_px = 4, kReach_px = 3 * kWidth_px;
+  for (int patch = 0; patch < 1500; ++patch) {
+    const int u = static_cast<int>(x(random)), v = static_cast<int>(y(random));
+    const double h = height(random);
+    for (int j = std::max(0, v - kReach_px); j < std::min(image.height_px, v + kReach_px); ++j) {
+      for (int i = std::max(0, u - kReach_px); i < std::min(image.width_px, u + kReach_px); ++i) {
+        const double r2 = (i - u) * (i - u) + (j - v) * (j - v);
+        field[static_cast<std::size_t>(j) * image.width_px + i] +=
+            h * std::exp(-r2 / (2.0 * kWidth_px * kWidth_px));
+      }
+    }
+  }
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    image.data[i] = static_cast<std::uint8_t>(std::clamp(image.data[i] + field[i], 0.0, 255.0));
+  }
+  return image;
+}
+
+TEST(PhotometricFit, CovarianceKnowsOfResidualsThatGoTogether) {
+  constexpr int kFrames = 40;
+  const Pose T_RE = ScopePose(0.1, 0.25);
+  const CameraCalibration camera = ScopeCamera();
+  const LinearImage light = LightThroughLens(camera, ScopeCollar(), T_RE, kBlur_px);
+  PhotometricFit fit({camera}, ScopeCollar(), OnlyNoise());
+  double nees = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    const Image image = Patchy(Film(light, 2.2, 300u + i), 500u + i);
+    const PhotometricResult r = fit.Fit({&image}, T_RE, {KnownGamma()});
+    ASSERT_TRUE(r.IsUsable()) << i;
+    nees += Nees(r, T_RE) / kFrames;
+  }
+  // 6 is what it should be; by the number of the pixels alone it comes to 69.
+  EXPECT_LT(nees, 4 * 6);
+  EXPECT_GT(nees, 2);
 }
 
 TEST(PhotometricFit, FindsTheGamma) {
