@@ -16,9 +16,11 @@ struct BlurredPattern::Lines {
   int first, n;
   float x[kMaxLines], cdf[kMaxLines], density[kMaxLines];
   float weight[kMaxLines + 1];  // of the cells
-  float sigma;
+  float inverse;                // 1 / sigma at the middle line
 
-  Lines(const NormalTable& table, float at, float spread, int low, int high) : sigma(spread) {
+  Lines(const NormalTable& table, float at, float spread, float inverse_spread, float rate,
+        float middle, int low, int high)
+      : inverse(inverse_spread * (1 + rate * (at - middle))) {
     const float reach = NormalTable::kReach * spread;
     first = std::max(low, static_cast<int>(std::ceil(at - reach)));
     const int last = std::min(high, static_cast<int>(std::floor(at + reach)));
@@ -29,9 +31,9 @@ struct BlurredPattern::Lines {
       return;
     }
     float before = 0;
-    const float inverse = 1 / spread;
     for (int i = 0; i < n; ++i) {
-      x[i] = (static_cast<float>(first + i) - at) * inverse;
+      const auto line = static_cast<float>(first + i);
+      x[i] = (line - at) * inverse_spread * (1 + rate * (line - middle));
       const NormalTable::Value value = table.At(x[i]);
       cdf[i] = value.cdf;
       density[i] = value.density;
@@ -49,8 +51,8 @@ struct BlurredPattern::Lines {
       d1 += drop;
       d2 += x[i] * drop;
     }
-    d1 /= sigma;
-    d2 /= sigma * sigma;
+    d1 *= inverse;
+    d2 *= inverse * inverse;
   }
 };
 
@@ -72,10 +74,13 @@ BlurredPattern::BlurredPattern(const TagCells& tag)
   }
 }
 
-PatternValue BlurredPattern::AtMany(float at_u, float at_v, const PatternBlur& blur) const {
+PatternValue BlurredPattern::AtMany(float at_u, float at_v, const PatternBlur& blur,
+                                    float nearness) const {
   const int low = 1 - kPad, high = cells_ + kPad - 1;
-  const Lines u(*normal_, at_u, blur.sigma_u, low, high),
-      v(*normal_, at_v, blur.sigma_v, low, high);
+  const Lines u(*normal_, at_u, blur.sigma_u, blur.inverse_u * nearness, blur.rate_u, blur.middle,
+                low, high),
+      v(*normal_, at_v, blur.sigma_v, blur.inverse_v * nearness, blur.rate_v, blur.middle, low,
+        high);
   PatternValue value{0, 0, 0, 0, 0, 0, false};
   if (u.n == 0 && v.n == 0) {
     value.c = Column(u.first - 1)[v.first - 1 + kPad];

@@ -12,6 +12,10 @@ namespace flextip {
 struct PatternBlur {
   float sigma_u = 0.2f, sigma_v = 0.2f, rho = 0.0f;
   float inverse_u = 5.0f, inverse_v = 5.0f;  ///< 1 / sigma
+  /// In perspective a blur that is the same all over the picture is not on the tag. A line u = e is
+  /// (e - u) inverse_u nearness (1 + rate_u (e - middle)) sigmas from (u, v), exactly but for the
+  /// rates' second order; nearness: the depth of the tag's middle over the depth at (u, v).
+  float rate_u = 0.0f, rate_v = 0.0f, middle = 0.0f;
 
   PatternBlur() = default;
   PatternBlur(double su, double sv, double correlation)
@@ -38,11 +42,13 @@ class BlurredPattern {
   int Cells() const { return cells_; }
 
   /// At (u, v) in cells from the top left corner of the pattern.
-  PatternValue At(float u, float v, const PatternBlur& blur) const {
-    const Near near_u(u, blur.sigma_u, blur.inverse_u), near_v(v, blur.sigma_v, blur.inverse_v);
+  PatternValue At(float u, float v, const PatternBlur& blur, float nearness = 1.0f) const {
+    const float iu = blur.inverse_u * nearness, iv = blur.inverse_v * nearness;
+    const Near near_u(u, blur.sigma_u, iu, blur.rate_u, blur.middle);
+    const Near near_v(v, blur.sigma_v, iv, blur.rate_v, blur.middle);
     const bool inside = u > -3 && v > -3 && u < last_ && v < last_;
     return inside && near_u.lines <= 1 && near_v.lines <= 1 ? AtOneCrossing(near_u, near_v, blur)
-                                                            : AtMany(u, v, blur);
+                                                            : AtMany(u, v, blur, nearness);
   }
 
   /// Whether an edge between black and white lies within `reach_u`, `reach_v` cells (less than one)
@@ -66,16 +72,18 @@ class BlurredPattern {
   // The lines between cells within reach of a place along one axis.
   struct Near {
     int first, lines;
-    float x;  // the first line's distance in sigmas
-    Near(float at, float sigma, float inverse) {
+    float inverse;  // 1 / sigma there
+    float x;        // the first line's distance in sigmas
+    Near(float at, float sigma, float inverse_sigma, float rate, float middle) {
       const float reach = NormalTable::kReach * sigma;
       first = static_cast<int>(at - reach + 2 * kPad) + 1 - 2 * kPad;  // rounds down and adds one
       lines = static_cast<int>(at + reach + 2 * kPad) + 1 - 2 * kPad - first;
+      inverse = inverse_sigma * (1 + rate * (static_cast<float>(first) - middle));
       x = (static_cast<float>(first) - at) * inverse;
     }
   };
   PatternValue AtOneCrossing(const Near& u, const Near& v, const PatternBlur& blur) const;
-  PatternValue AtMany(float u, float v, const PatternBlur& blur) const;
+  PatternValue AtMany(float u, float v, const PatternBlur& blur, float nearness) const;
   static void AddCrossing(float density, float x, float y, const PatternBlur& blur,
                           PatternValue& value);
   const float* Column(int k) const { return &white_[static_cast<std::size_t>(k + kPad) * stride_]; }
@@ -114,7 +122,7 @@ inline PatternValue BlurredPattern::AtOneCrossing(const Near& u, const Near& v,
     return value;
   }
   const float* after = before + stride_;
-  const float su = blur.inverse_u, sv = blur.inverse_v;
+  const float su = u.inverse, sv = v.inverse;
   if (v.lines == 0) {
     const NormalTable::Value n = normal_->At(u.x);
     const float rise = after[0] - before[0];

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vision/grey.h"
+#include "vision/tag_blur.h"
 
 namespace flextip {
 namespace {
@@ -27,11 +28,13 @@ struct PhotometricFace::Geometry {
   Eigen::Vector3f normal;   // into the tag
   PatternBlur blur;         // on the tag, in cells, at its centre
   Eigen::Vector3f bend;     // of the light: by fu^2, fu fv, fv^2
-  float half = 0;
+  float half = 0, depth = 0;
+  Pose T_CG;
+  Eigen::Matrix2d spread_px = Eigen::Matrix2d::Identity();  // the blur, pixels included
   bool valid = false;
 
   struct Place {
-    float u, v, z;
+    float u, v, z, nearness;  // z: depth; nearness: the middle's over it
   };
   // How the light of a matt surface, lit from the lens, bends over the tag: it falls with the
   // square of the distance and aslant, |p|^-3 in all. The linear part is left to the slopes.
@@ -42,7 +45,7 @@ struct PhotometricFace::Geometry {
     const float w = to_tag(2, 0) * mx + to_tag(2, 1) * my + to_tag(2, 2);
     const float z = 1 / w;
     return {(to_tag(0, 0) * mx + to_tag(0, 1) * my + to_tag(0, 2)) * z,
-            (to_tag(1, 0) * mx + to_tag(1, 1) * my + to_tag(1, 2)) * z, z};
+            (to_tag(1, 0) * mx + to_tag(1, 1) * my + to_tag(1, 2)) * z, z, depth * w};
   }
 };
 
@@ -87,6 +90,7 @@ PhotometricFace::Geometry PhotometricFace::Place(const CameraModel& camera, cons
   g.to_tag = to_tag.cast<float>();
   g.normal = T_CG.R.col(2).cast<float>();
   g.half = static_cast<float>(half);
+  g.depth = static_cast<float>(T_CG.p.z());
   const double distance2 = T_CG.p.squaredNorm(), side2 = std::pow(half * cell_m_, 2) / distance2;
   const Eigen::Vector2d along = T_CG.R.leftCols<2>().transpose() * T_CG.p / std::sqrt(distance2);
   g.bend = (side2 * Eigen::Vector3d(7.5 * along[0] * along[0] - 1.5, 15 * along[0] * along[1],
@@ -99,15 +103,11 @@ PhotometricFace::Geometry PhotometricFace::Place(const CameraModel& camera, cons
   Eigen::Matrix<double, 2, 3> J;
   if (!camera.Project(T_CG.p, &J)) return g;
   const Eigen::Matrix2d m_of_px = (T_CG.p.z() * J.leftCols<2>()).inverse();
-  const Eigen::Matrix2d by_px = T_CG.p.z() *
-                                (to_tag.topLeftCorner<2, 2>() -
-                                 Eigen::Vector2d(half, half) * to_tag.bottomLeftCorner<1, 2>()) *
-                                m_of_px;
-  const Eigen::Matrix2d spread = by_px * spread_px * by_px.transpose();
-  const double su = std::sqrt(spread(0, 0)), sv = std::sqrt(spread(1, 1));
-  if (!(su < kMaxBlur_cells && sv < kMaxBlur_cells)) return g;
+  g.blur = BlurOnTag(to_tag, m_of_px * spread_px * m_of_px.transpose(), half, T_CG.p.z());
+  if (!(g.blur.sigma_u < kMaxBlur_cells && g.blur.sigma_v < kMaxBlur_cells)) return g;
   g.m_of_px = m_of_px.cast<float>();
-  g.blur = PatternBlur(su, sv, std::clamp(spread(0, 1) / (su * sv), -0.75, 0.75));
+  g.T_CG = T_CG;
+  g.spread_px = spread_px;
   g.valid = true;
   return g;
 }
@@ -167,7 +167,7 @@ double PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE,
   double n = 0, c1 = 0, c2 = 0, l1 = 0, l2 = 0, cl = 0;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
-    const double c = pattern_.At(at.u, at.v, g.blur).c, light = tone.Light(pixel.grey);
+    const double c = pattern_.At(at.u, at.v, g.blur, at.nearness).c, light = tone.Light(pixel.grey);
     n += 1, c1 += c, c2 += c * c, l1 += light, l2 += light * light, cl += c * light;
   }
   const double spread = c2 - c1 * c1 / n;
@@ -186,6 +186,8 @@ struct PhotometricFace::Light {
   float black, white, fu, fv;
   Light(const FaceLevels& levels, int cells)
       : level(levels.cast<float>()), half(0.5f * static_cast<float>(cells)) {}
+  float ContrastByU() const { return (level[4] - level[1]) / half; }
+  float ContrastByV() const { return (level[5] - level[2]) / half; }
   void At(float u, float v) {
     fu = u / half - 1;
     fv = v / half - 1;
@@ -229,14 +231,19 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
   const Eigen::Vector3f pivot = pivot_C.cast<float>();
   Light light(levels, pattern_.Cells());
   const float half_contrast = 0.5f * (tone.At(light.level[3]).grey - tone.At(light.level[0]).grey);
+  const float uu = g.blur.sigma_u * g.blur.sigma_u, vv = g.blur.sigma_v * g.blur.sigma_v,
+              uv = g.blur.rho * g.blur.sigma_u * g.blur.sigma_v;
   Row row;
   for (const Pixel& pixel : pixels_) {
     const auto at = g.At(pixel.mx, pixel.my);
-    const PatternValue p = pattern_.At(at.u, at.v, g.blur);
+    const PatternValue p = pattern_.At(at.u, at.v, g.blur, at.nearness);
     light.At(at.u, at.v);
     const float falloff = g.Falloff(light.fu, light.fv);
     const float contrast = falloff * (light.white - light.black);
-    const ToneCurve::Value film = tone.At(falloff * light.black + p.c * contrast);
+    // The light is blurred with the pattern: where it rises, the brighter side counts for more.
+    const float from_u = uu * p.c_u + uv * p.c_v, from_v = uv * p.c_u + vv * p.c_v;
+    const float brighter = light.ContrastByU() * from_u + light.ContrastByV() * from_v;
+    const ToneCurve::Value film = tone.At(falloff * (light.black + brighter) + p.c * contrast);
     const float residual = pixel.grey - film.grey;
     if (film.by_light == 0 && pixel.grey > kSaturated_grey) continue;  // says nothing
     sums.CountError(residual, half_contrast);
@@ -252,12 +259,14 @@ void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
     row[FaceColumns::kGamma] = root * film.by_gamma;
     const float by_level = by_light * falloff;
     const float by_black = by_level * (1 - p.c), by_white = by_level * p.c;
-    row.segment<6>(FaceColumns::kLevels) << by_black, by_black * light.fu, by_black * light.fv,
-        by_white, by_white * light.fu, by_white * light.fv;
+    const float by_u = by_level * from_u / g.half, by_v = by_level * from_v / g.half;
+    row.segment<6>(FaceColumns::kLevels) << by_black, by_black * light.fu - by_u,
+        by_black * light.fv - by_v, by_white, by_white * light.fu + by_u,
+        by_white * light.fv + by_v;
     row[FaceColumns::kResidual] = weight / root * residual;
     sums.Add(row, {weight, curvature, pixel.grey, film.grey, light.fu, light.fv});
   }
-  sums.Finish();
+  sums.Finish(SpreadOfTag(g.T_CG, pivot_C, g.m_of_px.cast<double>(), g.spread_px));
 }
 
 }  // namespace flextip

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/rotation.h"
+#include "vision/collar_faces.h"
 #include "vision/reprojection.h"
 
 namespace flextip {

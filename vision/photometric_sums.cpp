@@ -10,6 +10,19 @@ void FaceSums::Flush() {
   filled_ = 0;
 }
 
+void FaceSums::Finish(const SpreadByMotion& spread) {
+  Flush();
+  constexpr int kB = FaceColumns::kBlur, kO = FaceColumns::kOffset;
+  const Eigen::Matrix<double, 6, 3> of_pose = spread.topRows<6>();
+  const Eigen::RowVector3d of_offset = spread.row(6);
+  A_.topRows<6>() += of_pose * A_.middleRows<3>(kB);
+  A_.row(kO) += of_offset * A_.middleRows<3>(kB);
+  A_.leftCols<6>() += A_.middleCols<3>(kB) * of_pose.transpose();
+  A_.col(kO) += A_.middleCols<3>(kB) * of_offset.transpose();
+  scores_.topRows<6>() += of_pose.cast<float>() * scores_.middleRows<3>(kB);
+  scores_.row(kO) += of_offset.cast<float>() * scores_.middleRows<3>(kB);
+}
+
 double FaceSums::Correlation() const {
   const auto& m = moments_;
   if (m[0] <= 0) return 0.0;

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "vision/tag_blur.h"
+
 namespace flextip {
 
 /// How residuals are weighted.
@@ -87,7 +89,8 @@ class FaceSums {
     ++errors_[std::min(bin, kBins - 1)];
     ++pixels_;
   }
-  void Finish() { Flush(); }
+  /// After the last pixel. `spread`: what belongs to the rows of pose and print offset besides.
+  void Finish(const SpreadByMotion& spread);
 
   const Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize>& A() const { return A_; }
   int Pixels() const { return pixels_; }

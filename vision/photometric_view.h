@@ -117,8 +117,4 @@ class PhotometricView {
   Eigen::Matrix<double, 5, 1> optics_variance_ = Eigen::Matrix<double, 5, 1>::Zero();
 };
 
-/// The faces of a collar; how far each side's white reaches follows from its neighbours' planes.
-/// Throws InputError where a tag does not exist.
-std::vector<PhotometricFace> MakeFaces(const TagCollar& collar);
-
 }  // namespace flextip

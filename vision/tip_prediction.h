@@ -2,8 +2,10 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cmath>
 
 #include "core/pose.h"
+#include "core/rotation.h"
 
 namespace flextip {
 
@@ -14,5 +16,20 @@ struct TipPrediction {
   /// Of (dw, dp) in R (rad, m): the true pose is (exp([dw]x) R, p + dp).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
+
+/// The standard deviation along the least certain direction.
+inline double MaxSd(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
+}
+inline double PositionSd(const TipPrediction& prediction) {
+  return MaxSd(prediction.covariance.bottomRightCorner<3, 3>());
+}
+/// Per axis, of the tip's axis d, which turns by dw x d (rad).
+inline double DirectionNoise(const TipPrediction& prediction) {
+  const Eigen::Matrix3d turn = Skew(prediction.T_RE.R.col(0));
+  const Eigen::Matrix3d of_direction =
+      turn * prediction.covariance.topLeftCorner<3, 3>() * turn.transpose();
+  return std::sqrt(0.5 * of_direction.trace());
+}
 
 }  // namespace flextip

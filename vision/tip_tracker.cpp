@@ -6,10 +6,10 @@
 #include "core/error.h"
 #include "core/rotation.h"
 #include "vision/background_detector.h"
+#include "vision/outline_follower.h"
 #include "vision/reprojection.h"
 #include "vision/tip_filter.h"
 #include "vision/tip_finder.h"
-#include "vision/tip_outline.h"
 
 namespace flextip {
 namespace {
@@ -19,10 +19,6 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // How much of the corner noise seen so far is remembered from frame to frame.
 constexpr double kNoiseMemory = 0.9;
 constexpr double kMinSearch_px = 8.0, kMaxSearch_px = 60.0;
-// How much of an outline's agreement with the tags is new from check to check; from what on an
-// outline is believed without them; how many frames are checked at first, then one in how many.
-constexpr double kNewAgreement = 0.3, kBelieved = 0.5;
-constexpr int kFirstOutlineChecks = 4, kCheckOutlineEvery = 5;
 constexpr int kThoroughEvery = 5;  // of the frames of a lost tip, at full resolution
 
 const TagCollar& Checked(const TagCollar& collar) {
@@ -49,14 +45,6 @@ void CheckImage(const Image& image, const CameraCalibration& c) {
   }
 }
 
-double MaxSd(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
-}
-
-double PositionSd(const TipPrediction& prediction) {
-  return MaxSd(prediction.covariance.bottomRightCorner<3, 3>());
-}
-
 }  // namespace
 
 struct TipTracker::Impl {
@@ -65,10 +53,7 @@ struct TipTracker::Impl {
   std::vector<CameraCalibration> cameras;
   TipFilter filter;
   std::optional<BackgroundDetector> background;
-  std::optional<TipOutline> outline;
-  std::optional<TipFilter> by_tags;  // the filter as the tags left it, before an outline came in
-  double outline_agreement = 0;      // with the tags, fading
-  int outline_checks = 0, frames_since_outline = 0;
+  std::optional<OutlineFollower> outline;
 
   std::optional<Pose> last_T_RE;         // of the last frame in which the collar was seen
   TimeNs last_ns = 0, last_seen_ns = 0;  // of last_T_RE, and of the last tags
@@ -83,7 +68,7 @@ struct TipTracker::Impl {
         filter(o.acceleration_noise_m_s2),
         noise_sum_px2(o.pose.prior_variance_px2 * o.pose.prior_dof),
         noise_dof(o.pose.prior_dof) {
-    if (o.tube) outline.emplace(c, *o.tube, o.outline);
+    if (o.tube) outline.emplace(c, o);
     if (!o.background_detection) return;
     TagDetectorOptions detector = o.detector;
     detector.family = collar.family;
@@ -96,9 +81,6 @@ struct TipTracker::Impl {
   double SearchRadius(const TipPrediction& expected) const;
   Sight Find(const Images& images, TimeNs t_ns, const std::optional<TipPrediction>& expected);
   Sight FindLost(const Images& images, TimeNs t_ns, const std::optional<Pose>& near_T_RE);
-  void JoinOutline(const Images& images, Sight& sight);
-  TipPrediction OutlinePrior(TimeNs t_ns, const TipPrediction& expected,
-                             const std::optional<TipPrediction>& model);
   std::optional<TipPrediction> FollowOutline(const Images& images, TimeNs t_ns,
                                              const TipPrediction& expected,
                                              const std::optional<TipPrediction>& model);
@@ -119,19 +101,12 @@ struct TipTracker::Impl {
 void TipTracker::Impl::VisitState(StateText& state) {
   state(finder);
   state(filter);
-  if (state.IsThere(by_tags.has_value())) {
-    if (!by_tags) by_tags = filter;
-    state(*by_tags);
-  } else {
-    by_tags.reset();
-  }
   state(last_T_RE);
   state(last_ns);
   state(last_seen_ns);
   state(turn_rate);
-  for (int* count : {&predicted_frames, &lost_frames, &outline_checks, &frames_since_outline})
-    state(*count);
-  for (double* value : {&noise_sum_px2, &noise_dof, &outline_agreement}) state(*value);
+  for (int* count : {&predicted_frames, &lost_frames}) state(*count);
+  for (double* value : {&noise_sum_px2, &noise_dof}) state(*value);
   if (state.IsThere(outline.has_value()) != outline.has_value()) {
     throw InputError("saved state: of a run with another --outline");
   }
@@ -143,6 +118,7 @@ void TipTracker::Impl::ForgetIfStale(TimeNs t_ns) {
   const TimeNs age = t_ns - filter.LastTime();
   if (age > 0 && age <= options.max_prediction_ns) return;
   filter.Reset();
+  if (outline) outline->Forget();
   last_T_RE.reset();
   turn_rate.setZero();
   finder.Forget();
@@ -204,63 +180,13 @@ Sight TipTracker::Impl::FindLost(const Images& images, TimeNs t_ns,
   return sight;
 }
 
-// d turns by dw x d: the standard deviation of that, per axis.
-double DirectionNoise(const Pose& T_RE, const Matrix6& covariance) {
-  const Eigen::Matrix3d turn = Skew(T_RE.R.col(0));
-  const Eigen::Matrix3d of_direction = turn * covariance.topLeftCorner<3, 3>() * turn.transpose();
-  return std::sqrt(0.5 * of_direction.trace());
-}
-
-// Where the tags leave the direction uncertain, the outline's long base line is worth its time. Now
-// and then it is looked at all the same: one that is not where the tags say (another diameter,
-// another end) is not believed later without them.
-void TipTracker::Impl::JoinOutline(const Images& images, Sight& sight) {
-  if (!outline || sight.source != TrackSource::kPixels || sight.ambiguous) return;
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const ViewFit& view = sight.pixels.views[i];
-    const Eigen::Vector3d& blur_px2 = view.learned.mean.blur_px2;
-    if (view.faces.empty()) continue;
-    outline->SetBlur(i, std::sqrt(std::max(0.0, 0.5 * (blur_px2[0] + blur_px2[2]))));
-  }
-  const bool wanted = DirectionNoise(sight.T_RE, sight.covariance) >= options.outline_from_rad;
-  const bool due =
-      ++frames_since_outline >= kCheckOutlineEvery || outline_checks < kFirstOutlineChecks;
-  if (!wanted && !due) return;
-  const auto joined = outline->Join(images, {sight.T_RE, sight.covariance});
-  frames_since_outline = 0;
-  ++outline_checks;
-  outline_agreement += kNewAgreement * ((joined && joined->end_seen ? 1 : 0) - outline_agreement);
-  if (!joined || !wanted) return;
-  sight.T_RE = joined->tip.T_RE;
-  sight.covariance = joined->tip.covariance;
-  sight.outline_used = true;
-}
-
-// What is known without the outline, about where the outline was last. Its errors (light, blur) are
-// much the same from frame to frame: a frame must not gain from what the outline said before.
-TipPrediction TipTracker::Impl::OutlinePrior(TimeNs t_ns, const TipPrediction& expected,
-                                             const std::optional<TipPrediction>& model) {
-  if (!by_tags || last_ns == last_seen_ns) by_tags = filter;
-  const Eigen::Matrix3d moved_m2 = by_tags->At(t_ns).covariance_m2;
-  if (model && model->covariance.bottomRightCorner<3, 3>().trace() < moved_m2.trace()) {
-    return *model;
-  }
-  TipPrediction prior = expected;
-  const double sd_rad = 0.01 + 0.5e-9 * static_cast<double>(t_ns - last_seen_ns);
-  prior.covariance.setZero();
-  prior.covariance.topLeftCorner<3, 3>() = sd_rad * sd_rad * Eigen::Matrix3d::Identity();
-  prior.covariance.bottomRightCorner<3, 3>() = moved_m2;
-  return prior;
-}
-
 // The tags are covered: the outline keeps the prediction from growing.
 std::optional<TipPrediction> TipTracker::Impl::FollowOutline(
     const Images& images, TimeNs t_ns, const TipPrediction& expected,
     const std::optional<TipPrediction>& model) {
-  if (!outline || images.empty() || !last_T_RE || outline_agreement < kBelieved) return {};
-  if (t_ns - last_seen_ns > options.max_outline_ns) return {};
-  auto found = outline->Find(images, OutlinePrior(t_ns, expected, model));
-  if (!found || PositionSd(*found) > options.max_predicted_sd_m) return {};
+  if (!outline || images.empty() || !last_T_RE) return {};
+  const auto found = outline->Follow(images, t_ns, expected, model);
+  if (!found) return {};
   filter.Replace(t_ns, found->T_RE.p, found->covariance.bottomRightCorner<3, 3>());
   last_T_RE = found->T_RE;
   last_ns = t_ns;
@@ -290,6 +216,7 @@ void TipTracker::Impl::Remember(const Sight& sight, TimeNs t_ns) {
   last_ns = last_seen_ns = t_ns;
   predicted_frames = lost_frames = 0;
   finder.Learn(sight);
+  if (outline) outline->LeaveFrom(filter, t_ns);
 }
 
 void TipTracker::Impl::Report(const Sight& sight, TipTrack& track) const {
@@ -299,7 +226,7 @@ void TipTracker::Impl::Report(const Sight& sight, TipTrack& track) const {
   track.tip.p_RE = sight.T_RE.p;
   track.tip.covariance_m2 = sight.covariance.bottomRightCorner<3, 3>();
   track.tip.d_RE = sight.T_RE.R.col(0);
-  track.direction_noise_rad = DirectionNoise(sight.T_RE, sight.covariance);
+  track.direction_noise_rad = DirectionNoise({sight.T_RE, sight.covariance});
 }
 
 TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
@@ -376,7 +303,7 @@ TipTrack TipTracker::Track(const std::vector<const Image*>& images, TimeNs t_ns,
   impl_->ForgetIfStale(t_ns);
   const std::optional<TipPrediction> expected = impl_->Expect(t_ns, model);
   Sight sight = impl_->Find(images, t_ns, expected);
-  impl_->JoinOutline(images, sight);
+  if (impl_->outline) impl_->outline->Join(images, sight);
   return impl_->Finish(sight, t_ns, expected, model, images);
 }
 

@@ -8,7 +8,9 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "core/rotation.h"
 #include "tests/vision/optics_reference.h"
+#include "vision/tag_blur.h"
 
 namespace flextip {
 namespace {
@@ -98,6 +100,64 @@ TEST(BlurredPattern, KnowsTheCorrelation) {
     EXPECT_LT(worst, std::abs(rho) > 0.45 ? 0.006 : 0.0015) << rho;
     EXPECT_GT(without, 5 * worst) << rho;  // so much does it do
   }
+}
+
+// In a picture of a tag seen aslant and near, the mean over a Gaussian around a pixel, by the
+// midpoint rule on a fine grid of rays.
+double MeanInPicture(const TagCells& tag, const Eigen::Matrix3d& to_tag, const Eigen::Vector2d& m,
+                     const Eigen::Matrix2d& spread_m) {
+  constexpr int kSteps = 300;
+  constexpr double kTail = 4.5;
+  const Eigen::Matrix2d root = spread_m.llt().matrixL();
+  double sum = 0, total = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    for (int j = 0; j < kSteps; ++j) {
+      const Eigen::Vector2d x =
+          kTail * (Eigen::Vector2d(2 * i + 1, 2 * j + 1) / kSteps - Eigen::Vector2d::Ones());
+      const Eigen::Vector2d uv = (to_tag * (m + root * x).homogeneous()).hnormalized();
+      const double weight = std::exp(-0.5 * x.squaredNorm());
+      total += weight;
+      const auto cell = [](double at) { return static_cast<int>(std::floor(at)); };
+      if (IsWhite(tag, cell(uv[0]), cell(uv[1]))) sum += weight;
+    }
+  }
+  return sum / total;
+}
+
+TEST(BlurredPattern, KnowsThePerspective) {
+  const TagCells tag = ReadTagCells("tag36h11", 5);
+  const BlurredPattern pattern(tag);
+  const double half = 0.5 * tag.cells, cell_m = 0.0006, depth_m = 0.025;
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> place(1, tag.cells - 1), sigma(0.1, 0.14), one(-1, 1);
+  double squared = 0, without = 0;
+  constexpr int kDraws = 100;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const double turn = 0.9 * one(random), across = draw % 2;  // about one axis of the tag
+    Eigen::Matrix3d from_tag;
+    const Eigen::Matrix3d R = ExpRotation(turn * Eigen::Vector3d(across, 1 - across, 0));
+    const Eigen::Vector3d middle = depth_m * Eigen::Vector3d(0.1, -0.05, 1);
+    from_tag << cell_m * R.col(0), cell_m * R.col(1),
+        middle - half * cell_m * (R.col(0) + R.col(1));
+    const Eigen::Matrix3d to_tag = from_tag.inverse();
+    const double sigma_m = sigma(random) * cell_m / depth_m;
+    const Eigen::Matrix2d spread_m = sigma_m * sigma_m * Eigen::Matrix2d::Identity();
+    Eigen::Vector2d uv(place(random), place(random));
+    const int along = draw % 2;  // a line and away from crossings
+    uv[along] = std::floor(uv[along]) + 0.5;
+    uv[1 - along] = std::round(uv[1 - along]) + 0.2 * one(random);
+    const Eigen::Vector3d ray = from_tag * uv.homogeneous();
+    const double exact = MeanInPicture(tag, to_tag, ray.hnormalized(), spread_m);
+    const PatternBlur blur = BlurOnTag(to_tag, spread_m, half, depth_m);
+    const Eigen::Vector2f at = uv.cast<float>();
+    const auto nearness = static_cast<float>(depth_m / ray.z());
+    squared += std::pow(pattern.At(at[0], at[1], blur, nearness).c - exact, 2) / kDraws;
+    PatternBlur flat = blur;
+    flat.rate_u = flat.rate_v = 0;
+    without += std::pow(pattern.At(at[0], at[1], flat).c - exact, 2) / kDraws;
+  }
+  EXPECT_LT(std::sqrt(squared), 0.002);
+  EXPECT_GT(std::sqrt(without), 0.002);  // so much does it do
 }
 
 // Times sigma (squared), so that all are of order 1; the tails leave 0.001 (0.003).

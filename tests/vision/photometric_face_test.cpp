@@ -5,7 +5,7 @@
 
 #include "core/derivative_check.h"
 #include "core/rotation.h"
-#include "vision/photometric_view.h"
+#include "vision/collar_faces.h"
 
 namespace flextip {
 namespace {

@@ -88,6 +88,22 @@ TEST(PhotometricFit, CovarianceIsThatOfTheScatter) {
   }
 }
 
+// A blur of many pixels spreads the light's slope and is not the same all over a tag: 12 of 6
+// where the model does not know of both.
+TEST(PhotometricFit, AWideBlurLeavesNoBias) {
+  constexpr int kFrames = 40;
+  const CameraCalibration camera = ScopeCamera();
+  for (const double lean : {-0.5, 0.1, 0.3}) {
+    const Pose T_RE = ScopePose(lean, 0.25);
+    const LinearImage light = LightThroughLens(camera, ScopeCollar(), T_RE, 1.6);
+    PhotometricFit fit({camera}, ScopeCollar(), OnlyNoise());
+    const Scatter s = Scattered(light, 2.2, T_RE, fit, KnownGamma(), kFrames);
+    EXPECT_EQ(s.ok, kFrames);
+    EXPECT_NEAR(s.nees, 6, 2) << lean;
+    EXPECT_LT(s.bias_nees, 1.5) << lean;
+  }
+}
+
 // Light and dark patches some pixels wide over the picture, as of glare and smoke: residuals that
 // go together say less than their number.
 Image Patchy(Image image, unsigned seed) {
