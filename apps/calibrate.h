@@ -1,0 +1,13 @@
+// The sub-commands of flextip calibrate, a file each.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands.h"
+
+namespace flextip {
+
+// As in commands.h, of `calibrate`.
+void AddCalibrateCamera(CLI::App& calibrate, AppContext& context);
+
+}  // namespace flextip

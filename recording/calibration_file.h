@@ -1,0 +1,51 @@
+// calibration.yaml: what a calibration found, with its covariance and what it could not find.
+#pragma once
+
+#include <Eigen/Dense>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/pose.h"
+
+namespace flextip {
+
+/// What a calibration found. Names are places of a recording (docs/formats.md): `cam0.T_RC`,
+/// `strain0.gage_matrix`, `instrument.bending_stiffness_Nm2`.
+struct Calibration {
+  std::string kind;                                    ///< "hand-eye", "tip", "em", ...
+  std::map<std::string, Pose> poses;                   ///< by name
+  std::map<std::string, std::vector<double>> numbers;  ///< by name, one or more
+
+  /// Of all that was found, in the order of CoordinateNames(): a pose counts as (dw, dp), the true
+  /// one being (exp([dw]x) R, p + dp). Empty where it is not known.
+  Eigen::MatrixXd covariance;
+
+  /// What the data could not tell.
+  struct Unobservable {
+    std::string parameter, reason;
+  };
+  std::vector<Unobservable> unobservable;
+
+  /// `NAME.w[0..2]`, `NAME.p[0..2]` for each pose, then `NAME` or `NAME[i]` for the numbers; each
+  /// kind in alphabetical order of the names.
+  std::vector<std::string> CoordinateNames() const;
+  /// Rows and columns of `covariance` that belong to one entry: the first one's place, and how
+  /// many. Throws InputError where there is no such entry.
+  struct Range {
+    int first = 0, count = 0;
+  };
+  Range RangeOf(const std::string& name) const;
+  /// That entry's block of `covariance`; empty where that is.
+  Eigen::MatrixXd CovarianceOf(const std::string& name) const;
+};
+
+/// Throws InputError with file and line for unknown keys, numbers that are not finite, a covariance
+/// of another size, order or sign.
+Calibration ReadCalibration(const std::filesystem::path& file);
+
+/// Every number exact. Throws WorkError where the disk refuses, or where there are NaNs.
+void WriteCalibration(const std::filesystem::path& file, const Calibration& calibration);
+
+}  // namespace flextip
