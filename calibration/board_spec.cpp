@@ -1,7 +1,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "calibration/camera_calibration.h"
+#include "calibration/board.h"
 #include "core/error.h"
 
 namespace flextip {

@@ -5,26 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "calibration/board.h"
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/pose.h"
 
 namespace flextip {
-
-enum class BoardKind { kChessboard, kCharuco, kAprilGrid };
-
-/// A calibration board as given on the command line.
-struct BoardSpec {
-  BoardKind kind = BoardKind::kChessboard;
-  int columns = 0, rows = 0;  ///< chessboard: inner corners; charuco: squares; aprilgrid: tags
-  double square_m = 0.0;      ///< side of a square, for aprilgrid of a tag
-  double marker_m = 0.0;      ///< charuco: side of a marker; aprilgrid: gap between tags
-  std::string dictionary;     ///< charuco
-};
-
-/// Parses `chessboard:COLSxROWS:SQUARE_M`, `charuco:COLSxROWS:SQUARE_M:MARKER_M:DICT` or
-/// `aprilgrid:COLSxROWS:TAG_M:GAP_M`; throws InputError saying which part is wrong.
-BoardSpec ParseBoardSpec(const std::string& spec);
 
 /// One picture with the name it goes by in messages.
 struct CalibrationImage {

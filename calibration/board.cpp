@@ -1,0 +1,26 @@
+#include "calibration/board.h"
+
+#include "calibration/chessboard.h"
+#include "core/error.h"
+#include "vision/tag_detector.h"
+
+namespace flextip {
+
+BoardSighting DetectBoard(const Image& image, const BoardSpec& board) {
+  if (image.Empty()) throw InputError("the image is empty");
+  if (board.kind != BoardKind::kChessboard) {
+    throw InputError("charuco and aprilgrid boards are not supported yet, only chessboard");
+  }
+  BoardSighting seen;
+  seen.px = FindChessboard(ToGrey(image), board.columns, board.rows);
+  if (!seen.Found()) {
+    seen.reason =
+        fmt::format("no chessboard with {}x{} inner corners found", board.columns, board.rows);
+    return seen;
+  }
+  seen.x_B = ChessboardPoints(board.columns, board.rows, board.square_m);
+  for (std::size_t i = 0; i < seen.px.size(); ++i) seen.ids.push_back(static_cast<int>(i));
+  return seen;
+}
+
+}  // namespace flextip
