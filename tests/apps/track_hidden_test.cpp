@@ -199,12 +199,15 @@ TEST_F(TrackHidden, AKilledRunWithAWristIsResumedToTheSameTables) {
   recording.wrist0->samples.clear();
   recording.cam0 = Save("cam0", Camera(), Render(Camera(), true));
   recording.cam0->filenames.clear();
+  recording.cam1 = Save("cam1", Camera(0.004), Render(Camera(0.004), true));
+  recording.cam1->filenames.clear();
   for (int i = -1; i <= kLong; ++i) {
     const int at = std::max(0, i) % (2 * kFrames - 2), frame = std::min(at, 2 * kFrames - 2 - at);
     const TimeNs t_ns = (i + 1) * kPeriod_ns;
     recording.wrist0->samples.push_back({t_ns, once.samples[frame + 1].value});
     if (i < 0 || i == kLong) continue;
     recording.cam0->filenames.push_back({t_ns, fmt::format("{}.png", frame)});
+    if (i % 7 != 3) recording.cam1->filenames.push_back({t_ns, fmt::format("{}.png", frame)});
   }
   WriteRecording(folder_ / "rec", recording);
   Track("whole");

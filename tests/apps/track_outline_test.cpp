@@ -69,6 +69,7 @@ class TrackOutline : public testing::Test {
     }
     WriteRecording(folder_ / "rec", recording);
     folder_.Write("truth.csv", truth);
+    recording_ = recording;
   }
   ProgramResult Track(const std::string& out, const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments{"track",   (folder_ / "rec").string(),
@@ -81,6 +82,7 @@ class TrackOutline : public testing::Test {
     return nlohmann::json::parse(ReadText(folder_ / (out + "/summary.json")));
   }
   TestFolder folder_;
+  Recording recording_;
 };
 
 TEST_F(TrackOutline, CarriesTheTipWhileItsTagsAreCovered) {
@@ -105,6 +107,32 @@ TEST_F(TrackOutline, CarriesTheTipWhileItsTagsAreCovered) {
   const auto wrong = Track("c", {"--outline", "round", "--diameter", "0.0035"});
   ASSERT_EQ(wrong.exit_code, 0) << wrong.err;
   EXPECT_EQ(ReadText(folder_ / "c/vision0/data.csv"), ReadText(folder_ / "a/vision0/data.csv"));
+}
+
+// There and back, again and again, so that it is killed while the outline is followed or soon
+// after.
+TEST_F(TrackOutline, AKilledRunResumesAsIfItHadNotBeen) {
+  constexpr int kLong = 400;
+  recording_.cam0->filenames.clear();
+  for (int i = 0; i < kLong; ++i) {
+    const int at = i % (2 * kFrames - 2), frame = std::min(at, 2 * kFrames - 2 - at);
+    recording_.cam0->filenames.push_back({(i + 1) * kPeriod_ns, fmt::format("{}.png", frame)});
+  }
+  WriteRecording(folder_ / "rec", recording_);
+  const std::vector<std::string> how{"--outline", "round"};
+  ASSERT_EQ(Track("whole", how).exit_code, 0);
+  EXPECT_THAT(ReadText(folder_ / "whole/frames.csv"), testing::HasSubstr("predicted,outline"));
+  const auto rec = (folder_ / "rec").string(), out = (folder_ / "out").string();
+  const auto truth = (folder_ / "truth.csv").string();
+  KillAtFileSize({"track", rec, "-o", out, "--truth", truth, "--outline", "round"},
+                 fs::file_size(folder_ / "whole/vision0/data.csv") * 93 / 100);
+  ASSERT_FALSE(fs::exists(out));
+  const auto resumed = Track("out", {"--outline", "round", "--resume"});
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(Summary("out")["warnings"].dump(), testing::HasSubstr("resumed"));
+  for (const char* file : {"vision0/data.csv", "tags0/data.csv", "frames.csv"}) {
+    EXPECT_EQ(ReadText(folder_ / "out" / file), ReadText(folder_ / "whole" / file)) << file;
+  }
 }
 
 TEST_F(TrackOutline, AsksForWhatItMustKnow) {
