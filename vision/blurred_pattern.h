@@ -41,7 +41,7 @@ class BlurredPattern {
 
   int Cells() const { return cells_; }
 
-  /// At (u, v) in cells from the top left corner of the pattern.
+  /// At (u, v) in cells from the top left corner of the pattern; `nearness` as in PatternBlur.
   PatternValue At(float u, float v, const PatternBlur& blur, float nearness = 1.0f) const {
     const float iu = blur.inverse_u * nearness, iv = blur.inverse_v * nearness;
     const Near near_u(u, blur.sigma_u, iu, blur.rate_u, blur.middle);
