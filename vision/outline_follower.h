@@ -7,7 +7,7 @@
 #include "vision/tip_filter.h"
 #include "vision/tip_finder.h"
 #include "vision/tip_outline.h"
-#include "vision/tip_tracker.h"
+#include "vision/tracker_options.h"
 
 namespace flextip {
 

@@ -8,7 +8,7 @@
 #include "core/state_text.h"
 #include "vision/background_detector.h"
 #include "vision/collar_search.h"
-#include "vision/tip_tracker.h"
+#include "vision/tracker_options.h"
 
 namespace flextip {
 
