@@ -85,8 +85,9 @@ class FaceSums {
   void CountError(float residual, float half_contrast) {
     brighter_ += residual > half_contrast;
     darker_ += residual < -half_contrast;
-    const int bin = static_cast<int>(std::abs(residual) * kBinsPerGrey);
-    ++errors_[std::min(bin, kBins - 1)];
+    // A fit that goes astray may predict anything: the last bin takes it.
+    const float last = kBins - 1;
+    ++errors_[static_cast<int>(std::min(last, std::abs(residual) * kBinsPerGrey))];
     ++pixels_;
   }
   /// After the last pixel. `spread`: what belongs to the rows of pose and print offset besides.

@@ -157,5 +157,18 @@ TEST(PhotometricFace, RowsAreNearlySoAslant) {
   }
 }
 
+TEST(FaceSums, CountsWhateverAStrayFitPredicts) {
+  FaceSums sums;
+  for (const float residual : {0.0f, -3.0f, 31.9f, 32.5f, -5e8f, 1e30f, HUGE_VALF}) {
+    sums.CountError(residual, 40);
+  }
+  FaceSums::Histogram errors{};
+  sums.AddErrorsTo(errors);
+  EXPECT_EQ(errors[0], 1);
+  EXPECT_EQ(errors[3 * FaceSums::kBinsPerGrey], 1);
+  EXPECT_EQ(errors[FaceSums::kBins - 1], 5);
+  EXPECT_EQ(sums.Pixels(), 7);
+}
+
 }  // namespace
 }  // namespace flextip
