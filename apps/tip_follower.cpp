@@ -1,6 +1,9 @@
 #include "apps/tip_follower.h"
 
+#include <algorithm>
+
 #include "core/error.h"
+#include "recording/resample.h"
 
 namespace flextip {
 namespace {
@@ -11,18 +14,56 @@ std::vector<CameraCalibration> Cameras(const Recording& recording) {
   return cameras;
 }
 
+// What of the shaft sticks out of the collar, which is rigid as far as its tags reach.
+FreeEnd BeyondCollar(const Recording& recording) {
+  double reach_m = -HUGE_VAL;  // along E's x axis
+  for (const CollarTag& tag : recording.tags0->tags) {
+    for (const Eigen::Vector3d& corner_E : CornersInE(tag)) {
+      reach_m = std::max(reach_m, corner_E.x());
+    }
+  }
+  const Instrument& shaft = recording.instrument;
+  return {std::max(0.0, -reach_m), shaft.bending_stiffness_Nm2,
+          shaft.mass_per_length_kg_m * recording.gravity_m_s2};
+}
+
 }  // namespace
 
 TipFollower::TipFollower(const Recording& recording, const TrackerOptions& options, bool with_model)
-    : tracker_(Cameras(recording), *recording.tags0, options) {
+    : recording_(&recording),
+      beyond_collar_(BeyondCollar(recording)),
+      tracker_(Cameras(recording), *recording.tags0, options) {
   if (with_model && recording.wrist0) model_.emplace(recording);
 }
 
+TipFollower::Bend TipFollower::BendAt(TimeNs t_ns, const Pose& T_RE) const {
+  if (!recording_->load0 || !(beyond_collar_.bending_stiffness_Nm2 > 0)) return {};
+  const auto f_tip_N = LoadAt(*recording_->load0, t_ns);
+  if (!f_tip_N) return {};
+  const double sd_m = FreeEndCompliance(beyond_collar_) * recording_->load0->force_noise_N;
+  const Eigen::Vector3d d = T_RE.R.col(0);
+  return {T_RE.Inverse() * BendFreeEnd(beyond_collar_, *f_tip_N, T_RE),
+          sd_m * sd_m * (Eigen::Matrix3d::Identity() - d * d.transpose())};
+}
+
 TipTrack TipFollower::Follow(const FrameSet& frames) {
-  const auto expected = model_ ? model_->Predict(frames.t_ns) : std::nullopt;
+  auto expected = model_ ? model_->Predict(frames.t_ns) : std::nullopt;
+  if (expected) {
+    expected->T_RE = expected->T_RE * BendAt(frames.t_ns, expected->T_RE).T_EE.Inverse();
+  }
   TipTrack track = tracker_.Track(frames.Pointers(), frames.t_ns, expected);
-  if (model_ && track.tip.status == TipStatus::kOk) {
-    model_->Seen(frames.t_ns, track.T_RE, track.covariance);
+  if (track.tip.status == TipStatus::kOk) {
+    const Bend bend = BendAt(frames.t_ns, track.T_RE);
+    track.T_RE = track.T_RE * bend.T_EE;
+    track.tip.p_RE = track.T_RE.p;
+    track.tip.d_RE = track.T_RE.R.col(0);
+    track.tip.covariance_m2 += bend.covariance_m2;
+    track.covariance.bottomRightCorner<3, 3>() += bend.covariance_m2;
+    if (model_) model_->Seen(frames.t_ns, track.T_RE, track.covariance);
+  } else if (track.tip.status == TipStatus::kPredicted && expected) {
+    const Bend bend = BendAt(frames.t_ns, expected->T_RE);
+    track.tip.p_RE += expected->T_RE.R * bend.T_EE.p;
+    track.tip.covariance_m2 += bend.covariance_m2;
   }
   return track;
 }

@@ -1,4 +1,4 @@
-// The tracker with what wrist and shaft model expect.
+// The tracker with what wrist and shaft model expect, and with the tip beyond the collar.
 #pragma once
 
 #include <optional>
@@ -6,6 +6,7 @@
 
 #include "apps/frame_sets.h"
 #include "apps/tip_model.h"
+#include "kinematics/tip_bending.h"
 #include "recording/recording.h"
 #include "vision/tip_tracker.h"
 
@@ -14,7 +15,7 @@ namespace flextip {
 class TipFollower {
  public:
   /// `recording` must outlive this. The model is used where `with_model` and the wrist was
-  /// recorded.
+  /// recorded. Where the load is known (load0), the shaft bends beyond the collar.
   TipFollower(const Recording& recording, const TrackerOptions& options, bool with_model);
 
   TipTrack Follow(const FrameSet& frames);
@@ -27,7 +28,15 @@ class TipFollower {
 
  private:
   void VisitState(StateText& state);
+  /// From the rigid collar's tip to the true one; the identity where the load is not known.
+  struct Bend {
+    Pose T_EE;
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in R
+  };
+  Bend BendAt(TimeNs t_ns, const Pose& T_RE) const;
 
+  const Recording* recording_;
+  FreeEnd beyond_collar_;
   TipTracker tracker_;
   std::optional<TipModel> model_;
 };

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/rotation.h"
+#include "recording/recording_reader.h"
 #include "recording/recording_writer.h"
 #include "recording/sensor_streams.h"
 #include "simulation/laparoscope.h"
@@ -137,6 +138,38 @@ TEST_F(TrackCommand, PlainPicturesGiveTheRecordingsTips) {
   const auto first = RunProgram(Arguments("ns", "d", {"--rate", "10", "--frames", "2"}));
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_THAT(Times("d"), testing::ElementsAre(0, 100'000'000));
+}
+
+// The collar ends 27.5 mm before the tip; what sticks out of it bends under a known load.
+TEST_F(TrackCommand, AKnownLoadBendsTheShaftBeyondTheCollar) {
+  Recording recording = ReadRecording(folder_ / "rec").recording;
+  recording.instrument.bending_stiffness_Nm2 = 0.02;
+  const Eigen::Vector3d f_N(0.3, -0.5, 0.4);
+  LoadStream& load = recording.load0.emplace();
+  load.rate_hz = 25;
+  load.force_noise_N = 0.05;
+  for (int i = 0; i < kPictures; ++i) load.f_tip_N.push_back({i * 40'000'000, f_N});
+  fs::copy(folder_ / "rec", folder_ / "loaded", fs::copy_options::recursive);
+  WriteRecording(folder_ / "loaded", recording);
+  std::vector<Series<TipObservation>> tips;
+  for (const char* name : {"rec", "loaded"}) {
+    const std::string out = std::string("out_") + name;
+    const auto run =
+        RunProgram({"track", (folder_ / name).string(), "-o", (folder_ / out).string()});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    fs::copy(folder_ / out / "vision0", folder_ / name / "vision0", fs::copy_options::recursive);
+    tips.push_back(ReadRecording(folder_ / name).recording.vision0->tips);
+  }
+  for (int i = 0; i < kPictures; ++i) {
+    const TipObservation &without = tips[0][i].value, &with = tips[1][i].value;
+    const Eigen::Vector3d d = *without.d_RE, across_N = f_N - f_N.dot(d) * d;
+    const double l = 0.0275, EI = 0.02;
+    EXPECT_LT((with.p_RE - without.p_RE - l * l * l / (3 * EI) * across_N).norm(), 2e-6);
+    EXPECT_LT((*with.d_RE - d - l * l / (2 * EI) * across_N).norm(), 2e-4);
+    const double sd_m = l * l * l / (3 * EI) * 0.05;
+    EXPECT_NEAR((with.covariance_m2 - without.covariance_m2).trace(), 2 * sd_m * sd_m,
+                1e-3 * sd_m * sd_m);
+  }
 }
 
 TEST_F(TrackCommand, SixteenBitsAndGreyGiveTheSameTips) {

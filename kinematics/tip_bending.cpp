@@ -1,0 +1,20 @@
+#include "kinematics/tip_bending.h"
+
+#include <cassert>
+
+#include "core/rotation.h"
+
+namespace flextip {
+
+Pose BendFreeEnd(const FreeEnd& end, const Eigen::Vector3d& f_tip_N, const Pose& T_RE) {
+  assert(end.length_m >= 0 && end.bending_stiffness_Nm2 > 0);
+  const double l = end.length_m, EI = end.bending_stiffness_Nm2;
+  const Eigen::Vector3d d = T_RE.R.col(0);
+  const auto across = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d { return v - v.dot(d) * d; };
+  const Eigen::Vector3d f = across(f_tip_N), q = across(end.weight_N_m);
+  const Eigen::Vector3d deflection = l * l * l / EI * (f / 3 + l * q / 8);
+  const Eigen::Vector3d slope = l * l / EI * (f / 2 + l * q / 6);
+  return {ExpRotation(d.cross(slope)) * T_RE.R, T_RE.p + deflection};
+}
+
+}  // namespace flextip

@@ -1,0 +1,27 @@
+// The shaft's free end beyond a rigid collar of tags: where its tip truly is.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "core/pose.h"
+
+namespace flextip {
+
+/// A free end, clamped in the collar.
+struct FreeEnd {
+  double length_m = 0.0;
+  double bending_stiffness_Nm2 = 1.0;
+  Eigen::Vector3d weight_N_m = Eigen::Vector3d::Zero();  ///< per length, in R
+};
+
+/// The tip's pose where the collar, taken for rigid up to the tip, has it at `T_RE`: the cantilever
+/// to first order in its slope (Euler and Bernoulli; 0.4 % of the deflection at 0.1 rad). `f_tip_N`
+/// in R. Forces along the shaft do nothing.
+Pose BendFreeEnd(const FreeEnd& end, const Eigen::Vector3d& f_tip_N, const Pose& T_RE);
+
+/// The tip moves by so much for each newton across the shaft (m/N).
+inline double FreeEndCompliance(const FreeEnd& end) {
+  return end.length_m * end.length_m * end.length_m / (3 * end.bending_stiffness_Nm2);
+}
+
+}  // namespace flextip
