@@ -132,8 +132,6 @@ TEST(CameraCalibration, HeldOutViewsChooseTheLens) {
   const auto lens_of = [](Synthetic s) {
     s.views = 8;
     const auto r = Calibrate(Seen(s, 11), {});
-    for (auto& c : r.candidates)
-      fmt::print("{} {} {}\n", c.model.Name(), c.heldout ? c.heldout->rms_px : 0.0, c.reason);
     return std::any_of(r.candidates.begin(), r.candidates.end(), [](auto& c) { return c.chosen; })
                ? std::find_if(r.candidates.begin(), r.candidates.end(),
                               [](auto& c) { return c.chosen; })
