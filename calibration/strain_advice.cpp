@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/next_load.h"
 #include "calibration/strain_calibration.h"
 
 namespace flextip {
@@ -18,52 +19,11 @@ double Uncertainty(const Eigen::MatrixXd& information, const Eigen::VectorXd& un
   return std::sqrt(C.diagonal().head(kGagePort).sum() / kGagePort);
 }
 
-struct Candidate {
-  LoadHold hold;
-  std::string words;
-};
-
-/// The wrist where it was with the port nearest to, midway, and furthest along the shaft, and each
-/// pushed on by a tenth; the largest force there was, each way across the shaft.
-std::vector<Candidate> Candidates(const std::vector<StrainHoldResult>& holds) {
-  std::vector<const StrainHoldResult*> by_depth;
-  double force_N = 0;
-  for (const auto& h : holds) {
-    if (!h.used) continue;
-    by_depth.push_back(&h);
-    force_N = std::max(force_N, h.hold.f_tip_N.norm());
-  }
-  std::vector<Candidate> all;
-  if (by_depth.empty()) return all;
-  std::sort(by_depth.begin(), by_depth.end(),
-            [](const auto* a, const auto* b) { return a->s_port_m < b->s_port_m; });
-  for (const auto* at : {by_depth.front(), by_depth[by_depth.size() / 2], by_depth.back()}) {
-    for (const double part : {-0.2, -0.1, 0.0, 0.1}) {
-      Candidate c{at->hold, ""};
-      const double push_m = part * at->s_port_m;
-      c.hold.p_RW += push_m * at->hold.R_RW->col(0);
-      const std::string where =
-          fmt::format("with the port {:.3f} m from the wrist", at->s_port_m - push_m);
-      c.hold.f_tip_N.setZero();
-      c.words = "no load at all, " + where;
-      all.push_back(c);
-      for (const int axis : {1, 2}) {
-        for (const double sign : {1.0, -1.0}) {
-          c.hold.f_tip_N = sign * force_N * at->hold.R_RW->col(axis);
-          c.words = fmt::format("{:.3g} N along the wrist's {}{} axis, {}", force_N,
-                                sign < 0 ? "-" : "", axis == 1 ? "y" : "z", where);
-          all.push_back(c);
-        }
-      }
-    }
-  }
-  return all;
-}
-
 }  // namespace
 
 std::string NextStrainLoad(const std::vector<StrainHoldResult>& holds, const GageFit& fit,
-                           const Eigen::Vector4d& reading_sd, MomentModel& model) {
+                           const Eigen::Vector4d& reading_sd, const Eigen::Vector3d& p_RP,
+                           MomentModel& model) {
   if (fit.covariance.size() == 0) return "";
   double moment = 1e-12;
   for (const auto& h : holds) moment = std::max(moment, h.m_stated_Nm.cwiseAbs().maxCoeff());
@@ -83,7 +43,11 @@ std::string NextStrainLoad(const std::vector<StrainHoldResult>& holds, const Gag
   const double now = Uncertainty(information, unit);
   double best = now;
   std::string words;
-  for (const Candidate& candidate : Candidates(holds)) {
+  std::vector<PlacedHold> placed;
+  for (const auto& h : holds) {
+    if (h.used) placed.push_back({h.hold, h.s_port_m});
+  }
+  for (const NextLoad& candidate : NextLoads(placed, p_RP)) {
     const auto stated = model.At(candidate.hold);
     if (!stated) continue;
     const auto J = GageRows(fit, stated->m_Nm, stated->by_port);

@@ -50,6 +50,7 @@ class StrainWork {
  public:
   StrainWork(const Recording& recording, const StrainCalibrationOptions& options)
       : options_(options),
+        p_RP_(recording.p_RP),
         model_(recording.instrument, recording.p_RP, recording.gravity_m_s2,
                recording.strain0->station_from_wrist_m) {
     const auto holds = LoadHolds(recording, LoadClock::kStrain, options.most_holds);
@@ -74,6 +75,7 @@ class StrainWork {
   double HeldoutRms() const;
 
   StrainCalibrationOptions options_;
+  Eigen::Vector3d p_RP_;
   MomentModel model_;
   double stated_noise_ = 0.0;
   std::optional<Eigen::Vector4d> scatter_;
@@ -328,10 +330,9 @@ StrainCalibration StrainWork::Run() {
   }
   if (count > 0) result_.rms_Nm = std::sqrt(squares / count);
   if (result_.gages_known) result_.heldout_rms_Nm = HeldoutRms();
-  std::vector<double> sds;
   Eigen::Vector4d typical = Eigen::Vector4d::Zero();
   for (const GageSample& s : samples_) typical += s.reading_sd / static_cast<double>(Usable());
-  result_.advice = NextStrainLoad(result_.holds, fit_, typical, model_);
+  result_.advice = NextStrainLoad(result_.holds, fit_, typical, p_RP_, model_);
   return std::move(result_);
 }
 

@@ -52,6 +52,7 @@ StrainCalibration CalibrateStrain(const Recording& recording, const std::string&
 /// Where to hang how much next, in words; `model` and `fit` as after the calibration. Empty where
 /// no load of the recording's size would help.
 std::string NextStrainLoad(const std::vector<StrainHoldResult>& holds, const GageFit& fit,
-                           const Eigen::Vector4d& reading_sd, MomentModel& model);
+                           const Eigen::Vector4d& reading_sd, const Eigen::Vector3d& p_RP,
+                           MomentModel& model);
 
 }  // namespace flextip
