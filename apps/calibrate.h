@@ -9,5 +9,7 @@ namespace flextip {
 
 // As in commands.h, of `calibrate`.
 void AddCalibrateCamera(CLI::App& calibrate, AppContext& context);
+void AddCalibrateStiffness(CLI::App& calibrate, AppContext& context);
+void AddCalibrateStrain(CLI::App& calibrate, AppContext& context);
 
 }  // namespace flextip

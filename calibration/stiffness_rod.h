@@ -1,0 +1,57 @@
+// The rod of kinematics/rod.h with a bending stiffness that changes along the shaft, for the
+// calibration of that change: E I(s) = EI (1 + taper (s / L - 1/2)), s from the wrist.
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+#include <vector>
+
+#include "kinematics/rod.h"
+
+namespace flextip {
+
+struct TaperedRodProblem {
+  RodProblem rod;      ///< its bending stiffness is that in the middle of the shaft
+  double taper = 0.0;  ///< above -2 and below 2, so that the stiffness is positive everywhere
+  Eigen::Vector3d y_wrist = Eigen::Vector3d::UnitY();  ///< the instrument's y axis, not along it
+};
+
+/// Columns of the derivatives; the stiffness by its logarithm.
+namespace tapered_input {
+inline constexpr int kWrist = 0, kPort = 3, kForce = 6, kStiffness = 9, kTaper = 10, kCount = 11;
+}  // namespace tapered_input
+using TaperedDerivative = Eigen::Matrix<double, 3, tapered_input::kCount>;
+
+/// All in R: place, tangent, the y axis carried along without twist, the moment of the part beyond
+/// on the part before.
+struct TaperedRodSection {
+  Eigen::Vector3d p, t, y, m;
+  TaperedDerivative dp, dt, dy, dm;
+};
+
+struct TaperedRodState {
+  bool usable = false;
+  double s_port_m = 0.0;
+  TaperedRodSection wrist, tip;
+  std::vector<TaperedRodSection> stations;  ///< as asked for, in that order
+};
+
+/// By shooting, integrated with Runge and Kutta's fourth order (two dozen steps: 1e-8 of the
+/// length), derivatives by automatic differentiation. Starts from the last equilibrium.
+class TaperedRodSolver {
+ public:
+  /// `stations_m` from the wrist, within the shaft.
+  TaperedRodState Solve(const TaperedRodProblem& problem, std::span<const double> stations_m = {});
+
+  struct Unknowns {  // in units of L and EI / L^2
+    Eigen::Vector3d t_wrist = Eigen::Vector3d::UnitX();
+    double s_port = 0.5;
+    Eigen::Vector3d r = Eigen::Vector3d::Zero();  // of the port on the shaft
+  };
+
+ private:
+  bool warm_ = false;
+  Unknowns x_;
+};
+
+}  // namespace flextip
