@@ -18,6 +18,7 @@ constexpr double kBeyondNoise = 4.0;
 constexpr double kKnown_rad = 0.05, kKnownOfDistance = 0.05;
 constexpr double kLeastPart = 0.02;             // of a coordinate in what is not known, squared
 constexpr double kVelocitiesBeyondNoise = 3.0;  // mean square over that of their noise
+constexpr double kMostBend = 0.3;               // of the way between two samples, off its middle
 constexpr std::size_t kMostMotions = 5;
 
 // The part of the vectors (about their mean) in directions with a spread beyond `noise`.
@@ -168,21 +169,27 @@ std::vector<Calibration::Unobservable> UnknownCoordinates(const HandEyeProblem& 
 }
 
 std::string NoTimeOffsetReason(const HandEyeProblem& problem) {
-  double squared = 0, of_noise = 0;
+  const Matrix6 weight = problem.noise.WristCovariance().inverse();
+  double velocities = 0, of_noise = 0, steps = 0, bends = 0;
   int with = 0;
   for (const FitView& view : problem.views) {
-    if (!view.wrist.velocity) continue;
+    const WristAtView& wrist = view.wrist;
+    if (!wrist.velocity) continue;
     ++with;
-    const Matrix6 weight = problem.noise.WristCovariance().inverse();
-    squared += view.wrist.velocity->dot(weight * *view.wrist.velocity);
-    of_noise += 6 * view.wrist.velocity_noise_1_s2;
+    velocities += wrist.velocity->dot(weight * *wrist.velocity);
+    of_noise += 6 * wrist.velocity_noise_1_s2;
+    steps += wrist.step.dot(weight * wrist.step);
+    bends += wrist.bend.dot(weight * wrist.bend);
   }
   if (2 * with < static_cast<int>(problem.views.size())) {
     return "the wrist was not recorded closely enough around the pictures to know how fast it "
            "moved";
   }
-  if (squared < kVelocitiesBeyondNoise * of_noise) {
+  if (velocities < kVelocitiesBeyondNoise * of_noise) {
     return "the wrist stood still when the pictures were taken: any offset gives the same chain";
+  }
+  if (bends > kMostBend * kMostBend * steps) {
+    return "the wrist was recorded too rarely to follow how it moved around the pictures";
   }
   return {};
 }

@@ -160,7 +160,9 @@ std::optional<WristAtView> WristAround(const WristStream& stream, TimeNs t_ns) {
   if (before && after && before->q_RW && after->q_RW) {
     const Pose from = Pose::FromQuaternion(*before->q_RW, before->p_RW);
     const Pose to = Pose::FromQuaternion(*after->q_RW, after->p_RW);
-    wrist.velocity = PoseDifference(from, to) / (2 * h_s);
+    wrist.step = PoseDifference(from, to);
+    wrist.velocity = wrist.step / (2 * h_s);
+    wrist.bend = PoseDifference(MovePose(from, 0.5 * wrist.step), wrist.T_RW);
     wrist.velocity_noise_1_s2 = 2 * wrist.noise_share / (4 * h_s * h_s);
   }
   return wrist;

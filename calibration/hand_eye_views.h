@@ -39,6 +39,8 @@ struct WristAtView {
   /// that of a sample (1/s2). Absent where the samples are too far apart.
   std::optional<Vector6> velocity;
   double velocity_noise_1_s2 = 0.0;
+  Vector6 step = Vector6::Zero();  ///< between those two samples, and how far from their middle
+  Vector6 bend = Vector6::Zero();  ///< T_RW is: small where interpolation can be trusted
   double noise_share = 1.0;  ///< variance of T_RW over that of a sample: interpolation averages
 };
 
