@@ -149,6 +149,10 @@ Change FitOnce(HandEyeWork& work) {
   improve(work.noise.position_m, fit->variances.position, work.stated.position_m,
           before.position_m);
   if (work.with_time_offset) work.MeasureWrists();
+  if (work.options.refine_intrinsics) {
+    const CameraModel camera(work.state.camera);
+    for (WorkView& view : work.views) RefitSeenBoard(camera, view.board);
+  }
   return change;
 }
 

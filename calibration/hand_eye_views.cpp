@@ -146,6 +146,13 @@ SeenBoard FitSeenBoard(const CameraModel& camera, const BoardSighting& sighting)
   return seen;
 }
 
+void RefitSeenBoard(const CameraModel& camera, SeenBoard& seen) {
+  for (BoardPose& pose : seen.poses) {
+    const auto at = MinimiseReprojection(camera, seen.points, pose.T_CB, kMaxIterations);
+    if (at) pose = {at->T_CE, at->error.JtJ, at->error.squared_px2};
+  }
+}
+
 std::optional<WristAtView> WristAround(const WristStream& stream, TimeNs t_ns) {
   const auto at = WristAt(stream, t_ns);
   if (!at || !at->q_RW) return {};

@@ -31,6 +31,9 @@ struct SeenBoard {
 /// corners. Corners far off what the others say are left out.
 SeenBoard FitSeenBoard(const CameraModel& camera, const BoardSighting& sighting);
 
+/// The same poses under another camera.
+void RefitSeenBoard(const CameraModel& camera, SeenBoard& seen);
+
 /// The wrist around one time.
 struct WristAtView {
   Pose T_RW;
