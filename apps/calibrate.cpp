@@ -14,6 +14,7 @@ void AddCalibrate(CLI::App& app, AppContext& context) {
   AddCalibrateCamera(*command, context);
   AddCalibrateStiffness(*command, context);
   AddCalibrateStrain(*command, context);
+  AddCalibrateHandEye(*command, context);
 }
 
 }  // namespace flextip

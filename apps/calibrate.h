@@ -11,5 +11,6 @@ namespace flextip {
 void AddCalibrateCamera(CLI::App& calibrate, AppContext& context);
 void AddCalibrateStiffness(CLI::App& calibrate, AppContext& context);
 void AddCalibrateStrain(CLI::App& calibrate, AppContext& context);
+void AddCalibrateHandEye(CLI::App& calibrate, AppContext& context);
 
 }  // namespace flextip
