@@ -12,6 +12,8 @@ void AddCalibrate(CLI::App& app, AppContext& context) {
   command->require_subcommand(1);
   command->footer("Example:\n  flextip calibrate camera --help\n");
   AddCalibrateCamera(*command, context);
+  AddCalibrateEm(*command, context);
+  AddCalibrateTip(*command, context);
 }
 
 }  // namespace flextip

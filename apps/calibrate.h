@@ -9,5 +9,7 @@ namespace flextip {
 
 // As in commands.h, of `calibrate`.
 void AddCalibrateCamera(CLI::App& calibrate, AppContext& context);
+void AddCalibrateEm(CLI::App& calibrate, AppContext& context);
+void AddCalibrateTip(CLI::App& calibrate, AppContext& context);
 
 }  // namespace flextip

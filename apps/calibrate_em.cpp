@@ -1,0 +1,4 @@
+#include "apps/calibrate.h"
+namespace flextip {
+void AddCalibrateEm(CLI::App&, AppContext&) {}
+}  // namespace flextip
