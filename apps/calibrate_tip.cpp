@@ -1,4 +1,5 @@
-// flextip calibrate tip: the tip in the frame of wrist, sensor or tag collar, from turning about it.
+// flextip calibrate tip: the tip in the frame of wrist, sensor or tag collar, from turning about
+// it.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -44,8 +45,9 @@ std::string ChooseSensor(const CalibrateTipOptions& options, const Recording& re
   if (!WristPoses(recording).empty()) return "wrist0";
   if (recording.cam0 && recording.tags0) return "tags0";
   if (recording.em0) return "em0";
-  throw Missing(options,
-                "found no wrist0/ with orientations, no cam0/ with tags0/ and no em0/, expected one");
+  throw Missing(
+      options,
+      "found no wrist0/ with orientations, no cam0/ with tags0/ and no em0/, expected one");
 }
 
 TipBody CollarBody(const CalibrateTipOptions& options, OutputFolder& output, bool quiet) {

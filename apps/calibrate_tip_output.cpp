@@ -32,9 +32,8 @@ nlohmann::json OutlierList(const std::vector<PivotPose>& poses, const PivotResul
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = 0; i < result.residuals.size(); ++i) {
     if (result.residuals[i].used) continue;
-    list.push_back({{"pose", i},
-                    {"seconds", Seconds(poses, i)},
-                    {"reason", result.residuals[i].reason}});
+    list.push_back(
+        {{"pose", i}, {"seconds", Seconds(poses, i)}, {"reason", result.residuals[i].reason}});
   }
   return list;
 }
@@ -63,9 +62,9 @@ Calibration TipCalibration(const PivotResult& result, const std::string& tip_nam
 std::string AdviceText(const PivotResult& result, const std::string& body) {
   const PivotAdvice& advice = result.advice;
   const double sd_m = std::sqrt(result.covariance.topLeftCorner<3, 3>().trace());
-  const std::string turn = fmt::format(
-      "{} further poses turned by {:.0f} deg to both sides about the {} axis of {}", advice.poses,
-      kDeg * advice.angle_rad, AxisName(advice.axis_B), body);
+  const std::string turn =
+      fmt::format("{} further poses turned by {:.0f} deg to both sides about the {} axis of {}",
+                  advice.poses, kDeg * advice.angle_rad, AxisName(advice.axis_B), body);
   if (!std::isfinite(advice.sd_after_m)) return turn + " would help most";
   if (!result.IsUsable()) {
     return fmt::format("{} would give the tip to {:.3f} mm", turn, 1e3 * advice.sd_after_m);
@@ -120,10 +119,12 @@ std::vector<Figure> TipFigures(const std::vector<PivotPose>& poses, const PivotR
               .x_label = "time (s)",
               .y_label = "distance (mm)"};
   FigureTrace used{.name = "used", .kind = FigureTrace::Kind::kPoints, .color = "#0072b2"};
-  FigureTrace held{.name = "held out", .kind = FigureTrace::Kind::kPoints, .color = "#009e73",
+  FigureTrace held{.name = "held out",
+                   .kind = FigureTrace::Kind::kPoints,
+                   .color = "#009e73",
                    .symbol = "circle-open"};
-  FigureTrace out{.name = "outlier", .kind = FigureTrace::Kind::kPoints, .color = "#d55e00",
-                  .symbol = "x"};
+  FigureTrace out{
+      .name = "outlier", .kind = FigureTrace::Kind::kPoints, .color = "#d55e00", .symbol = "x"};
   Figure across{.name = "across",
                 .title = "The tips by each pose around the pivot",
                 .x_label = "x in R (mm)",

@@ -69,15 +69,14 @@ EmSolution FitWithDistance(const std::vector<EmPair>& pairs, const std::vector<d
 
 /// Fits, takes out outliers, and again until they stay the same.
 EmSolution FitWithoutOutliers(const std::vector<EmPair>& pairs, const EmOptions& options,
-                              EmSolution solution, EmDesign& design,
-                              std::vector<double>& weights) {
+                              EmSolution solution, EmDesign& design, std::vector<double>& weights) {
   constexpr int kRounds = 8;
-  for (int round = 0; round < kRounds; ++round) {
-    solution = FitWithDistance(pairs, weights, options, solution, design);
-    if (!solution.ok) break;
+  solution = FitWithDistance(pairs, weights, options, solution, design);
+  for (int round = 0; round < kRounds && solution.ok; ++round) {
     const auto next = Inliers(pairs, solution, OutlierLimit(pairs.size()));
     if (next == weights) break;
     weights = next;
+    solution = FitEm(pairs, weights, design, solution);
   }
   return solution;
 }
@@ -236,8 +235,8 @@ void Solve(const std::vector<EmPair>& pairs, const EmOptions& options, const EmS
 bool RefuseVagueField(const std::vector<Eigen::Vector3d>& places, const EmOptions& options,
                       EmResult& result) {
   if (result.design.basis.kind == FieldKind::kNone) return false;
-  const double sd_m =
-      result.solution.ok ? GreatestFieldSd(places, result) : std::numeric_limits<double>::infinity();
+  const double sd_m = result.solution.ok ? GreatestFieldSd(places, result)
+                                         : std::numeric_limits<double>::infinity();
   if (sd_m <= options.max_field_sd_m) return false;
   for (EmCandidate& c : result.candidates) {
     if (c.chosen) c.reason = fmt::format("the field is known to {:.2f} mm only", 1e3 * sd_m);
@@ -284,8 +283,8 @@ EmResult CalibrateEm(const std::vector<EmPair>& pairs, const EmOptions& options)
   if (RefuseVagueField(places, options, result)) Solve(pairs, options, first, weights, result);
   DescribeResiduals(pairs, weights, FitWithDistance(pairs, weights, options, first, plain), result);
   DescribeAngles(pairs, result);
-  result.message = RegistrationDoubt(coverage, options, result,
-                                     TypicalNoise(pairs, result.noise_scale));
+  result.message =
+      RegistrationDoubt(coverage, options, result, TypicalNoise(pairs, result.noise_scale));
   result.status = result.message.empty() ? EmStatus::kOk : EmStatus::kUnobservable;
   if (result.used < kLeastShare * static_cast<double>(pairs.size())) {
     result.status = EmStatus::kNoAgreement;

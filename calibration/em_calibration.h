@@ -1,5 +1,5 @@
-// EM calibration: where the EM system stands in R, where its sensor sits on the shaft, and how metal
-// distorts its field.
+// EM calibration: where the EM system stands in R, where its sensor sits on the shaft, and how
+// metal distorts its field.
 #pragma once
 
 #include <cstdint>

@@ -12,8 +12,8 @@ constexpr double kGainSigmas = 2.6;  // one in a hundred by chance, of 16 parts
 
 using Indices = std::vector<std::size_t>;
 
-void Cut(const std::vector<Eigen::Vector3d>& places, Indices::iterator begin,
-         Indices::iterator end, int first, int parts, std::vector<int>& part) {
+void Cut(const std::vector<Eigen::Vector3d>& places, Indices::iterator begin, Indices::iterator end,
+         int first, int parts, std::vector<int>& part) {
   if (parts == 1) {
     for (auto i = begin; i != end; ++i) part[*i] = first;
     return;
@@ -26,9 +26,8 @@ void Cut(const std::vector<Eigen::Vector3d>& places, Indices::iterator begin,
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
   const auto middle = begin + (end - begin) / 2;
-  std::nth_element(begin, middle, end, [&](std::size_t a, std::size_t b) {
-    return places[a][axis] < places[b][axis];
-  });
+  std::nth_element(begin, middle, end,
+                   [&](std::size_t a, std::size_t b) { return places[a][axis] < places[b][axis]; });
   Cut(places, begin, middle, first, parts / 2, part);
   Cut(places, middle, end, first + parts / 2, parts / 2, part);
 }

@@ -8,7 +8,7 @@
 namespace flextip {
 namespace {
 
-constexpr double kMargin = 1.001;        // so that the outermost places are inside
+constexpr double kMargin = 1.001;  // so that the outermost places are inside
 constexpr double kLeastHalfSide_m = 1e-3;
 constexpr double kLeastThickness = 0.15;  // of the largest spread
 constexpr int kCellsForOrder1 = 12, kCellsForMore = 16;
@@ -29,10 +29,10 @@ int CellsVisited(const std::vector<Eigen::Vector3d>& places, const EmCoverage& c
 
 std::string WhyNot(const EmCoverage& coverage, int cells_needed) {
   if (coverage.spread_m[0] < kLeastThickness * coverage.spread_m[2]) {
-    return fmt::format("the sensor stayed near a {}: its spread is {:.1f} x {:.1f} x {:.1f} mm",
-                       coverage.spread_m[1] < kLeastThickness * coverage.spread_m[2] ? "line" : "plane",
-                       1e3 * coverage.spread_m[2], 1e3 * coverage.spread_m[1],
-                       1e3 * coverage.spread_m[0]);
+    return fmt::format(
+        "the sensor stayed near a {}: its spread is {:.1f} x {:.1f} x {:.1f} mm",
+        coverage.spread_m[1] < kLeastThickness * coverage.spread_m[2] ? "line" : "plane",
+        1e3 * coverage.spread_m[2], 1e3 * coverage.spread_m[1], 1e3 * coverage.spread_m[0]);
   }
   if (coverage.cells >= cells_needed) return "";
   return fmt::format("the sensor visited {} of the 27 parts of its box; {} are needed",
@@ -65,27 +65,27 @@ EmCoverage CoverageOf(const std::vector<Eigen::Vector3d>& places) {
 }
 
 std::vector<EmCandidate> FieldCandidates(const EmCoverage& coverage) {
-  const EmDesign plain{.free_distance = false,
-                       .centre_m = coverage.centre_m,
-                       .scale_m = coverage.scale_m};
+  const EmDesign plain{
+      .free_distance = false, .centre_m = coverage.centre_m, .scale_m = coverage.scale_m};
   std::vector<EmCandidate> candidates{{.name = "no field", .design = plain}};
   for (int order = 1; order <= 3; ++order) {
     EmDesign design = plain;
     design.basis = {FieldKind::kPolynomial, order};
-    candidates.push_back({.name = fmt::format("order {}", order),
-                          .design = design,
-                          .reason = WhyNot(coverage, order == 1 ? kCellsForOrder1 : kCellsForMore)});
+    candidates.push_back(
+        {.name = fmt::format("order {}", order),
+         .design = design,
+         .reason = WhyNot(coverage, order == 1 ? kCellsForOrder1 : kCellsForMore)});
   }
   for (const double bend_sd_m : {5e-5, 2e-4, 1e-3}) {
     EmDesign design = plain;
     design.basis = {FieldKind::kSpline, 5};
     design.bend_sd_m = bend_sd_m;
-    candidates.push_back({.name = fmt::format("spline 5 of {:.2f} mm", 1e3 * bend_sd_m),
-                          .design = design,
-                          .reason = coverage.places < kPlacesForSpline
-                                        ? fmt::format("{} samples, {} are needed", coverage.places,
-                                                      kPlacesForSpline)
-                                        : WhyNot(coverage, kCellsForMore)});
+    candidates.push_back(
+        {.name = fmt::format("spline 5 of {:.2f} mm", 1e3 * bend_sd_m),
+         .design = design,
+         .reason = coverage.places < kPlacesForSpline
+                       ? fmt::format("{} samples, {} are needed", coverage.places, kPlacesForSpline)
+                       : WhyNot(coverage, kCellsForMore)});
   }
   return candidates;
 }

@@ -13,7 +13,7 @@ struct EmCoverage {
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero(), scale_m = Eigen::Vector3d::Ones();
   Eigen::Vector3d spread_m = Eigen::Vector3d::Zero();  ///< rms along the principal axes, ascending
   int places = 0;
-  int cells = 0;                                       ///< of 3 x 3 x 3 with a place in them
+  int cells = 0;  ///< of 3 x 3 x 3 with a place in them
 };
 EmCoverage CoverageOf(const std::vector<Eigen::Vector3d>& places);
 

@@ -26,7 +26,7 @@ enum class FieldKind : std::uint8_t { kNone, kPolynomial, kSpline };
 /// A set of f_k: polynomials of order 1 to 3, or 4 to 8 splines a side.
 struct FieldBasis {
   FieldKind kind = FieldKind::kNone;
-  int order = 0;  ///< of the polynomial, or splines a side
+  int order = 0;      ///< of the polynomial, or splines a side
   int Count() const;  ///< of the f_k
   Eigen::VectorXd At(const Eigen::Vector3d& u) const;
 };

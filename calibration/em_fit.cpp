@@ -141,8 +141,7 @@ EmStep SolveStep(const EmDesign& design, const Eigen::MatrixXd& H, const Eigen::
     information.bottomRightCorner(n, n) += held;
     gradient.tail(n) += held * coefficients;
   }
-  const Eigen::VectorXd scale =
-      information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::LLT<Eigen::MatrixXd> llt(scale.asDiagonal() * information * scale.asDiagonal());
   EmStep out;
   if (llt.info() != Eigen::Success || llt.rcond() < 1e-12) return out;
@@ -172,12 +171,13 @@ EmSolution FitEm(const std::vector<EmPair>& pairs, const std::vector<double>& we
     H = Eigen::MatrixXd(H.selfadjointView<Eigen::Lower>());
     const Eigen::Map<const Eigen::VectorXd> c(solution.field.coefficients.data(),
                                               design.Coefficients());
-    const EmStep step = SolveStep(design, H, rows.J.transpose() * rows.r, c, true);
+    const EmStep step = SolveStep(design, H, rows.J.transpose() * rows.r, c,
+                                  solution.ok || iteration + 1 == kIterations);
     solution.ok = step.ok;
     if (!step.ok) break;
     solution = Moved(solution, design, step.step);
     solution.covariance = step.covariance;
-    if (step.step.norm() < 1e-9) break;
+    if (solution.covariance.size() > 0 && step.step.norm() < 1e-7) break;
   }
   return solution;
 }

@@ -43,8 +43,7 @@ struct EmRows {
   Eigen::MatrixXd J;
   Eigen::VectorXd r;
 };
-EmRows RowsOf(const std::vector<EmPair>& pairs, const EmDesign& design,
-              const EmSolution& solution);
+EmRows RowsOf(const std::vector<EmPair>& pairs, const EmDesign& design, const EmSolution& solution);
 
 /// The step that Gauss and Newton take where the rows' weighted squares are H and g, with the gauge
 /// and a spline's bend held; and the covariance. `ok` false: something is left unknown.

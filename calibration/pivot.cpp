@@ -47,7 +47,8 @@ void DescribeTurns(const std::vector<PivotPose>& poses, const std::vector<double
 /// What noise alone makes of turn_rad: the median pose's, by the greater of stated and found.
 double TurnByNoise(const std::vector<PivotPose>& poses, const PivotPoint& point) {
   std::vector<double> variances;
-  for (const PivotPose& pose : poses) variances.push_back(pose.covariance.topLeftCorner<3, 3>().trace());
+  for (const PivotPose& pose : poses)
+    variances.push_back(pose.covariance.topLeftCorner<3, 3>().trace());
   return std::sqrt(2.0 / 3.0 * Median(variances) * std::max(1.0, point.orientation_factor));
 }
 
@@ -56,7 +57,8 @@ std::string AxisText(const Eigen::Vector3d& axis) {
 }
 
 /// Why the tip cannot be named; empty where it can.
-std::string WhatIsMissing(const PivotResult& result, const PivotOptions& options, double noise_rad) {
+std::string WhatIsMissing(const PivotResult& result, const PivotOptions& options,
+                          double noise_rad) {
   constexpr double kDeg = 180.0 / std::numbers::pi;
   const double limit = options.least_turn_over_noise * noise_rad;
   const std::string turned = fmt::format("{:.2f} deg rms, of which noise {:.2f} deg",
@@ -64,14 +66,17 @@ std::string WhatIsMissing(const PivotResult& result, const PivotOptions& options
   if (result.turn_rad[1] < limit) return fmt::format("the poses hardly turn ({})", turned);
   const std::string axis = AxisText(result.turn_axes_B.col(0));
   if (result.turn_rad[0] < limit) {
-    return fmt::format("the poses turn about one axis only, {} in their own frame ({}): the tip along it is unknown",
-                       axis, turned);
+    return fmt::format(
+        "the poses turn about one axis only, {} in their own frame ({}): the tip along it is "
+        "unknown",
+        axis, turned);
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> tip(result.covariance.topLeftCorner<3, 3>());
   const double sd_m = std::sqrt(tip.eigenvalues()[2]);
   if (sd_m <= options.max_sd_m) return "";
-  return fmt::format("the poses turn too little: the tip is known to {:.1f} mm along {} of their own frame",
-                     1e3 * sd_m, AxisText(tip.eigenvectors().col(2)));
+  return fmt::format(
+      "the poses turn too little: the tip is known to {:.1f} mm along {} of their own frame",
+      1e3 * sd_m, AxisText(tip.eigenvectors().col(2)));
 }
 
 /// Takes outliers out until none is left or comes back; the weights are 1 and 0.
@@ -91,8 +96,7 @@ PivotPoint FitWithoutOutliers(const std::vector<PivotPose>& poses, const PivotOp
 }
 
 void DescribeResiduals(const std::vector<PivotPose>& poses, const PivotPoint& point,
-                       const std::vector<double>& weights, const Matrix6d& C,
-                       PivotResult& result) {
+                       const std::vector<double>& weights, const Matrix6d& C, PivotResult& result) {
   const double limit = OutlierLimit(poses.size());
   std::vector<Eigen::Vector3d> whitened;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -149,8 +153,7 @@ PivotResult CalibratePivot(const std::vector<PivotPose>& poses, const PivotOptio
   std::vector<double> weights(poses.size(), 1.0);
   const PivotPoint start = AlgebraicPivot(poses, weights);
   result.algebraic_rms_m = AlgebraicRms(poses, start);
-  const PivotPoint point =
-      FitWithoutOutliers(poses, options, RobustPivot(poses, start), weights);
+  const PivotPoint point = FitWithoutOutliers(poses, options, RobustPivot(poses, start), weights);
   const Matrix6d H = PivotInformation(poses, weights, point);
   const Matrix6d C = H.completeOrthogonalDecomposition().pseudoInverse();
   DescribeResiduals(poses, point, weights, C, result);
@@ -167,8 +170,9 @@ PivotResult CalibratePivot(const std::vector<PivotPose>& poses, const PivotOptio
   result.status = result.unobservable.empty() ? PivotStatus::kOk : PivotStatus::kUnobservable;
   if (result.used < kLeastShare * static_cast<double>(poses.size())) {
     result.status = PivotStatus::kNoPivot;
-    result.unobservable = fmt::format("only {} of {} poses agree on a fixed point: the tip was not held, or not in one place",
-                                      result.used, poses.size());
+    result.unobservable = fmt::format(
+        "only {} of {} poses agree on a fixed point: the tip was not held, or not in one place",
+        result.used, poses.size());
   }
   return result;
 }

@@ -20,8 +20,9 @@ struct EmScene {
   double em_noise_m = 4e-4, reference_noise_m = 2e-4;
   double em_true = 1.0;  ///< true noise of the sensor over the stated one
   /// The true position for a measured one, in R.
-  std::function<Eigen::Vector3d(const Eigen::Vector3d&)> corrected =
-      [](const Eigen::Vector3d& p) { return p; };
+  std::function<Eigen::Vector3d(const Eigen::Vector3d&)> corrected = [](const Eigen::Vector3d& p) {
+    return p;
+  };
 };
 
 /// Solves corrected(p) = x: what the sensor measures.
@@ -46,14 +47,14 @@ inline std::vector<EmPair> DrawEm(const EmScene& scene, std::mt19937& random) {
     const Eigen::Vector3d p_RS = p_RE - scene.distance_m * R_E.col(0);
     EmPair pair;
     pair.t_ns = i * TimeNs{20'000'000};
-    pair.T_FS.p = scene.T_RF.Inverse() * Distorted(scene, p_RS) +
-                  scene.em_true * scene.em_noise_m * draw();
+    pair.T_FS.p =
+        scene.T_RF.Inverse() * Distorted(scene, p_RS) + scene.em_true * scene.em_noise_m * draw();
     pair.T_FS.R = scene.T_RF.R.transpose() * R_E;
     pair.p_RE = p_RE + scene.reference_noise_m * draw();
     pair.t_RE = R_E.col(0);
-    pair.covariance = (scene.em_noise_m * scene.em_noise_m +
-                       scene.reference_noise_m * scene.reference_noise_m) *
-                      Eigen::Matrix3d::Identity();
+    pair.covariance =
+        (scene.em_noise_m * scene.em_noise_m + scene.reference_noise_m * scene.reference_noise_m) *
+        Eigen::Matrix3d::Identity();
     pairs.push_back(pair);
   }
   return pairs;

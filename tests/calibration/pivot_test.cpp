@@ -2,12 +2,14 @@
 #include "calibration/pivot.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
 #include <filesystem>
 #include <fstream>
 #include <random>
 
+#include "calibration/pivot_fit.h"
 #include "calibration/tip_poses.h"
 #include "calibration/tip_statistics.h"
 #include "tests/calibration/pivot_scene.h"
@@ -59,9 +61,7 @@ TEST(Pivot, IsExactWithoutNoise) {
   EXPECT_EQ(result.used, scene.poses);
 }
 
-TEST(Pivot, CovarianceIsHonest) {
-  EXPECT_NEAR(MeanNees({}, 300, 2), 6.0, NeesBound(300));
-}
+TEST(Pivot, CovarianceIsHonest) { EXPECT_NEAR(MeanNees({}, 300, 2), 6.0, NeesBound(300)); }
 
 TEST(Pivot, CovarianceIsHonestWhereTheStatedNoiseIsWrong) {
   PivotScene scene;
@@ -199,8 +199,7 @@ TEST(Pivot, TheTurnAdvisedIsTheOneThatHelpsMost) {
     for (const double side : {-1.0, 1.0}) {
       turned.poses = result.advice.poses / 2;
       for (PivotPose pose : DrawPivot(turned, random)) {
-        const Eigen::Matrix3d R =
-            pose.T_RB.R * ExpRotation(side * result.advice.angle_rad * axis);
+        const Eigen::Matrix3d R = pose.T_RB.R * ExpRotation(side * result.advice.angle_rad * axis);
         pose.T_RB.p += pose.T_RB.R * scene.p_BE - R * scene.p_BE;
         pose.T_RB.R = R;
         more.push_back(pose);
@@ -242,9 +241,34 @@ TEST(Pivot, RealPointer) {
   const PivotResult result = CalibratePivot(WristPoses(recording));
   ASSERT_EQ(result.status, PivotStatus::kOk);
   EXPECT_NEAR(1e3 * result.algebraic_rms_m, 1.761, 0.001);
-  fmt::print("tip {} {} {} sd {} {} {} mm, rms {} heldout {}, scales {} {}, time {}, used {}\n", 1e3 * result.p_BE[0], 1e3 * result.p_BE[1], 1e3 * result.p_BE[2],
-    1e3*std::sqrt(result.covariance(0,0)),1e3*std::sqrt(result.covariance(1,1)),1e3*std::sqrt(result.covariance(2,2)), 1e3*result.rms_m, 1e3*result.heldout_rms_m, result.position_noise_scale, result.orientation_noise_scale, result.correlation_time, result.used);
-  for (std::size_t i = 0; i < result.residuals.size(); ++i) fmt::print("{} {:.2f} {:.2f} {}\n", i, 1e3*result.residuals[i].r_R.norm(), result.residuals[i].sigmas, result.residuals[i].reason);
+  std::vector<std::size_t> outliers;
+  for (std::size_t i = 0; i < result.residuals.size(); ++i) {
+    if (!result.residuals[i].used) outliers.push_back(i);
+  }
+  EXPECT_THAT(outliers, testing::ElementsAre(24, 25));
+  EXPECT_GT(result.residuals[24].r_R.norm(), 0.012);
+  EXPECT_LT(result.heldout_rms_m, 1.6e-3);
+  // Each half of the poses says the same within what the covariance allows.
+  const std::vector<PivotPose> all = WristPoses(recording);
+  const PivotResult first = CalibratePivot({all.begin(), all.begin() + 28});
+  const PivotResult second = CalibratePivot({all.begin() + 28, all.end()});
+  const Vector6d apart = ErrorOf(first, {.p_BE = second.p_BE, .p_R = second.p_R});
+  const double nees = apart.dot((first.covariance + second.covariance).ldlt().solve(apart));
+  EXPECT_LT(nees, 22.5);
+  const Eigen::Vector3d p = 1e3 * result.p_BE;
+  const Eigen::Vector3d sd = 1e3 * result.covariance.diagonal().head<3>().cwiseSqrt();
+  fmt::print("tip {} +- {} mm, halves apart by {} mm, nees {}\n", fmt::join(p, " "),
+             fmt::join(sd, " "), 1e3 * apart.head<3>().norm(), nees);
+  std::vector<PivotPose> rest;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (i != 24 && i != 25) rest.push_back(all[i]);
+  const PivotPoint linear = AlgebraicPivot(rest, std::vector<double>(rest.size(), 1.0));
+  double sum = 0;
+  for (const auto& pose : rest) sum += PivotError(pose, linear).squaredNorm() / (3.0 * rest.size());
+  fmt::print("linear {} rms {}, turn {} rad, pivot {}\n",
+             fmt::join(Eigen::Vector3d(1e3 * linear.x_B), " "), 1e3 * std::sqrt(sum),
+             fmt::join(result.turn_rad, " "), fmt::join(Eigen::Vector3d(1e3 * result.p_R), " "));
+  fmt::print("advice {} {}\n", fmt::join(result.advice.axis_B, " "), result.advice.sd_after_m);
 }
 
 }  // namespace
