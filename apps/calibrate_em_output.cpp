@@ -121,6 +121,8 @@ nlohmann::json EmSummary(const std::vector<EmPair>& pairs, const EmResult& resul
                   {"samples_counted_as_one", result.correlation_time},
                   {"sensor_tilt_rad", result.tilt_rad},
                   {"rms_direction_residual_rad", result.angle_rms_rad},
+                  {"sensor_late_s", result.lag.late_s},
+                  {"sensor_late_standard_deviation_s", result.lag.sd_s},
                   {"fields", CandidateList(result)}});
   if (!result.IsUsable()) return summary;
   const Eigen::VectorXd sd = result.solution.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();

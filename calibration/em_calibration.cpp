@@ -152,6 +152,16 @@ void DescribeAngles(const std::vector<EmPair>& pairs, EmResult& result) {
   result.angle_rms_rad = std::sqrt(sum / std::max(1, result.used));
 }
 
+void DescribeLag(const std::vector<EmPair>& pairs, EmResult& result) {
+  std::vector<Eigen::Vector3d> errors;
+  std::vector<bool> used;
+  for (const EmResidual& r : result.residuals) {
+    errors.push_back(r.after_R);
+    used.push_back(r.used);
+  }
+  result.lag = LagOf(pairs, errors, used, result.solution.distance_m);
+}
+
 /// Noise of one component of a typical pair, as found (m).
 double TypicalNoise(const std::vector<EmPair>& pairs, double noise_scale) {
   std::vector<double> variances;
@@ -228,6 +238,17 @@ void Solve(const std::vector<EmPair>& pairs, const EmOptions& options, const EmS
            std::vector<double>& weights, EmResult& result) {
   result.design = ChosenDesign(result);
   result.solution = FitWithoutOutliers(pairs, options, start, result.design, weights);
+  if (!result.solution.ok) return;
+  FillCovariance(pairs, weights, result);
+  if (!result.design.free_distance ||
+      std::sqrt(result.solution.covariance(6, 6)) <= options.max_distance_sd_m) {
+    return;
+  }
+  // Noise that lasts left it less certain than it seemed.
+  result.design.free_distance = false;
+  EmSolution fixed = result.solution;
+  fixed.distance_m = options.distance_from_tip_m;
+  result.solution = FitEm(pairs, weights, result.design, fixed);
   if (result.solution.ok) FillCovariance(pairs, weights, result);
 }
 
@@ -283,6 +304,7 @@ EmResult CalibrateEm(const std::vector<EmPair>& pairs, const EmOptions& options)
   if (RefuseVagueField(places, options, result)) Solve(pairs, options, first, weights, result);
   DescribeResiduals(pairs, weights, FitWithDistance(pairs, weights, options, first, plain), result);
   DescribeAngles(pairs, result);
+  DescribeLag(pairs, result);
   result.message =
       RegistrationDoubt(coverage, options, result, TypicalNoise(pairs, result.noise_scale));
   result.status = result.message.empty() ? EmStatus::kOk : EmStatus::kUnobservable;

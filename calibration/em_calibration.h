@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/em_choice.h"
+#include "calibration/em_lag.h"
 #include "recording/calibration_file.h"
 
 namespace flextip {
@@ -50,6 +51,7 @@ struct EmResult {
   double rms_before_m = 0.0, rms_after_m = 0.0;  ///< per component, of those used
   double tilt_rad = 0.0;                         ///< of the sensor's x axis against the shaft
   double angle_rms_rad = 0.0;
+  EmLag lag;  ///< of the sensor behind the reference; not taken out
 
   bool IsUsable() const { return status == EmStatus::kOk; }
 };

@@ -143,11 +143,11 @@ TEST(EmCalibration, TheCorrectionsCovarianceIsHonest) {
 
 TEST(EmCalibration, AFieldThatIsNoPolynomialTakesASpline) {
   EmScene scene;
-  scene.pairs = 700;
+  scene.pairs = 900;
   scene.em_noise_m = scene.reference_noise_m = 1e-4;
   scene.corrected = [](const Eigen::Vector3d& p) -> Eigen::Vector3d {
     const Eigen::Vector3d r = p - Eigen::Vector3d(0.46, 0.06, 0.03);
-    return p + 4e-3 * std::exp(-r.squaredNorm() / (2 * 0.05 * 0.05)) * Eigen::Vector3d(0.3, 1, 0.5);
+    return p + 4e-3 * std::exp(-r.squaredNorm() / (2 * 0.04 * 0.04)) * Eigen::Vector3d(0.3, 1, 0.5);
   };
   std::mt19937 random(7);
   const EmResult result = CalibrateEm(DrawEm(scene, random), OptionsOf(scene));
@@ -175,6 +175,29 @@ TEST(EmCalibration, OutliersAreNamedAndNothingElse) {
       EXPECT_EQ(result.residuals[i].reason.empty(), !bad[i]) << i;
     }
   }
+}
+
+// A path instead of single places; the reference 30 ms behind.
+TEST(EmLag, ALateReferenceIsSeen) {
+  constexpr double kLate_s = 0.03;
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  const auto place = [](double t) -> Eigen::Vector3d {
+    return {0.4 + 0.03 * std::sin(2.1 * t), 0.05 * std::sin(1.3 * t), 0.05 * std::cos(1.7 * t)};
+  };
+  std::vector<EmPair> pairs;
+  std::vector<Eigen::Vector3d> errors;
+  for (int i = 0; i < 500; ++i) {
+    EmPair pair;
+    pair.t_ns = i * TimeNs{20'000'000};
+    pair.p_RE = place(0.02 * i - kLate_s);
+    pairs.push_back(pair);
+    errors.emplace_back(place(0.02 * i) - pair.p_RE +
+                        3e-4 * Eigen::Vector3d(normal(random), normal(random), normal(random)));
+  }
+  const EmLag lag = LagOf(pairs, errors, std::vector<bool>(500, true), 0.0);
+  EXPECT_LT(lag.sd_s, 3e-4);
+  EXPECT_NEAR(lag.late_s, -kLate_s, 4 * lag.sd_s + 0.01 * kLate_s);
 }
 
 TEST(EmCalibration, WhatTheMotionDoesNotTellIsRefused) {

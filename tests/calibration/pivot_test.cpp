@@ -264,7 +264,7 @@ TEST(Pivot, RealPointer) {
     if (i != 24 && i != 25) rest.push_back(all[i]);
   const PivotPoint linear = AlgebraicPivot(rest, std::vector<double>(rest.size(), 1.0));
   double sum = 0;
-  for (const auto& pose : rest) sum += PivotError(pose, linear).squaredNorm() / (3.0 * rest.size());
+  for (const auto& pose : rest) sum += PivotError(pose, linear).squaredNorm() / (3.0 * static_cast<double>(rest.size()));
   fmt::print("linear {} rms {}, turn {} rad, pivot {}\n",
              fmt::join(Eigen::Vector3d(1e3 * linear.x_B), " "), 1e3 * std::sqrt(sum),
              fmt::join(result.turn_rad, " "), fmt::join(Eigen::Vector3d(1e3 * result.p_R), " "));
