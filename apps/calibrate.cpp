@@ -15,6 +15,8 @@ void AddCalibrate(CLI::App& app, AppContext& context) {
   AddCalibrateStiffness(*command, context);
   AddCalibrateStrain(*command, context);
   AddCalibrateHandEye(*command, context);
+  AddCalibrateEm(*command, context);
+  AddCalibrateTip(*command, context);
 }
 
 }  // namespace flextip
