@@ -1,125 +1,123 @@
 // flextip calibrate camera: intrinsics from pictures of a board.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/calibrate.h"
+#include "apps/calibrate_camera_output.h"
 #include "apps/frames.h"
 #include "apps/output.h"
-#include "apps/overlay.h"
 #include "apps/progress.h"
-#include "calibration/camera_calibration.h"
+#include "calibration/corners_file.h"
 #include "core/error.h"
-#include "recording/camera_file.h"
-#include "report/pages.h"
 
 namespace flextip {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct CalibrateCameraOptions {
-  std::vector<std::filesystem::path> images;
+  std::vector<fs::path> images;
   std::string board;
-  std::string distortion = "opencv";
+  std::string distortion = "auto";
   int terms = 5;
+  std::string warp = "auto";
+  fs::path corners;
   bool force = false;
-  std::filesystem::path out;
+  fs::path out;
 };
 
-BoardSpec SupportedBoard(const std::string& spec) {
-  const BoardSpec board = ParseBoardSpec(spec);
-  if (board.kind != BoardKind::kChessboard) {
-    throw InputError(fmt::format("board '{}': not supported yet, only chessboard", spec));
-  }
-  return board;
+CameraCalibrationOptions CalibrationOptions(const CalibrateCameraOptions& o) {
+  CameraCalibrationOptions calibration;
+  if (o.distortion == "radial-tangential") calibration.lens = {Distortion::kRadialTangential, 4};
+  if (o.distortion == "equidistant") calibration.lens = {Distortion::kEquidistant, 4};
+  if (o.distortion == "opencv") calibration.lens = {Distortion::kOpenCv, o.terms};
+  if (o.warp != "auto") calibration.warp = o.warp == "on";
+  return calibration;
 }
 
-nlohmann::json ViewsJson(const CameraCalibrationResult& result) {
-  nlohmann::json views = nlohmann::json::array();
+// Finds the board in every picture; only one picture is held at a time.
+CornersFile Detect(const CalibrateCameraOptions& options, const BoardSpec& board, bool quiet) {
+  if (options.images.empty()) throw InputError("calibrate camera: no images to find the board in");
+  CornersFile corners{.board = options.board, .width_px = 0, .height_px = 0, .views = {}};
+  Progress progress("images", options.images.size(), quiet);
+  for (const fs::path& file : options.images) {
+    const Image image = ReadImageFile(file);
+    if (corners.views.empty()) {
+      corners.width_px = image.width_px;
+      corners.height_px = image.height_px;
+    } else if (image.width_px != corners.width_px || image.height_px != corners.height_px) {
+      throw InputError::At(
+          file.string(), 0,
+          fmt::format("expected {}x{} pixels as in {}, found {}x{}", corners.width_px,
+                      corners.height_px, corners.views[0].name, image.width_px, image.height_px));
+    }
+    corners.views.push_back({file.string(), DetectBoard(image, board)});
+    progress.Update(corners.views.size());
+  }
+  return corners;
+}
+
+// What was detected before, of the images named, or of all where none is.
+CornersFile Reload(const CalibrateCameraOptions& options) {
+  CornersFile corners = ReadCorners(options.corners);
+  if (corners.board != options.board) {
+    throw InputError::At(
+        options.corners.string(), 2,
+        fmt::format("is of board '{}', not of '{}'", corners.board, options.board));
+  }
+  if (options.images.empty()) return corners;
+  std::map<std::string, BoardView> by_name;
+  for (const BoardView& view : corners.views) by_name[view.name] = view;
+  corners.views.clear();
+  for (const fs::path& image : options.images) {
+    const auto it = by_name.find(image.string());
+    if (it == by_name.end()) {
+      throw InputError::At(options.corners.string(), 0,
+                           fmt::format("has no image '{}'", image.string()));
+    }
+    corners.views.push_back(it->second);
+  }
+  return corners;
+}
+
+CornersFile Corners(const CalibrateCameraOptions& options, bool quiet) {
+  const BoardSpec board = ParseBoardSpec(options.board);
+  if (!options.corners.empty() && fs::exists(options.corners)) return Reload(options);
+  const CornersFile corners = Detect(options, board, quiet);
+  if (!options.corners.empty()) WriteCorners(options.corners, corners);
+  return corners;
+}
+
+std::string WhyNot(const CameraCalibrationResult& result) {
+  std::string message = fmt::format("calibrate camera: {}", result.message);
   for (const CalibrationView& v : result.views) {
-    nlohmann::json view = {{"image", v.name}, {"used", v.used}};
-    view["rms_px"] = v.used ? nlohmann::json(v.rms_px) : nlohmann::json(nullptr);
-    view["reason"] = v.reason;
-    views.push_back(view);
+    if (v.used) continue;
+    return message + fmt::format("; {}: {}", v.name, v.reason);  // the first says what is wrong
   }
-  return views;
-}
-
-nlohmann::json Summary(const CameraCalibrationResult& r) {
-  nlohmann::json parameters = nlohmann::json::array();
-  const CameraCalibration& c = r.camera;
-  std::vector<std::pair<std::string, double>> named = {
-      {"fu_px", c.fu_px}, {"fv_px", c.fv_px}, {"cu_px", c.cu_px}, {"cv_px", c.cv_px}};
-  const char* distortion_names[] = {"k1", "k2", "p1", "p2", "k3", "k4",
-                                    "k5", "k6", "s1", "s2", "s3", "s4"};
-  for (std::size_t i = 0; i < c.distortion_coefficients.size(); ++i) {
-    named.emplace_back(distortion_names[i], c.distortion_coefficients[i]);
-  }
-  for (std::size_t i = 0; i < named.size(); ++i) {
-    parameters.push_back({{"parameter", named[i].first},
-                          {"value", named[i].second},
-                          {"standard_deviation", r.standard_deviations[i]}});
-  }
-  return {{"rms_reprojection_error_px", r.rms_reprojection_error_px},
-          {"views_used", r.views_used},
-          {"views_rejected", r.views_rejected},
-          {"parameters", parameters},
-          {"views", ViewsJson(r)}};
-}
-
-void WriteResults(OutputFolder& output, const std::vector<CalibrationImage>& images,
-                  const CameraCalibrationResult& result) {
-  WriteCameraCalibration(output.folder() / "cam0" / "sensor.yaml", result.camera,
-                         "calibrated from a chessboard");
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const CalibrationView& view = result.views[i];
-    Image image = images[i].image;
-    DrawPoints(image, view.corners_px);
-    DrawLabel(image, view.used ? fmt::format("{:.3f} px", view.rms_px) : view.reason);
-    const std::string stem = std::filesystem::path(view.name).stem().string();
-    WritePng(output.folder() / "overlay" / fmt::format("{:04}_{}.png", i, stem), image);
-    if (!view.used) output.Warn(fmt::format("{}: {}", view.name, view.reason));
-  }
-  output.WriteSummary(Summary(result));
-  WriteCalibrateReport(output.folder());
-  output.Commit();
+  return message;
 }
 
 void RunCalibrateCamera(const CalibrateCameraOptions& options, bool quiet) {
-  const BoardSpec board = SupportedBoard(options.board);
-  CameraCalibrationOptions calibration;
-  calibration.distortion = options.distortion == "radial-tangential" ? Distortion::kRadialTangential
-                                                                     : Distortion::kOpenCv;
-  calibration.distortion_terms = options.terms;
   OutputFolder output(options.out, "calibrate camera",
                       {.force = options.force, .inputs = options.images});
-  std::vector<CalibrationImage> images;
-  {
-    Progress progress("images", options.images.size(), quiet);
-    for (const auto& file : options.images) {
-      images.push_back({file.string(), ReadImageFile(file)});
-      progress.Update(images.size());
-    }
-  }
-  const CameraCalibrationResult result = CalibrateCamera(images, board, calibration);
-  if (!result.IsUsable()) {
-    std::string message = fmt::format("calibrate camera: {}", result.message);
-    for (const CalibrationView& v : result.views) {
-      if (v.used) continue;
-      message += fmt::format("; {}: {}", v.name, v.reason);
-      break;  // one line; the first says what is wrong
-    }
-    throw WorkError(message);
-  }
-  WriteResults(output, images, result);
+  const CornersFile corners = Corners(options, quiet);
+  const CameraCalibrationResult result =
+      CalibrateCamera(corners.views, corners.width_px, corners.height_px,
+                      ParseBoardSpec(options.board), CalibrationOptions(options));
+  if (!result.IsUsable()) throw WorkError(WhyNot(result));
+  WriteCameraResults(output, corners, result);
   if (quiet) return;
-  fmt::print("{} views used, {} rejected, reprojection error {:.4f} px RMS\n", result.views_used,
-             result.views_rejected, result.rms_reprojection_error_px);
+  fmt::print("{} views used, {} rejected, {} outliers among {} corners\n", result.views_used,
+             result.views_rejected, result.solution.Outliers(),
+             result.solution.CornersUsed() + result.solution.Outliers());
+  fmt::print("reprojection error {:.4f} px RMS, {:.4f} px on held-out views\n",
+             result.solution.RmsPx(), result.heldout_rms_px);
   fmt::print("{}\n", (options.out / "cam0" / "sensor.yaml").string());
 }
 
@@ -129,17 +127,28 @@ void AddCalibrateCamera(CLI::App& calibrate, AppContext& context) {
   auto* command = calibrate.add_subcommand("camera", "Intrinsics from pictures of a board");
   auto options = std::make_shared<CalibrateCameraOptions>();
   command->add_option("images", options->images, "PNG or JPEG files, all of one size")
-      ->required()
       ->type_name("IMAGE");
-  command->add_option("--board", options->board, "chessboard:COLSxROWS:SQUARE_M (inner corners)")
+  command
+      ->add_option("--board", options->board,
+                   "chessboard:COLSxROWS:SQUARE_M (inner corners), "
+                   "charuco:COLSxROWS:SQUARE_M:MARKER_M:DICT or aprilgrid:COLSxROWS:TAG_M:GAP_M")
       ->required()
       ->type_name("SPEC");
-  command->add_option("--distortion", options->distortion, "opencv or radial-tangential")
-      ->check(CLI::IsMember({"opencv", "radial-tangential"}))
+  command
+      ->add_option("--distortion", options->distortion,
+                   "auto (by the error of held-out views), radial-tangential, opencv, equidistant")
+      ->check(CLI::IsMember({"auto", "radial-tangential", "opencv", "equidistant"}))
       ->capture_default_str();
   command->add_option("--terms", options->terms, "Terms of the opencv model")
       ->check(CLI::IsMember({5, 8, 12}))
       ->capture_default_str();
+  command->add_option("--warp", options->warp, "Whether the board may be bent: auto, on or off")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->capture_default_str();
+  command
+      ->add_option("--corners", options->corners,
+                   "Detected corners: read where the file exists, else written")
+      ->type_name("FILE");
   command->add_option("-o,--output", options->out, "Folder for the results")->required();
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->footer(

@@ -6,6 +6,23 @@
 
 namespace flextip {
 
+std::vector<Eigen::Vector3d> BoardCorners(const BoardSpec& board) {
+  if (board.kind != BoardKind::kChessboard) {
+    throw InputError("charuco and aprilgrid boards are not supported yet, only chessboard");
+  }
+  return ChessboardPoints(board.columns, board.rows, board.square_m);
+}
+
+std::pair<Eigen::Vector2d, Eigen::Vector2d> BoardExtent(const BoardSpec& board) {
+  const auto corners = BoardCorners(board);
+  Eigen::Vector2d low = corners.front().head<2>(), high = low;
+  for (const Eigen::Vector3d& x : corners) {
+    low = low.cwiseMin(x.head<2>());
+    high = high.cwiseMax(x.head<2>());
+  }
+  return {low, high};
+}
+
 BoardSighting DetectBoard(const Image& image, const BoardSpec& board) {
   if (image.Empty()) throw InputError("the image is empty");
   if (board.kind != BoardKind::kChessboard) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/image.h"
@@ -23,6 +24,11 @@ struct BoardSpec {
 /// Parses `chessboard:COLSxROWS:SQUARE_M`, `charuco:COLSxROWS:SQUARE_M:MARKER_M:DICT` or
 /// `aprilgrid:COLSxROWS:TAG_M:GAP_M`; throws InputError saying which part is wrong.
 BoardSpec ParseBoardSpec(const std::string& spec);
+
+/// All corners that the board has, by id, in frame B (m, z = 0), and where they begin and end along
+/// x and y.
+std::vector<Eigen::Vector3d> BoardCorners(const BoardSpec& board);
+std::pair<Eigen::Vector2d, Eigen::Vector2d> BoardExtent(const BoardSpec& board);
 
 /// The corners seen in one picture. Frame B: origin at the board's first corner, x along its rows,
 /// y along its columns, z into the board; all in the same order.

@@ -2,222 +2,265 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/calib3d.hpp>
-#include <optional>
+#include <set>
+#include <utility>
 
-#include "calibration/chessboard.h"
+#include "calibration/camera_bundle.h"
+#include "calibration/camera_start.h"
 #include "core/error.h"
-#include "vision/tag_detector.h"
 
 namespace flextip {
 namespace {
 
-using ImagePoints = std::vector<std::vector<cv::Point2f>>;
-using BoardPoints = std::vector<std::vector<cv::Point3f>>;
+constexpr int kMinCorners = 6;
+// Standard deviations above these say that the views do not determine the camera.
+constexpr double kMostFocalDeviation = 0.05;   // of the focal length
+constexpr double kMostCentreDeviation = 0.10;  // of the picture's diagonal
 
-// What OpenCV returns.
-struct Fit {
-  double rms_px = HUGE_VAL;
-  cv::Mat K, distortion, intrinsic_deviations, view_errors;
-  std::vector<cv::Mat> rotations, translations;
+struct Setup {
+  std::vector<SolvedView> views;
+  int width_px, height_px;
+  BoardWarp warp;
+  CameraCalibrationOptions options;
 };
 
-int Flags(const CameraCalibrationOptions& o) {
-  const bool four = o.distortion == Distortion::kRadialTangential;
-  if (!four && o.distortion != Distortion::kOpenCv) {
-    throw InputError("calibration of equidistant (fisheye) cameras is not supported yet");
+// One lens fitted, with the views that it rejects.
+struct LensFit {
+  CameraSolution solution;
+  std::vector<RejectedView> rejected;
+};
+
+void CheckOptions(int width_px, int height_px, const CameraCalibrationOptions& o) {
+  if (width_px <= 0 || height_px <= 0) {
+    throw InputError(
+        fmt::format("camera: expected a size in pixels, found {}x{}", width_px, height_px));
   }
-  if (four || o.distortion_terms == 5) return four ? cv::CALIB_FIX_K3 : 0;
-  if (o.distortion_terms == 8) return cv::CALIB_RATIONAL_MODEL;
-  if (o.distortion_terms == 12) return cv::CALIB_RATIONAL_MODEL | cv::CALIB_THIN_PRISM_MODEL;
-  throw InputError(
-      fmt::format("expected 5, 8 or 12 distortion terms, found {}", o.distortion_terms));
+  if (!o.lens) return;
+  const auto& all = AllLensModels();
+  const bool known = std::any_of(all.begin(), all.end(), [&](const LensModel& m) {
+    return m.distortion == o.lens->distortion && m.terms == o.lens->terms;
+  });
+  if (!known) {
+    throw InputError(fmt::format("camera: no lens model with {} terms", o.lens->terms));
+  }
 }
 
-int TermsOf(const CameraCalibrationOptions& o) {
-  return o.distortion == Distortion::kRadialTangential ? 4 : o.distortion_terms;
+BoardWarp FlatBoard(const BoardSpec& board) {
+  const auto [low, high] = BoardExtent(board);
+  BoardWarp warp;
+  warp.centre_m = 0.5 * (low + high);
+  warp.half_m = 0.5 * (high - low);
+  return warp;
 }
 
-// One calibration; `focal_px` 0 lets OpenCV guess where to start.
-std::optional<Fit> FitFrom(double focal_px, const BoardPoints& board, const ImagePoints& seen,
-                           cv::Size size, int flags) {
-  Fit fit;
-  if (focal_px > 0) {
-    fit.K = (cv::Mat_<double>(3, 3) << focal_px, 0, 0.5 * (size.width - 1), 0, focal_px,
-             0.5 * (size.height - 1), 0, 0, 1);
-    flags |= cv::CALIB_USE_INTRINSIC_GUESS;
+std::vector<SolvedView> UsableViews(const std::vector<BoardView>& views,
+                                    CameraCalibrationResult& result) {
+  std::vector<SolvedView> usable;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const BoardSighting& seen = views[v].sighting;
+    CalibrationView view{.name = views[v].name, .used = false, .reason = seen.reason};
+    if (seen.Found() && static_cast<int>(seen.px.size()) < kMinCorners) {
+      view.reason = fmt::format("{} corners, at least {} are needed", seen.px.size(), kMinCorners);
+    } else if (seen.Found()) {
+      SolvedView solved;
+      solved.name = views[v].name;
+      solved.index = v;
+      solved.ids = seen.ids;
+      solved.x_B = seen.x_B;
+      solved.px = seen.px;
+      solved.reason.resize(seen.px.size());
+      usable.push_back(solved);
+      view.used = true;
+    }
+    result.views.push_back(view);
   }
-  cv::Mat extrinsic_deviations;
-  const cv::TermCriteria criteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-12);
-  try {
-    fit.rms_px = cv::calibrateCamera(board, seen, size, fit.K, fit.distortion, fit.rotations,
-                                     fit.translations, fit.intrinsic_deviations,
-                                     extrinsic_deviations, fit.view_errors, flags, criteria);
-  } catch (const cv::Exception&) {
-    return {};  // degenerate views
-  }
-  const double focal = fit.K.at<double>(0, 0);
-  const bool sane = std::isfinite(fit.rms_px) && std::isfinite(focal) && focal > 0 &&
-                    fit.K.at<double>(1, 1) > 0 && cv::checkRange(fit.distortion);
-  if (!sane) return {};
+  return usable;
+}
+
+bool MayWarp(const Setup& setup) { return setup.options.warp.value_or(true); }
+
+// The lens with its own outliers, from a start that is known or from none.
+std::optional<LensFit> FitLens(const Setup& setup, const LensModel& lens, bool warp) {
+  auto start =
+      StartSolution(setup.views, setup.width_px, setup.height_px, lens.distortion, lens.terms);
+  if (!start) return {};
+  LensFit fit{*start, {}};
+  fit.solution.warp = setup.warp;
+  OutlierRule rule = setup.options.outliers;
+  rule.estimate_warp = warp;
+  if (!RejectOutliers(fit.solution, rule, fit.rejected)) return {};
   return fit;
 }
 
-// The best of several starts: from OpenCV's own guess alone the search can end in a wrong minimum,
-// with a long focal length and the views all far away.
-std::optional<Fit> BestFit(const BoardPoints& board, const ImagePoints& seen, cv::Size size,
-                           int flags) {
-  std::optional<Fit> best;
-  for (const double focal_of_width : {0.0, 0.6, 1.0, 1.8}) {
-    const auto fit = FitFrom(focal_of_width * size.width, board, seen, size, flags);
-    if (fit && (!best || fit->rms_px < best->rms_px)) best = fit;
-  }
-  return best;
-}
-
-void CheckImages(const std::vector<CalibrationImage>& images) {
-  if (images.empty()) throw InputError("no images to calibrate from");
-  const Image& first = images.front().image;
-  for (const CalibrationImage& i : images) {
-    if (i.image.Empty()) throw InputError::At(i.name, 0, "the image is empty");
-    if (i.image.width_px != first.width_px || i.image.height_px != first.height_px) {
-      throw InputError::At(
-          i.name, 0,
-          fmt::format("expected {}x{} pixels as in {}, found {}x{}", first.width_px,
-                      first.height_px, images.front().name, i.image.width_px, i.image.height_px));
+// The corners (view, place) that a solution uses.
+std::set<std::pair<std::size_t, std::size_t>> CornersOf(const CameraSolution& s) {
+  std::set<std::pair<std::size_t, std::size_t>> used;
+  for (const SolvedView& view : s.views) {
+    for (std::size_t i = 0; i < view.px.size(); ++i) {
+      if (view.IsUsed(i)) used.emplace(view.index, i);
     }
   }
+  return used;
 }
 
-std::vector<CalibrationView> FindBoards(const std::vector<CalibrationImage>& images,
-                                        const BoardSpec& board) {
-  std::vector<CalibrationView> views;
-  for (const CalibrationImage& i : images) {
-    CalibrationView view;
-    view.name = i.name;
-    view.corners_px = FindChessboard(ToGrey(i.image), board.columns, board.rows);
-    view.used = !view.corners_px.empty();
-    if (!view.used) {
-      view.reason =
-          fmt::format("no chessboard with {}x{} inner corners found", board.columns, board.rows);
+// Models are compared over the same corners, those that any of them explains: one that does not fit
+// must not look better for having called the rest outliers.
+std::optional<CameraSolution> OverCorners(
+    const CameraSolution& solution, const std::vector<SolvedView>& views,
+    const std::set<std::pair<std::size_t, std::size_t>>& corners) {
+  CameraSolution s = solution;
+  s.views.clear();
+  for (SolvedView view : views) {
+    const auto known = std::find_if(solution.views.begin(), solution.views.end(),
+                                    [&](const auto& v) { return v.index == view.index; });
+    for (std::size_t i = 0; i < view.px.size(); ++i) {
+      view.reason[i] = corners.count({view.index, i}) ? "" : "no lens model explains it";
     }
-    views.push_back(view);
+    if (view.CountUsed() < kMinCorners) continue;
+    if (known == solution.views.end()) return {};
+    view.T_CB = known->T_CB;
+    s.views.push_back(view);
   }
-  return views;
+  if (!AdjustBundle(s, {.estimate_warp = solution.warp_estimated})) return {};
+  return s;
 }
 
-std::optional<Fit> FitUsedViews(const std::vector<CalibrationView>& views, const BoardSpec& board,
-                                cv::Size size, int flags) {
-  std::vector<cv::Point3f> points;
-  for (const Eigen::Vector3d& p : ChessboardPoints(board.columns, board.rows, board.square_m)) {
-    points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()), 0.0f);
-  }
-  ImagePoints seen;
-  for (const CalibrationView& view : views) {
-    if (!view.used) continue;
-    seen.emplace_back();
-    for (const Eigen::Vector2d& c : view.corners_px) {
-      seen.back().emplace_back(static_cast<float>(c.x()), static_cast<float>(c.y()));
+// All lens models that can be fitted, with their held-out errors over the same corners.
+std::vector<LensCandidate> TryLenses(const Setup& setup) {
+  std::vector<LensCandidate> candidates;
+  std::set<std::pair<std::size_t, std::size_t>> explained;
+  for (const LensModel& lens : AllLensModels()) {
+    LensCandidate candidate{.model = lens, .solution = {}, .heldout = {}, .reason = {}};
+    if (auto fit = FitLens(setup, lens, MayWarp(setup))) {
+      candidate.solution = fit->solution;
+      explained.merge(CornersOf(fit->solution));
+    } else {
+      candidate.reason = "could not be fitted";
     }
+    candidates.push_back(std::move(candidate));
   }
-  return BestFit(BoardPoints(seen.size(), points), seen, size, flags);
-}
-
-int CountUsed(const std::vector<CalibrationView>& views) {
-  return static_cast<int>(
-      std::count_if(views.begin(), views.end(), [](const auto& v) { return v.used; }));
-}
-
-// Takes each view's error and pose from the fit.
-void FillViews(const Fit& fit, std::vector<CalibrationView>& views) {
-  int i = 0;
-  for (CalibrationView& view : views) {
-    if (!view.used) continue;
-    view.rms_px = fit.view_errors.at<double>(i);
-    cv::Matx33d R;
-    cv::Rodrigues(fit.rotations[i], R);
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) view.T_CB.R(row, column) = R(row, column);
-      view.T_CB.p[row] = fit.translations[i].at<double>(row);
+  for (LensCandidate& c : candidates) {
+    if (!c.reason.empty()) continue;
+    const auto common = OverCorners(c.solution, setup.views, explained);
+    if (common) c.heldout = LeaveViewsOut(*common, setup.options.folds);
+    if (!c.heldout) {
+      c.reason = "could not be fitted to what other models explain";
+      continue;
     }
-    ++i;
+    c.solution = *common;
+    c.reason = FoldsInPicture(c.solution.camera);
   }
+  return candidates;
 }
 
-// Whether a view was rejected because its error is far above the others'.
-bool RejectWorst(const CameraCalibrationOptions& options, std::vector<CalibrationView>& views) {
-  std::vector<double> errors;
-  for (const CalibrationView& v : views) {
-    if (v.used) errors.push_back(v.rms_px);
+// Whether the board is to be taken for bent, judged on views left out.
+bool DecideWarp(const Setup& setup, const CameraSolution& warped, std::string& reason) {
+  if (setup.options.warp) {
+    reason = "as asked for";
+    return *setup.options.warp;
   }
-  if (static_cast<int>(errors.size()) <= options.min_views) return false;
-  std::sort(errors.begin(), errors.end());
-  const double limit = options.outlier_ratio * std::max(errors[errors.size() / 2], 0.02);
-  if (errors.back() <= limit) return false;
-  for (CalibrationView& v : views) {
-    if (!v.used || v.rms_px < errors.back()) continue;
-    v.used = false;
-    v.reason = fmt::format("error {:.3f} px is above {:.3f} px, {} times the median", v.rms_px,
-                           limit, options.outlier_ratio);
-  }
-  return true;
+  CameraSolution flat = warped;
+  flat.warp.bulge_m.setZero();
+  const auto with = LeaveViewsOut(warped, setup.options.folds);
+  const auto without = AdjustBundle(flat) ? LeaveViewsOut(flat, setup.options.folds) : std::nullopt;
+  const bool helps = with && (!without || WarpHelps(*without, *with));
+  reason = helps ? "held-out views are predicted better with a bent board"
+                 : "held-out views are predicted no better with a bent board";
+  return helps;
 }
 
-CameraCalibration ToCamera(const Fit& fit, cv::Size size, const CameraCalibrationOptions& options) {
-  CameraCalibration c;
-  c.width_px = size.width;
-  c.height_px = size.height;
-  c.fu_px = fit.K.at<double>(0, 0);
-  c.fv_px = fit.K.at<double>(1, 1);
-  c.cu_px = fit.K.at<double>(0, 2);
-  c.cv_px = fit.K.at<double>(1, 2);
-  c.distortion = options.distortion;
-  c.distortion_coefficients.clear();
-  for (int i = 0; i < TermsOf(options); ++i) {
-    c.distortion_coefficients.push_back(fit.distortion.at<double>(i));
+// What is wrong with the result as a whole; empty where it can be used.
+std::string NotDetermined(const CameraCalibrationResult& r) {
+  const CameraCalibration& c = r.solution.camera;
+  if (r.covariance.size() == 0) return "the views do not determine the camera: they are all alike";
+  const auto sd = r.StandardDeviations();
+  if (sd[0] > kMostFocalDeviation * c.fu_px || sd[1] > kMostFocalDeviation * c.fv_px) {
+    return fmt::format(
+        "the views do not tell the focal length ({:.0f} px with a standard deviation of {:.0f}): "
+        "tilt the board by 30 degrees and more, in several directions",
+        c.fu_px, std::max(sd[0], sd[1]));
   }
-  return c;
+  const double most_px = kMostCentreDeviation * std::hypot(c.width_px, c.height_px);
+  if (std::max(sd[2], sd[3]) > most_px) {
+    return fmt::format(
+        "the views do not tell the principal point (a standard deviation of {:.0f} px): tilt the "
+        "board in more directions and show it all over the picture",
+        std::max(sd[2], sd[3]));
+  }
+  return {};
 }
 
-CameraCalibrationResult TooFew(CameraCalibrationResult result, int min_views) {
-  result.status = CameraCalibrationStatus::kTooFewViews;
-  result.message =
-      fmt::format("{} usable views, at least {} are needed", CountUsed(result.views), min_views);
+CameraCalibrationResult Failed(CameraCalibrationResult result, CameraCalibrationStatus status,
+                               const std::string& message) {
+  result.status = status;
+  result.message = message;
   return result;
+}
+
+void CountViews(CameraCalibrationResult& result) {
+  result.views_used = static_cast<int>(std::count_if(result.views.begin(), result.views.end(),
+                                                     [](const auto& v) { return v.used; }));
+  result.views_rejected = static_cast<int>(result.views.size()) - result.views_used;
+}
+
+// The views as they stand after the last fit.
+void MarkViews(const LensFit& fit, CameraCalibrationResult& result) {
+  for (CalibrationView& view : result.views) {
+    if (view.used) view.reason = "no pose of the board explains its corners";
+    view.used = false;
+  }
+  for (const RejectedView& r : fit.rejected) result.views[r.index].reason = r.reason;
+  for (const SolvedView& v : fit.solution.views) {
+    result.views[v.index].used = true;
+    result.views[v.index].reason.clear();
+  }
+  CountViews(result);
 }
 
 }  // namespace
 
-CameraCalibrationResult CalibrateCamera(const std::vector<CalibrationImage>& images,
-                                        const BoardSpec& board,
-                                        const CameraCalibrationOptions& options) {
-  if (board.kind != BoardKind::kChessboard) {
-    throw InputError("charuco and aprilgrid boards are not supported yet, only chessboard");
+std::vector<double> CameraCalibrationResult::StandardDeviations() const {
+  std::vector<double> sd;
+  for (int i = 0; i < solution.IntrinsicsCount() && i < covariance.rows(); ++i) {
+    sd.push_back(std::sqrt(covariance(i, i)));
   }
-  CheckImages(images);
-  const int flags = Flags(options);
-  const cv::Size size(images.front().image.width_px, images.front().image.height_px);
-  CameraCalibrationResult result;
-  result.views = FindBoards(images, board);
-  std::optional<Fit> fit;
-  do {
-    result.views_used = CountUsed(result.views);
-    result.views_rejected = static_cast<int>(images.size()) - result.views_used;
-    if (result.views_used < options.min_views) return TooFew(result, options.min_views);
-    fit = FitUsedViews(result.views, board, size, flags);
-    if (!fit) {
-      result.status = CameraCalibrationStatus::kNotConverged;
-      result.message = "the views do not determine the camera (are they all alike?)";
-      return result;
-    }
-    FillViews(*fit, result.views);
-  } while (RejectWorst(options, result.views));
+  return sd;
+}
 
-  result.camera = ToCamera(*fit, size, options);
-  for (int i = 0; i < 4 + TermsOf(options); ++i) {
-    result.standard_deviations.push_back(fit->intrinsic_deviations.at<double>(i));
+CameraCalibrationResult CalibrateCamera(const std::vector<BoardView>& views, int width_px,
+                                        int height_px, const BoardSpec& board,
+                                        const CameraCalibrationOptions& options) {
+  CheckOptions(width_px, height_px, options);
+  CameraCalibrationResult result;
+  const Setup setup{UsableViews(views, result), width_px, height_px, FlatBoard(board), options};
+  CountViews(result);
+  const int needed = options.outliers.min_views;
+  if (result.views_used < needed) {
+    return Failed(
+        result, CameraCalibrationStatus::kTooFewViews,
+        fmt::format("{} usable views, at least {} are needed", result.views_used, needed));
   }
-  result.rms_reprojection_error_px = fit->rms_px;
+  std::optional<LensModel> lens = options.lens;
+  if (!lens) {
+    result.candidates = TryLenses(setup);
+    if (const auto chosen = ChooseLens(result.candidates)) lens = result.candidates[*chosen].model;
+  }
+  auto fit = lens ? FitLens(setup, *lens, MayWarp(setup)) : std::nullopt;
+  if (fit && MayWarp(setup) && !DecideWarp(setup, fit->solution, result.warp_reason)) {
+    fit = FitLens(setup, *lens, false);
+  }
+  if (!fit) {
+    return Failed(result, CameraCalibrationStatus::kNotDetermined,
+                  "the views do not determine the camera (are they all alike?)");
+  }
+  MarkViews(*fit, result);
+  result.solution = std::move(fit->solution);
+  result.covariance = result.solution.Covariance();
+  if (const auto heldout = LeaveViewsOut(result.solution, options.folds)) {
+    result.heldout_rms_px = heldout->rms_px;
+  }
+  const std::string wrong = NotDetermined(result);
+  if (!wrong.empty()) return Failed(result, CameraCalibrationStatus::kNotDetermined, wrong);
   result.status = CameraCalibrationStatus::kOk;
   return result;
 }

@@ -1,59 +1,60 @@
-// A camera's intrinsics from pictures of a flat board.
+// A camera's intrinsics from views of a board.
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calibration/board.h"
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/pose.h"
+#include "calibration/camera_choice.h"
+#include "calibration/camera_outliers.h"
+#include "calibration/camera_solution.h"
 
 namespace flextip {
 
-/// One picture with the name it goes by in messages.
-struct CalibrationImage {
+/// One picture of the board with the name it goes by in messages.
+struct BoardView {
   std::string name;
-  Image image;
+  BoardSighting sighting;
 };
 
 struct CameraCalibrationOptions {
-  Distortion distortion = Distortion::kOpenCv;  ///< with its `distortion_terms`
-  int distortion_terms = 5;
-  int min_views = 3;
-  /// A view whose error is above this many times the median of all is rejected.
-  double outlier_ratio = 4.0;
+  std::optional<LensModel> lens;  ///< empty: all are tried, and held-out views choose
+  /// Whether the board may be bent; empty: held-out views decide.
+  std::optional<bool> warp;
+  int folds = 6;
+  OutlierRule outliers;
 };
 
 struct CalibrationView {
   std::string name;
   bool used = false;
-  std::string reason;                       ///< why it was rejected
-  double rms_px = 0.0;                      ///< of the views used
-  Pose T_CB;                                ///< board to camera, of the views used
-  std::vector<Eigen::Vector2d> corners_px;  ///< row by row, empty where no board was found
+  std::string reason;  ///< why it was rejected
 };
 
-enum class CameraCalibrationStatus { kOk, kTooFewViews, kNotConverged };
+enum class CameraCalibrationStatus { kOk, kTooFewViews, kNotDetermined };
 
 struct CameraCalibrationResult {
   CameraCalibrationStatus status = CameraCalibrationStatus::kTooFewViews;
   std::string message;
-  CameraCalibration camera;
-  /// Standard deviations: fu, fv, cu, cv (px), then the distortion coefficients.
-  std::vector<double> standard_deviations;
-  double rms_reprojection_error_px = 0.0;  ///< per corner distance
+  CameraSolution solution;
+  Eigen::MatrixXd covariance;             ///< solution.Covariance()
+  double heldout_rms_px = 0.0;            ///< of the views used, each left out once
+  std::vector<LensCandidate> candidates;  ///< where the lens was chosen
+  std::string warp_reason;                ///< why the board was, or was not, taken for flat
+  std::vector<CalibrationView> views;     ///< all that were given
   int views_used = 0, views_rejected = 0;
-  std::vector<CalibrationView> views;
 
   bool IsUsable() const { return status == CameraCalibrationStatus::kOk; }
+  /// Of fu, fv, cu, cv (px), then the distortion coefficients.
+  std::vector<double> StandardDeviations() const;
 };
 
-/// Calibrates from pictures of one size. Throws InputError for a board that is not supported yet,
-/// no pictures, an empty picture or one of another size than the first.
-CameraCalibrationResult CalibrateCamera(const std::vector<CalibrationImage>& images,
-                                        const BoardSpec& board,
+/// Throws InputError for a size that is not positive and a lens model that there is not. A camera
+/// that the views do not determine (all facing the board straight on, say) is a status.
+CameraCalibrationResult CalibrateCamera(const std::vector<BoardView>& views, int width_px,
+                                        int height_px, const BoardSpec& board,
                                         const CameraCalibrationOptions& options = {});
 
 }  // namespace flextip
