@@ -22,14 +22,16 @@ SPLINED = "LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx={}_Ny={}_fov_x_deg={}"
 
 
 def read_corners(folder, board):
-    """Corners by image, shape (rows, columns, 2); images without a board are left out."""
-    corners = {}
+    """Corners by image, shape (rows, columns, 2); images without a board are left out. The images
+    are numbered, as mrcal orders them by the numbers in their names."""
+    corners, numbers = {}, {}
     for line in (folder / "corners.vnl").read_text().splitlines():
         if line.startswith("#"):
             continue
         name, x, y, _ = line.split()
         if x != "-":
-            corners.setdefault(name, []).append((float(x), float(y)))
+            number = numbers.setdefault(name, f"{len(numbers):04}.png")
+            corners.setdefault(number, []).append((float(x), float(y)))
     shape = (board["rows"], board["columns"], 2)
     return {n: np.array(c).reshape(shape) for n, c in corners.items()}
 
@@ -115,7 +117,7 @@ def row(head, corners, name):
     inputs = model.optimization_inputs()
     residuals = mrcal.residuals_chessboard(inputs).reshape(-1, 2)
     weights = inputs["observations_board"][..., 2]
-    start = frames_by_name(model, sorted(corners))
+    start = frames_by_name(model, corners)
     return {
         "peer": "mrcal", "model": name.replace("LENSMODEL_", ""),
         "views": len(corners), "outliers": int(np.sum(weights <= 0)),
@@ -134,7 +136,7 @@ def main():
     parser.add_argument("--models", default="OPENCV5,OPENCV8,OPENCV12,SPLINED")
     arguments = parser.parse_args()
     head = json.loads((arguments.folder / "set.json").read_text())
-    corners = dict(sorted(read_corners(arguments.folder, head["board"]).items()))
+    corners = read_corners(arguments.folder, head["board"])
     rows = []
     for name in arguments.models.split(","):
         full = "LENSMODEL_" + name

@@ -59,7 +59,8 @@ class CornerError : public ceres::CostFunction {
     const Eigen::Vector3d x_C0 = T_C0B * warp.Bent(x_B_), x_C = T_CC0 * x_C0;
     if (!(x_C.z() > 0)) return false;
     const ProjectionDerivative d = DifferentiateProjection(camera, x_C);
-    Eigen::Map<Eigen::Vector2d>(error) = d.px - px_;
+    error[0] = d.px.x() - px_.x();
+    error[1] = d.px.y() - px_.y();
     if (!jacobians) return true;
 
     const Eigen::Matrix<double, 2, 3> by_C0 = d.by_point * T_CC0.R;

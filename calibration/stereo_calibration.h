@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,26 +11,34 @@
 
 namespace flextip {
 
-/// What was seen at one moment; an eye may have seen no board, or not been there.
+/// What was seen at one moment; an eye may have seen no board (its sighting's `reason` says why).
 struct StereoPair {
   std::array<BoardView, 2> eyes;
 };
 
 struct StereoOptions {
   CameraCalibrationOptions camera;  ///< of each eye alone
-  /// A pair whose eyes disagree on the board's pose by more than this many times the median pair
-  /// (and by more than what its corners' noise may do) is taken apart.
-  double pair_ratio = 6.0;
+  /// Pictures of a pair whose corners are off by more than this many times the median pair's, and
+  /// were not when each eye was calibrated alone, are not of one moment.
+  double pair_ratio = 4.0;
   int folds = 6;  ///< of the pairs, for the held-out errors
 };
 
 struct StereoPairResult {
-  std::string name;  ///< of both pictures
-  std::array<std::string, 2> reason;  ///< why an eye's picture is not used
-  std::string pair_reason;  ///< why its two pictures are not taken for one moment
+  std::array<std::string, 2> names;
+  std::array<std::string, 2> reasons;  ///< why an eye's picture is not used; empty where it is
+  std::string apart;  ///< why its two pictures, though used, are not taken for one moment
 };
 
 enum class StereoStatus { kOk, kEyeFailed, kTooFewPairs, kNotDetermined };
+
+/// Errors of pairs that were left out: lenses and T_C0C1 are from the other pairs.
+struct StereoHeldOut {
+  double rms_px = 0.0;           ///< per corner, the board's pose from the pair's own corners
+  double epipolar_rms_px = 0.0;  ///< difference of rows after rectification
+  double length_rms_m = 0.0;     ///< of distances between neighbouring corners, triangulated
+  double length_mean_m = 0.0;    ///< the mean of that error: a scale that is wrong
+};
 
 struct StereoResult {
   StereoStatus status = StereoStatus::kTooFewPairs;
@@ -38,20 +47,22 @@ struct StereoResult {
   std::array<CameraCalibrationResult, 2> alone;  ///< each eye by itself
   Eigen::MatrixXd covariance;                    ///< solution.Covariance()
   Baseline baseline;
-  /// Of pairs left out (lenses and T_C0C1 from the others, the board's pose from its own corners).
-  double heldout_rms_px = 0.0;
+  double epipolar_rms_px = 0.0;  ///< of the pairs that were calibrated from
+  std::optional<StereoHeldOut> heldout;
   std::vector<StereoPairResult> pairs;  ///< all that were given
   int pairs_used = 0, single_views_used = 0;
 
   bool IsUsable() const { return status == StereoStatus::kOk; }
+  /// Of (dw, dp) of T_C0C1.
   Eigen::MatrixXd PairCovariance() const {
     return covariance.block(solution.PairStart(), solution.PairStart(), 6, 6);
   }
 };
 
-/// Throws InputError for sizes that are not positive.
+/// Each eye alone first, with its outliers and its lens; then both together. Throws InputError for
+/// sizes that are not positive.
 StereoResult CalibrateStereo(const std::vector<StereoPair>& pairs,
-                             const std::array<Eigen::Vector2i, 2>& size_px, const BoardSpec& board,
+                             const std::array<Eigen::Vector2i, 2>& sizes_px, const BoardSpec& board,
                              const StereoOptions& options = {});
 
 }  // namespace flextip

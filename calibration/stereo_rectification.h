@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <optional>
 
 #include "core/camera.h"
 #include "core/pose.h"
