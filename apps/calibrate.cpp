@@ -12,6 +12,7 @@ void AddCalibrate(CLI::App& app, AppContext& context) {
   command->require_subcommand(1);
   command->footer("Example:\n  flextip calibrate camera --help\n");
   AddCalibrateCamera(*command, context);
+  AddCalibrateStereo(*command, context);
 }
 
 }  // namespace flextip

@@ -9,5 +9,6 @@ namespace flextip {
 
 // As in commands.h, of `calibrate`.
 void AddCalibrateCamera(CLI::App& calibrate, AppContext& context);
+void AddCalibrateStereo(CLI::App& calibrate, AppContext& context);
 
 }  // namespace flextip

@@ -70,18 +70,28 @@ void AddRows(const UncertaintyMap& map, std::string& text) {
   }
 }
 
+CameraUncertainty Mapped(const std::string& camera, const ProjectionUncertainty& uncertainty,
+                         double depth_m) {
+  return {.camera = camera,
+          .near = MapUncertainty(uncertainty, depth_m),
+          .far = MapUncertainty(uncertainty, HUGE_VAL),
+          .next = {}};
+}
+
 }  // namespace
+
+std::optional<CameraUncertainty> FindUncertainty(const StereoSolution& solution, int eye) {
+  const auto uncertainty = ProjectionUncertainty::Of(solution, eye);
+  if (!uncertainty) return {};
+  return Mapped(fmt::format("cam{}", eye), *uncertainty, MedianBoardDepth(solution, eye));
+}
 
 std::optional<CameraUncertainty> FindUncertainty(const CameraSolution& solution,
                                                  const std::vector<Eigen::Vector3d>& x_B) {
   const auto uncertainty = ProjectionUncertainty::Of(solution);
   if (!uncertainty) return {};
   const double depth_m = MedianBoardDepth(solution);
-  CameraUncertainty u{.camera = "cam0",
-                      .near = MapUncertainty(*uncertainty, depth_m),
-                      .far = MapUncertainty(*uncertainty, HUGE_VAL),
-                      .next = {},
-                      .uncertainty = *uncertainty};
+  CameraUncertainty u = Mapped("cam0", *uncertainty, depth_m);
   if (x_B.empty()) return u;
   u.next = RankNextViews(*uncertainty, CandidateViews(solution, x_B), x_B, {.depth_m = depth_m});
   if (u.next.size() > kNextViews) u.next.resize(kNextViews);

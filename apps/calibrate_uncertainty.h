@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,13 +17,14 @@ struct CameraUncertainty {
   std::string camera;  ///< "cam0"
   UncertaintyMap near, far;
   std::vector<NextView> next;  ///< the best ones first; empty where none was looked for
-  ProjectionUncertainty uncertainty;
 };
 
 /// Empty where the views do not determine the camera. `x_B`: the board's corners; empty: no next
 /// view is looked for.
 std::optional<CameraUncertainty> FindUncertainty(const CameraSolution& solution,
                                                  const std::vector<Eigen::Vector3d>& x_B);
+/// Of one of two cameras that were calibrated together.
+std::optional<CameraUncertainty> FindUncertainty(const StereoSolution& solution, int eye);
 
 /// `working_distance_m`, of both maps mean, largest and centre, and `next_views`.
 nlohmann::json UncertaintyJson(const CameraUncertainty& uncertainty);

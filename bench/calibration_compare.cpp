@@ -4,11 +4,13 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "bench/calibration_corners.h"
 #include "bench/calibration_peer.h"
 #include "bench/tool.h"
+#include "calibration/projection_uncertainty.h"
 
 namespace flextip {
 namespace {
@@ -39,7 +41,7 @@ nlohmann::json Row(const std::string& peer, const std::string& model, const Corn
     const double rms = FittedPosesRms(calibrate(HalfOf(set, half)), HalfOf(set, 1 - half));
     sum_px2 += 0.5 * rms * rms;
   }
-  return {{"peer", peer},
+  nlohmann::json row = {{"peer", peer},
           {"model", model},
           {"outliers", whole.outliers},
           {"rms_px", whole.rms_px},
@@ -47,6 +49,24 @@ nlohmann::json Row(const std::string& peer, const std::string& model, const Corn
           {"fu_px", whole.camera.fu_px},
           {"fu_sd_px", whole.sd.front()},
           {"seconds", whole.seconds}};
+  const auto uncertainty =
+      whole.solution ? ProjectionUncertainty::Of(*whole.solution) : std::nullopt;
+  if (!uncertainty) return row;
+  const LensModel lens{whole.camera.distortion,
+                       static_cast<int>(whole.camera.distortion_coefficients.size())};
+  row["lens"] = lens.Name();
+  row["warp_mm"] = {1e3 * whole.warp.bulge_m.x(), 1e3 * whole.warp.bulge_m.y()};
+  row["median_depth_m"] = MedianBoardDepth(*whole.solution);
+  for (const auto& [name, depth_m] :
+       {std::pair("near", set.working_distance_m), std::pair("infinity", HUGE_VAL)}) {
+    const UncertaintyMap map = MapUncertainty(*uncertainty, depth_m, 13, 10);
+    const Eigen::Vector2d middle(0.5 * set.width_px, 0.5 * set.height_px);
+    row[fmt::format("sd_{}_mean_px", name)] = map.MeanPx();
+    row[fmt::format("sd_{}_max_px", name)] = map.LargestPx();
+    row[fmt::format("sd_{}_centre_px", name)] =
+        WorstSd(uncertainty->CovariancePx(middle, depth_m).value());
+  }
+  return row;
 }
 
 void Run(Arguments& a) {
@@ -64,6 +84,15 @@ void Run(Arguments& a) {
                        [&](const CornerSet& s) { return CalibrateByOpenCv(s, terms); }));
     fmt::print("{}\n", rows.back().dump());
   }
+  const auto add_own = [&](const std::string& name, const std::optional<LensModel>& lens) {
+    rows.push_back(Row("flextip", name, set,
+                       [&](const CornerSet& s) { return CalibrateByFlextip(s, lens); }));
+    fmt::print("{}\n", rows.back().dump());
+  };
+  for (const int terms : {5, 8, 12}) {
+    add_own(fmt::format("{} terms", terms), LensModel{Distortion::kOpenCv, terms});
+  }
+  add_own("chosen", {});
   std::ofstream(a.out / "rows.json") << rows.dump(1) << '\n';
 }
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <opencv2/calib3d.hpp>
 
+#include "calibration/camera_calibration.h"
 #include "core/error.h"
 #include "vision/camera_model.h"
 #include "vision/reprojection.h"
@@ -80,6 +81,26 @@ CalibrationAnswer CalibrateByOpenCv(const CornerSet& set, int terms) {
   c.distortion_coefficients.clear();
   for (int i = 0; i < terms; ++i) c.distortion_coefficients.push_back(distortion.at<double>(i));
   for (int i = 0; i < 4 + terms; ++i) answer.sd.push_back(deviations.at<double>(i));
+  return answer;
+}
+
+CalibrationAnswer CalibrateByFlextip(const CornerSet& set, const std::optional<LensModel>& lens) {
+  std::vector<BoardView> views;
+  for (std::size_t i = 0; i < set.names.size(); ++i) views.push_back({set.names[i], set.seen[i]});
+  CameraCalibrationOptions options;
+  options.lens = lens;
+  const auto start = std::chrono::steady_clock::now();
+  const auto result = CalibrateCamera(views, set.width_px, set.height_px, set.board, options);
+  CalibrationAnswer answer;
+  answer.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!result.IsUsable()) throw WorkError(result.message);
+  answer.camera = result.solution.camera;
+  answer.warp = result.solution.warp;
+  answer.sd = result.StandardDeviations();
+  answer.rms_px = result.solution.RmsPx();
+  answer.outliers = result.solution.Outliers();
+  answer.solution = result.solution;
   return answer;
 }
 

@@ -19,6 +19,13 @@ Matrix6d WorldOfPose(const Pose& T_CB) {
   return L;
 }
 
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 double MeanFinite(const Eigen::MatrixXd& values) {
   double sum = 0.0;
   int count = 0;
@@ -47,6 +54,42 @@ std::optional<ProjectionUncertainty> ProjectionUncertainty::Of(const CameraSolut
   M.topLeftCorner(common, common).setIdentity();
   for (std::size_t v = 0; v < solution.views.size(); ++v) {
     M.block<6, 6>(common, solution.ViewStart(v)) = WorldOfPose(solution.views[v].T_CB) / u.views_;
+  }
+  u.covariance_ = M * all * M.transpose();
+  return u;
+}
+
+std::optional<ProjectionUncertainty> ProjectionUncertainty::Of(const StereoSolution& solution,
+                                                               int eye) {
+  const Eigen::MatrixXd all = solution.Covariance();
+  if (all.size() == 0) return {};
+  ProjectionUncertainty u;
+  u.camera_ = solution.cameras[eye];
+  u.warp_ = solution.warp;
+  u.noise_px_ = solution.noise_px;
+  u.intrinsics_ = solution.IntrinsicsCount(eye);
+  u.warps_ = solution.WarpCount();
+  u.views_ = static_cast<int>(solution.views.size());
+  const int common = u.intrinsics_ + u.warps_, pair = solution.PairStart();
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(common + 6, all.rows());
+  M.block(0, eye == 0 ? 0 : solution.IntrinsicsCount(0), u.intrinsics_, u.intrinsics_)
+      .setIdentity();
+  M.block(u.intrinsics_, pair + 6, u.warps_, u.warps_).setIdentity();
+  for (std::size_t v = 0; v < solution.views.size(); ++v) {
+    const StereoView& view = solution.views[v];
+    const Matrix6d L = WorldOfPose(solution.T_CB(view, eye)) / u.views_;
+    if (eye == 0) {
+      M.block<6, 6>(common, solution.ViewStart(v)) = L;
+      continue;
+    }
+    // T_C1B = T_C0C1^-1 T_C0B: its step from those of the two.
+    const Eigen::Matrix3d R_C1C0 = solution.T_C0C1.R.transpose();
+    Matrix6d by_view = Matrix6d::Zero(), by_pair;
+    by_view.topLeftCorner<3, 3>() = by_view.bottomRightCorner<3, 3>() = R_C1C0;
+    by_pair = -by_view;
+    by_pair.bottomLeftCorner<3, 3>() = R_C1C0 * Skew(view.T_C0B.p - solution.T_C0C1.p);
+    M.block<6, 6>(common, solution.ViewStart(v)) = L * by_view;
+    M.block<6, 6>(common, pair) += L * by_pair;
   }
   u.covariance_ = M * all * M.transpose();
   return u;
@@ -161,14 +204,19 @@ UncertaintyMap MapUncertainty(const ProjectionUncertainty& uncertainty, double d
 }
 
 double MedianBoardDepth(const CameraSolution& solution) {
+  const Eigen::Vector3d centre_B(solution.warp.centre_m.x(), solution.warp.centre_m.y(), 0);
   std::vector<double> depths;
-  for (const SolvedView& view : solution.views) {
-    const Eigen::Vector3d centre(solution.warp.centre_m.x(), solution.warp.centre_m.y(), 0);
-    depths.push_back((view.T_CB * centre).z());
+  for (const SolvedView& view : solution.views) depths.push_back((view.T_CB * centre_B).z());
+  return Median(depths);
+}
+
+double MedianBoardDepth(const StereoSolution& solution, int eye) {
+  const Eigen::Vector3d centre_B(solution.warp.centre_m.x(), solution.warp.centre_m.y(), 0);
+  std::vector<double> depths;
+  for (const StereoView& view : solution.views) {
+    depths.push_back((solution.T_CB(view, eye) * centre_B).z());
   }
-  if (depths.empty()) return 0.0;
-  std::nth_element(depths.begin(), depths.begin() + depths.size() / 2, depths.end());
-  return depths[depths.size() / 2];
+  return Median(depths);
 }
 
 }  // namespace flextip

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/camera_solution.h"
+#include "calibration/stereo_solution.h"
 
 namespace flextip {
 
@@ -21,6 +22,8 @@ class ProjectionUncertainty {
  public:
   /// Empty where the views do not determine the solution.
   static std::optional<ProjectionUncertainty> Of(const CameraSolution& solution);
+  /// Of one of two cameras that were calibrated together.
+  static std::optional<ProjectionUncertainty> Of(const StereoSolution& solution, int eye);
 
   /// Of the pixel (px^2) of what is seen at `px` in the plane z = `depth_m`; HUGE_VAL: at infinity.
   /// Empty where the lens model sees nothing there.
@@ -66,5 +69,7 @@ UncertaintyMap MapUncertainty(const ProjectionUncertainty& uncertainty, double d
 /// The median distance of the boards' centres along the axis (m): the distance that was calibrated
 /// at.
 double MedianBoardDepth(const CameraSolution& solution);
+/// The same from camera `eye`.
+double MedianBoardDepth(const StereoSolution& solution, int eye);
 
 }  // namespace flextip
