@@ -130,11 +130,76 @@ def row(head, corners, name):
     }
 
 
+def stereo(left, right, model):
+    """Both cameras together: RMS, baseline and its standard deviation (from the joint solve)."""
+    head = json.loads((left / "set.json").read_text())
+    board = head["board"]
+    corners = {f"{eye}{n}": c for eye, folder in (("left", left), ("right", right))
+               for n, c in read_corners(folder, board).items()}
+    with tempfile.TemporaryDirectory() as out:
+        cache = Path(out) / "corners.vnl"
+        write_corners(cache, corners)
+        start = time.monotonic()
+        subprocess.run(
+            ["mrcal-calibrate-cameras", "--lensmodel", model, "--focal", str(head["focal_px"]),
+             "--imagersize", str(head["width_px"]), str(head["height_px"]),
+             "--object-spacing", str(board["square_m"]),
+             "--object-width-n", str(board["columns"]), "--object-height-n", str(board["rows"]),
+             "--corners-cache", str(cache), "--outdir", out, "left*", "right*"],
+            check=True, capture_output=True, cwd=out)
+        seconds = time.monotonic() - start
+        models = [mrcal.cameramodel(f"{out}/camera-{i}.cameramodel") for i in (0, 1)]
+    inputs = models[0].optimization_inputs()
+    residuals = mrcal.residuals_chessboard(inputs).reshape(-1, 2)
+    T = mrcal.compose_Rt(models[0].extrinsics_Rt_fromref(), models[1].extrinsics_Rt_toref())
+    return {"peer": "mrcal", "model": model.replace("LENSMODEL_", ""),
+            "outliers": int(np.sum(inputs["observations_board"][..., 2] <= 0)),
+            "rms_px": float(np.sqrt(np.mean(np.sum(residuals ** 2, axis=1)))),
+            "baseline_mm": float(1e3 * np.linalg.norm(T[3])),
+            "fu_px": [float(m.intrinsics()[1][0]) for m in models],
+            "seconds": seconds}
+
+
+def spread(folder, runs):
+    """Errors of calibrations from other noise in units of what mrcal says of itself."""
+    truth = json.loads((folder / "truth.json").read_text())
+    T_CB = np.array(truth["T_CB"]).reshape(-1, 4, 4)
+    nees = []
+    for run in sorted((folder / "runs").iterdir())[:runs]:
+        head = json.loads((run / "set.json").read_text())
+        model, _ = calibrate(head, read_corners(run, head["board"]), "LENSMODEL_OPENCV5")
+        inputs = model.optimization_inputs()
+        frames = mrcal.Rt_from_rt(inputs["frames_rt_toref"])
+        for place in truth["places"]:
+            x_C = np.array(place["x_C"])
+            x_B = np.array([np.linalg.inv(T) @ [*x_C, 1.0] for T in T_CB])[:, :3]
+            mean = np.mean([mrcal.transform_point_Rt(f, x) for f, x in zip(frames, x_B)], axis=0)
+            error = mrcal.project(mean, *model.intrinsics()) - np.array(place["px"])
+            covariance = mrcal.projection_uncertainty(x_C, model=model, what="covariance")
+            nees.append(float(error @ np.linalg.solve(covariance, error)))
+    result = {"mrcal": {"runs": len(nees) // len(truth["places"]),
+                        "projection_nees_of_2": float(np.mean(nees))}}
+    (folder / "mrcal_spread.json").write_text(json.dumps(result, indent=1))
+    print(json.dumps(result))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--models", default="OPENCV5,OPENCV8,OPENCV12,SPLINED")
+    parser.add_argument("--spread", type=int, metavar="RUNS",
+                        help="FOLDER is of flextip_calibration_spread: so many of its runs")
+    parser.add_argument("--stereo", type=Path, metavar="RIGHT",
+                        help="FOLDER is of the left camera, this one of the right")
     arguments = parser.parse_args()
+    if arguments.stereo:
+        for name in arguments.models.split(","):
+            if name != "SPLINED":
+                print(json.dumps(stereo(arguments.folder, arguments.stereo, "LENSMODEL_" + name)))
+        return
+    if arguments.spread:
+        spread(arguments.folder, arguments.spread)
+        return
     head = json.loads((arguments.folder / "set.json").read_text())
     corners = read_corners(arguments.folder, head["board"])
     rows = []
