@@ -12,7 +12,9 @@ void AddCalibrate(CLI::App& app, AppContext& context) {
   command->require_subcommand(1);
   command->footer("Example:\n  flextip calibrate camera --help\n");
   AddCalibrateCamera(*command, context);
+  AddCalibrateBudget(*command, context);
   AddCalibrateStereo(*command, context);
+  AddCalibrateStrain(*command, context);
 }
 
 }  // namespace flextip

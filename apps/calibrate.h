@@ -8,7 +8,9 @@
 namespace flextip {
 
 // As in commands.h, of `calibrate`.
+void AddCalibrateBudget(CLI::App& calibrate, AppContext& context);
 void AddCalibrateCamera(CLI::App& calibrate, AppContext& context);
 void AddCalibrateStereo(CLI::App& calibrate, AppContext& context);
+void AddCalibrateStrain(CLI::App& calibrate, AppContext& context);
 
 }  // namespace flextip

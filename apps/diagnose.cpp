@@ -84,10 +84,10 @@ void CheckNames(const std::vector<std::string>& effects) {
 
 void Run(const Options& options, bool quiet) {
   CheckNames(options.without);
-  const ReadResult read = ReadInput(options.input);
+  const InputRead read = ReadInput(options.input);
   const Recording& recording = read.recording;
   OutputFolder output(options.input.out, "diagnose",
-                      {.force = options.force, .inputs = {options.input.recording}});
+                      {.force = options.force, .inputs = options.input.Files()});
   output.Warn(read.warnings);
   const DiagnosisResult result =
       Diagnose(recording, options.input.recording.string(), {.without = options.without});
@@ -98,10 +98,12 @@ void Run(const Options& options, bool quiet) {
   WriteTextFile(output.folder() / "diagnosis.json", json.dump(2) + "\n");
   WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result));
   WriteModel(output.folder() / "model.yaml", model);
-  output.WriteSummary({{"verdicts", result.verdict},
-                       {"samples", result.samples},
-                       {"fits", result.fits},
-                       {"converged", result.converged}});
+  nlohmann::json summary = {{"verdicts", result.verdict},
+                            {"samples", result.samples},
+                            {"fits", result.fits},
+                            {"converged", result.converged}};
+  if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
+  output.WriteSummary(summary);
   WriteDiagnoseReport(output.folder());
   output.Commit();
   if (!quiet) PrintAnswer(result, options);

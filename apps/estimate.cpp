@@ -137,13 +137,13 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
 }
 
 void RunEstimate(const EstimateOptions& options, bool quiet) {
-  const ReadResult read = ReadInput(options.input);
+  const InputRead read = ReadInput(options.input);
   const Recording& recording = read.recording;
   if (!recording.wrist0) {
     throw InputError(options.input.recording.string() +
                      ": no wrist0, without which nothing can be estimated");
   }
-  std::vector<std::filesystem::path> inputs = {options.input.recording};
+  std::vector<std::filesystem::path> inputs = options.input.Files();
   if (!options.model.empty()) inputs.push_back(options.model);
   OutputFolder output(options.input.out, "estimate", {.force = options.force, .inputs = inputs});
   output.Warn(read.warnings);
@@ -156,7 +156,9 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   CsvWriter csv(kColumns);
   for (const auto& e : estimates) AddRow(csv, e.t_ns, e.value);
   WriteTextFile(output.folder() / "state0" / "data.csv", csv.text());
-  output.WriteSummary(Summary(options, recording, estimates));
+  nlohmann::json summary = Summary(options, recording, estimates);
+  if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
+  output.WriteSummary(summary);
   WriteEstimateReport(output.folder());
   output.Commit();
   if (!quiet) {

@@ -1,5 +1,7 @@
 #include "apps/recording_input.h"
 
+#include <fmt/format.h>
+
 #include "recording/sensor_streams.h"
 
 namespace flextip {
@@ -13,14 +15,31 @@ void AddRecordingInput(CLI::App& command, RecordingInput& input) {
       ->type_name("OUT");
   command.add_option("--tracked", input.tracked,
                      "Take the tip from this result of flextip track instead of vision0");
+  AddCalibrationOption(command, input.calibrations);
 }
 
-ReadResult ReadInput(const RecordingInput& input) {
-  ReadResult read = ReadRecording(input.recording, {.check_frames = false});
-  if (!input.tracked.empty()) {
-    ReadLog log;
-    read.recording.vision0 = ReadVision(input.tracked / "vision0", log);
-    read.warnings.insert(read.warnings.end(), log.warnings.begin(), log.warnings.end());
+std::vector<std::filesystem::path> RecordingInput::Files() const {
+  std::vector<std::filesystem::path> files = calibrations;
+  files.push_back(recording);
+  if (!tracked.empty()) files.push_back(tracked);
+  return files;
+}
+
+InputRead ReadInput(const RecordingInput& input) {
+  InputRead read{ReadRecording(input.recording, {.check_frames = false}), {}};
+  Recording& recording = read.recording;
+  if (!input.tracked.empty()) recording.vision0.reset();
+  read.calibrations = UseCalibrations(input.calibrations, recording, read.warnings);
+  if (input.tracked.empty()) return read;
+  ReadLog log;
+  recording.vision0 = ReadVision(input.tracked / "vision0", log);
+  read.warnings.insert(read.warnings.end(), log.warnings.begin(), log.warnings.end());
+  for (const auto& used : read.calibrations) {
+    StateRegistrationNoise(used.calibration, *recording.vision0);
+  }
+  for (const std::string& name : NotTrackedWith(input.tracked, read.calibrations)) {
+    read.warnings.push_back(
+        fmt::format("{}: the tips were tracked without {}", input.tracked.string(), name));
   }
   return read;
 }

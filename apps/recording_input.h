@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "apps/calibration_input.h"
 #include "recording/recording_reader.h"
 
 namespace flextip {
@@ -11,13 +12,22 @@ namespace flextip {
 struct RecordingInput {
   std::filesystem::path recording, out;
   std::filesystem::path tracked;  ///< a result of flextip track; empty: the recording's own tips
+  CalibrationFiles calibrations;
+
+  /// Everything that is read, for OutputFolder.
+  std::vector<std::filesystem::path> Files() const;
 };
 
-/// RECORDING, --output and --tracked. `input` must outlive the parsing.
+struct InputRead : ReadResult {
+  std::vector<UsedCalibration> calibrations;
+};
+
+/// RECORDING, --output, --tracked and --calibration. `input` must outlive the parsing.
 void AddRecordingInput(CLI::App& command, RecordingInput& input);
 
 /// The recording without a look at its frames, vision0 replaced by the tracked one where that was
-/// asked for. Throws InputError.
-ReadResult ReadInput(const RecordingInput& input);
+/// asked for, and with the calibrations in it; tracked tips are taken as they are. Throws
+/// InputError.
+InputRead ReadInput(const RecordingInput& input);
 
 }  // namespace flextip

@@ -42,6 +42,12 @@ struct TrackOptions {
     if (!input.live.empty()) return input.live;
     return std::filesystem::weakly_canonical(input.source).string();
   }
+  /// What a resumed run must have been given as well.
+  std::string RunName() const {
+    std::string name = InputName();
+    for (const auto& file : input.calibrations) name += " with " + file.string();
+    return name;
+  }
 };
 
 void CheckOptions(TrackOptions& options) {
@@ -137,6 +143,7 @@ void RunTrack(TrackOptions options, bool quiet) {
   CheckOptions(options);
   std::vector<std::filesystem::path> inputs{options.input.source, options.truth};
   std::erase_if(inputs, [](const auto& path) { return path.empty(); });
+  inputs.insert(inputs.end(), options.input.calibrations.begin(), options.input.calibrations.end());
   OutputFolder output(options.out, "track",
                       {.force = options.force, .inputs = inputs, .resume = options.resume});
   TrackInput input = OpenTrackInput(options.input);
@@ -146,7 +153,7 @@ void RunTrack(TrackOptions options, bool quiet) {
   if (input.is_recording || !options.truth.empty()) {
     truth = ReadTipTruth(options.input.source, options.truth);
   }
-  TrackTables tables(output.folder(), options.InputName(), output.resumed());
+  TrackTables tables(output.folder(), options.RunName(), output.resumed());
   if (options.resume) {
     output.Warn(tables.sums.frames > 0
                     ? fmt::format("interrupted after {} frames and resumed{}", tables.sums.frames,
@@ -159,7 +166,8 @@ void RunTrack(TrackOptions options, bool quiet) {
   TrackFrames(options, input, truth, output, tables, quiet);
   const TrackSums& sums = tables.sums;
   const int cameras = static_cast<int>(input.frames->Cameras());
-  const nlohmann::json summary = TrackSummary(sums, cameras, truth.has_value());
+  nlohmann::json summary = TrackSummary(sums, cameras, truth.has_value());
+  if (!input.calibrations.empty()) summary["calibrations"] = CalibrationsJson(input.calibrations);
   if (truth && sums.score.frames == 0) {
     output.Warn("no frame with the tip seen falls into the truth's time");
   }
@@ -187,6 +195,7 @@ void AddInputOptions(CLI::App& command, TrackOptions& options) {
                   "Of plain pictures or a video; without it names in nanoseconds, the video's rate")
       ->check(CLI::PositiveNumber)
       ->type_name("HZ");
+  AddCalibrationOption(command, options.input.calibrations);
   command.add_option("--frames", options.max_frames, "End after so many")
       ->check(CLI::PositiveNumber)
       ->type_name("N");

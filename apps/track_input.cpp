@@ -52,7 +52,9 @@ TrackInput OpenRecording(const TrackInputOptions& options) {
   ReadResult read = ReadRecording(source);
   if (!read.recording.cam0) refuse("no cam0/, tracking needs it");
   if (!read.recording.tags0) refuse("no tags0/, tracking needs it");
-  TrackInput input{std::move(read.recording), true, nullptr, std::move(read.warnings)};
+  TrackInput input{std::move(read.recording), true, nullptr, std::move(read.warnings), {}};
+  input.recording.vision0.reset();  // found anew
+  input.calibrations = UseCalibrations(options.calibrations, input.recording, input.warnings);
   OpenCameras(options, input);
   return input;
 }
@@ -80,10 +82,11 @@ TrackInput OpenTrackInput(const TrackInputOptions& options) {
   camera.calibration = ReadCameraDescription(options.camera, format).calibration;
   input.recording.tags0 = ReadCollarFile(options.collar, log);
   if (options.rate_hz) camera.calibration.rate_hz = *options.rate_hz;
+  input.warnings = std::move(log.warnings);
+  input.calibrations = UseCalibrations(options.calibrations, input.recording, input.warnings);
   input.frames = std::make_unique<FrameSets>(
       live ? OpenLiveFrames(options.live, camera.calibration)
            : OpenPlainFrames(options.source, camera.calibration, options.rate_hz, options.range));
-  input.warnings = std::move(log.warnings);
   return input;
 }
 

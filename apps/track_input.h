@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/calibration_input.h"
 #include "apps/frame_sets.h"
 #include "apps/frame_source.h"
 #include "recording/recording.h"
@@ -19,6 +20,7 @@ struct TrackInputOptions {
   std::filesystem::path camera, collar;  ///< files; needed but for a recording
   std::optional<double> rate_hz;         ///< of pictures or a video
   GreyRange range;
+  CalibrationFiles calibrations;
 };
 
 struct TrackInput {
@@ -27,6 +29,7 @@ struct TrackInput {
   bool is_recording = false;
   std::unique_ptr<FrameSets> frames;
   std::vector<std::string> warnings;
+  std::vector<UsedCalibration> calibrations;  ///< already in `recording`
 };
 
 /// Throws InputError.

@@ -1,0 +1,54 @@
+// Gages fitted to known moments, both with errors: readings = gages x moments + offset. Private to
+// calibration.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <vector>
+
+namespace flextip {
+
+/// One hold: what the gages read and what the load says.
+struct GageSample {
+  Eigen::Vector4d readings = Eigen::Vector4d::Zero(), m_Nm = Eigen::Vector4d::Zero();
+  Eigen::Vector4d reading_sd = Eigen::Vector4d::Ones();    ///< of `readings`
+  Eigen::Matrix4d m_covariance = Eigen::Matrix4d::Zero();  ///< of its own, without the port's
+  Eigen::Matrix<double, 4, 3> m_by_port = Eigen::Matrix<double, 4, 3>::Zero();
+  double weight = 1.0;  ///< 0: left out
+};
+
+/// 16 gains row by row, 4 offsets, 3 of the port's place.
+inline constexpr int kGains = 16, kGageOffset = 16, kGagePort = 20, kGageUnknowns = 23;
+
+struct GageFit {
+  Eigen::Matrix4d gains = Eigen::Matrix4d::Zero();  ///< readings per Nm
+  Eigen::Vector4d offset = Eigen::Vector4d::Zero();
+  Eigen::Vector3d port_shift_m = Eigen::Vector3d::Zero();
+  Eigen::MatrixXd covariance;  ///< kGageUnknowns
+  bool converged = false;
+};
+
+struct GageFitOptions {
+  double port_noise_m = 3e-4;
+  bool stations_apart = false;  ///< the gages of one station do not feel the other's moment
+};
+
+/// By maximum likelihood with the true moments as unknowns of their own (errors in both variables;
+/// Fuller, Measurement Error Models, 1987, ch. 3), Gauss-Newton on what is left when those are
+/// eliminated. What the samples say nothing of stays at zero with a standard deviation of 30 times
+/// what is typical.
+GageFit FitGages(const std::vector<GageSample>& samples, const GageFitOptions& options);
+
+/// What the fit leaves of one sample, and the covariance that should have.
+struct GageResidual {
+  Eigen::Vector4d readings;
+  Eigen::Matrix4d covariance;
+  double Chi2() const { return readings.dot(covariance.ldlt().solve(readings)); }
+};
+GageResidual ResidualOf(const GageSample& sample, const GageFit& fit);
+
+/// Of a sample, the rows that it adds to the equations of the fit: derivative of the readings.
+Eigen::Matrix<double, 4, kGageUnknowns> GageRows(const GageFit& fit, const Eigen::Vector4d& m_Nm,
+                                                 const Eigen::Matrix<double, 4, 3>& m_by_port);
+
+}  // namespace flextip
