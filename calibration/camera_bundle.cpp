@@ -15,53 +15,110 @@ namespace {
 
 constexpr int kPose = 6, kWarp = 2;
 
-// One corner. The pose is a step (dw, dp) from where the view's pose is now.
+// One corner. The pose is a step (dw, dp) from where the view's pose is now. Ceres's numbers
+// differentiate the lens alone: they would be most of the time.
 template <Distortion kModel, int kTerms>
-struct CornerError {
-  Eigen::Vector3d x_B;        // of the flat board
-  Eigen::Vector2d shape, px;  // BoardWarp::Shape
-  Eigen::Matrix3d R;          // where the pose step starts
-  Eigen::Vector3d p;
+class CornerError : public ceres::SizedCostFunction<2, 4 + kTerms, kWarp, kPose> {
+ public:
+  CornerError(const SolvedView& view, std::size_t i, const BoardWarp& warp)
+      : x_B_(view.x_B[i]),
+        shape_(warp.Shape(x_B_)),
+        px_(view.px[i]),
+        R_(view.T_CB.R),
+        p_(view.T_CB.p) {}
 
-  template <class T>
-  bool operator()(const T* intrinsics, const T* warp, const T* step, T* error) const {
-    const T z = x_B.z() + shape.x() * warp[0] + shape.y() * warp[1];
-    const Eigen::Matrix<T, 3, 1> bent(T(x_B.x()), T(x_B.y()), z);
-    const Eigen::Matrix<T, 3, 1> turned = R.cast<T>() * bent;
-    Eigen::Matrix<T, 3, 1> x_C;
-    ceres::AngleAxisRotatePoint(step, turned.data(), x_C.data());
-    for (int i = 0; i < 3; ++i) x_C[i] += p[i] + step[3 + i];
-    if (!(x_C.z() > T(0.0))) return false;
-    const Eigen::Matrix<T, 2, 1> at = ProjectLens<kModel, kTerms>(intrinsics, x_C);
-    error[0] = at.x() - px.x();
-    error[1] = at.y() - px.y();
+  bool Evaluate(double const* const* at, double* error, double** jacobians) const override {
+    const double *c = at[0], *step = at[2];
+    const double z = x_B_.z() + shape_.x() * at[1][0] + shape_.y() * at[1][1];
+    const Eigen::Vector3d turned = R_ * Eigen::Vector3d(x_B_.x(), x_B_.y(), z);
+    Eigen::Matrix3d dx_dw;
+    const Eigen::Vector3d x_C =
+        Turn(step, turned, dx_dw) + p_ + Eigen::Map<const Eigen::Vector3d>(step + 3);
+    if (!(x_C.z() > 0.0)) return false;
+    Eigen::Matrix2d dd_dm;
+    Eigen::Matrix<double, 2, kTerms> dd_dk;
+    const Eigen::Vector2d m = x_C.head<2>() / x_C.z(), d = Lens(c + 4, m, dd_dm, dd_dk);
+    error[0] = c[0] * d.x() + c[2] - px_.x();
+    error[1] = c[1] * d.y() + c[3] - px_.y();
+    if (!jacobians) return true;
+
+    const Eigen::DiagonalMatrix<double, 2> focal(c[0], c[1]);
+    if (jacobians[0]) {
+      Eigen::Map<RowMajor<4 + kTerms>> J(jacobians[0]);
+      J << d.x(), 0, 1, 0, focal.diagonal().x() * dd_dk.row(0), 0, d.y(), 0, 1,
+          focal.diagonal().y() * dd_dk.row(1);
+    }
+    Eigen::Matrix<double, 2, 3> dm_dx;
+    dm_dx << 1, 0, -m.x(), 0, 1, -m.y();
+    const Eigen::Matrix<double, 2, 3> J_x = focal * dd_dm * dm_dx / x_C.z();
+    if (jacobians[1]) {
+      Eigen::Vector3d normal;
+      const Eigen::Vector3d out = R_.col(2);
+      ceres::AngleAxisRotatePoint(step, out.data(), normal.data());
+      Eigen::Map<RowMajor<kWarp>> J(jacobians[1]);
+      J = (J_x * normal) * shape_.transpose();
+    }
+    if (jacobians[2]) {
+      Eigen::Map<RowMajor<kPose>> J(jacobians[2]);
+      J << J_x * dx_dw, J_x;
+    }
     return true;
   }
-};
 
-template <Distortion kModel, int kTerms>
-ceres::CostFunction* MakeError(const SolvedView& view, std::size_t i, const BoardWarp& warp) {
-  using Error = CornerError<kModel, kTerms>;
-  return new ceres::AutoDiffCostFunction<Error, 2, 4 + kTerms, kWarp, kPose>(
-      new Error{view.x_B[i], warp.Shape(view.x_B[i]), view.px[i], view.T_CB.R, view.T_CB.p});
-}
+ private:
+  template <int kColumns>
+  using RowMajor = Eigen::Matrix<double, 2, kColumns, Eigen::RowMajor>;
+
+  // exp([w]x) x with its derivative, -[exp([w]x) x]x times SO(3)'s left Jacobian.
+  static Eigen::Vector3d Turn(const double* step, const Eigen::Vector3d& x, Eigen::Matrix3d& by_w) {
+    const Eigen::Vector3d w(step[0], step[1], step[2]);
+    Eigen::Vector3d turned;
+    ceres::AngleAxisRotatePoint(step, x.data(), turned.data());
+    const double angle2 = w.squaredNorm(), angle = std::sqrt(angle2);
+    const bool small = angle < 1e-4;
+    const double a = small ? 0.5 - angle2 / 24 : (1 - std::cos(angle)) / angle2;
+    const double b = small ? 1.0 / 6 - angle2 / 120 : (angle - std::sin(angle)) / (angle * angle2);
+    const Eigen::Matrix3d W = Skew(w);
+    by_w = -Skew(turned) * (Eigen::Matrix3d::Identity() + a * W + b * W * W);
+    return turned;
+  }
+
+  static Eigen::Vector2d Lens(const double* k, const Eigen::Vector2d& m, Eigen::Matrix2d& by_m,
+                              Eigen::Matrix<double, 2, kTerms>& by_k) {
+    using Jet = ceres::Jet<double, 2 + kTerms>;
+    Jet coefficients[kTerms];
+    for (int i = 0; i < kTerms; ++i) coefficients[i] = Jet(k[i], 2 + i);
+    const Eigen::Matrix<Jet, 2, 1> d = DistortLens<kModel, kTerms>(
+        coefficients, Eigen::Matrix<Jet, 2, 1>(Jet(m.x(), 0), Jet(m.y(), 1)));
+    for (int i = 0; i < 2; ++i) {
+      by_m.row(i) = d[i].v.template head<2>().transpose();
+      by_k.row(i) = d[i].v.template tail<kTerms>().transpose();
+    }
+    return {d[0].a, d[1].a};
+  }
+
+  Eigen::Vector3d x_B_;         // of the flat board
+  Eigen::Vector2d shape_, px_;  // BoardWarp::Shape
+  Eigen::Matrix3d R_;           // where the pose step starts
+  Eigen::Vector3d p_;
+};
 
 ceres::CostFunction* MakeError(const CameraSolution& s, const SolvedView& view, std::size_t i) {
   switch (s.camera.distortion) {
     case Distortion::kEquidistant:
-      return MakeError<Distortion::kEquidistant, 4>(view, i, s.warp);
+      return new CornerError<Distortion::kEquidistant, 4>(view, i, s.warp);
     case Distortion::kRadialTangential:
-      return MakeError<Distortion::kRadialTangential, 4>(view, i, s.warp);
+      return new CornerError<Distortion::kRadialTangential, 4>(view, i, s.warp);
     case Distortion::kOpenCv:
       break;
   }
   switch (s.camera.distortion_coefficients.size()) {
     case 5:
-      return MakeError<Distortion::kOpenCv, 5>(view, i, s.warp);
+      return new CornerError<Distortion::kOpenCv, 5>(view, i, s.warp);
     case 8:
-      return MakeError<Distortion::kOpenCv, 8>(view, i, s.warp);
+      return new CornerError<Distortion::kOpenCv, 8>(view, i, s.warp);
     default:
-      return MakeError<Distortion::kOpenCv, 12>(view, i, s.warp);
+      return new CornerError<Distortion::kOpenCv, 12>(view, i, s.warp);
   }
 }
 
@@ -146,7 +203,9 @@ bool Minimise(const CameraSolution& s, const BundleOptions& options, Parameters&
     }
   }
   solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = 1e-10;
+  // Always some damping: parameters that the views do not tell would make the matrix singular.
+  solver.max_trust_region_radius = 1e9;
+  solver.function_tolerance = options.tolerance;
   solver.parameter_tolerance = 1e-11;
   solver.gradient_tolerance = 1e-12;
   solver.logging_type = ceres::SILENT;

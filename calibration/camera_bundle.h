@@ -14,6 +14,7 @@ struct BundleOptions {
   /// Corners count by Cauchy's loss of this scale; 0: least squares.
   double cauchy_px = 0.0;
   int max_iterations = 60;
+  double tolerance = 1e-8;  ///< ends where the cost falls by less than this part
 };
 
 /// Moves `solution` to the minimum near it over the corners that are used, and fills in what

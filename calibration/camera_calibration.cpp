@@ -30,6 +30,23 @@ struct LensFit {
   std::vector<RejectedView> rejected;
 };
 
+// Where the two families of lenses start, each found when it is first asked for.
+class Starts {
+ public:
+  explicit Starts(const Setup& setup) : setup_(setup) {}
+  const std::optional<CameraSolution>& Of(bool equidistant) {
+    auto& start = equidistant ? equidistant_ : opencv_;
+    if (!start) {
+      start = StartSolution(setup_.views, setup_.width_px, setup_.height_px, equidistant);
+    }
+    return *start;
+  }
+
+ private:
+  const Setup& setup_;
+  std::optional<std::optional<CameraSolution>> opencv_, equidistant_;
+};
+
 void CheckOptions(int width_px, int height_px, const CameraCalibrationOptions& o) {
   if (width_px <= 0 || height_px <= 0) {
     throw InputError(
@@ -79,12 +96,19 @@ std::vector<SolvedView> UsableViews(const std::vector<BoardView>& views,
 
 bool MayWarp(const Setup& setup) { return setup.options.warp.value_or(true); }
 
-// The lens with its own outliers, from a start that is known or from none.
-std::optional<LensFit> FitLens(const Setup& setup, const LensModel& lens, bool warp) {
-  auto start =
-      StartSolution(setup.views, setup.width_px, setup.height_px, lens.distortion, lens.terms);
+// A solution with another lens model of the same family: terms are added as zeros or left out.
+CameraSolution WithLens(CameraSolution s, const LensModel& lens) {
+  s.camera.distortion = lens.distortion;
+  s.camera.distortion_coefficients.resize(static_cast<std::size_t>(lens.terms), 0.0);
+  return s;
+}
+
+// The lens with its own outliers.
+std::optional<LensFit> FitLens(const Setup& setup, const LensModel& lens, bool warp,
+                               Starts& starts) {
+  const auto& start = starts.Of(lens.distortion == Distortion::kEquidistant);
   if (!start) return {};
-  LensFit fit{*start, {}};
+  LensFit fit{WithLens(*start, lens), {}};
   fit.solution.warp = setup.warp;
   OutlierRule rule = setup.options.outliers;
   rule.estimate_warp = warp;
@@ -126,12 +150,13 @@ std::optional<CameraSolution> OverCorners(
 }
 
 // All lens models that can be fitted, with their held-out errors over the same corners.
-std::vector<LensCandidate> TryLenses(const Setup& setup) {
+std::vector<LensCandidate> TryLenses(const Setup& setup, Starts& starts) {
   std::vector<LensCandidate> candidates;
   std::set<std::pair<std::size_t, std::size_t>> explained;
   for (const LensModel& lens : AllLensModels()) {
-    LensCandidate candidate{.model = lens, .solution = {}, .heldout = {}, .reason = {}};
-    if (auto fit = FitLens(setup, lens, MayWarp(setup))) {
+    LensCandidate candidate{
+        .model = lens, .solution = {}, .heldout = {}, .folds = {}, .reason = {}};
+    if (auto fit = FitLens(setup, lens, MayWarp(setup), starts)) {
       candidate.solution = fit->solution;
       explained.merge(CornersOf(fit->solution));
     } else {
@@ -148,7 +173,7 @@ std::vector<LensCandidate> TryLenses(const Setup& setup) {
       continue;
     }
     c.solution = *common;
-    c.reason = FoldsInPicture(c.solution.camera);
+    c.folds = FoldsInPicture(c.solution.camera);
   }
   return candidates;
 }
@@ -240,14 +265,15 @@ CameraCalibrationResult CalibrateCamera(const std::vector<BoardView>& views, int
         result, CameraCalibrationStatus::kTooFewViews,
         fmt::format("{} usable views, at least {} are needed", result.views_used, needed));
   }
+  Starts starts(setup);
   std::optional<LensModel> lens = options.lens;
   if (!lens) {
-    result.candidates = TryLenses(setup);
+    result.candidates = TryLenses(setup, starts);
     if (const auto chosen = ChooseLens(result.candidates)) lens = result.candidates[*chosen].model;
   }
-  auto fit = lens ? FitLens(setup, *lens, MayWarp(setup)) : std::nullopt;
+  auto fit = lens ? FitLens(setup, *lens, MayWarp(setup), starts) : std::nullopt;
   if (fit && MayWarp(setup) && !DecideWarp(setup, fit->solution, result.warp_reason)) {
-    fit = FitLens(setup, *lens, false);
+    fit = FitLens(setup, *lens, false, starts);
   }
   if (!fit) {
     return Failed(result, CameraCalibrationStatus::kNotDetermined,

@@ -11,6 +11,9 @@
 namespace flextip {
 namespace {
 
+// Far below what tells lenses apart.
+constexpr double kTolerance = 1e-6;
+
 // The mean of `more - less` over its standard error; views count alike.
 double DifferenceInErrors(const HeldOutError& more, const HeldOutError& less) {
   const std::size_t n = std::min(more.squared_px2.size(), less.squared_px2.size());
@@ -31,8 +34,20 @@ std::optional<double> SquaresOfView(const CameraSolution& lens, const SolvedView
   alone.camera = lens.camera;
   alone.warp = lens.warp;
   alone.views = {view};
-  if (!AdjustBundle(alone, {.fix_intrinsics = true})) return {};
+  if (!AdjustBundle(alone, {.fix_intrinsics = true, .tolerance = kTolerance})) return {};
   return std::pow(alone.RmsPx(), 2) * alone.CornersUsed();
+}
+
+std::string Verdict(std::size_t i, std::size_t chosen, std::size_t best,
+                    const LensCandidate& candidate, double worse_by) {
+  if (i == chosen && i == best) return "the least held-out error";
+  if (i == chosen) return "no worse than the best on held-out views, and simpler";
+  if (i != best && worse_by >= 1.0) {
+    return fmt::format("worse on held-out views by {:.1f} standard errors",
+                       std::min(worse_by, 99.0));
+  }
+  if (!candidate.folds.empty()) return candidate.folds;
+  return "no better on held-out views than a simpler one";
 }
 
 }  // namespace
@@ -73,7 +88,8 @@ std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int fo
         rest.views.push_back(solution.views[v]);
       }
     }
-    if (!AdjustBundle(rest, {.estimate_warp = solution.warp_estimated})) return {};
+    if (!AdjustBundle(rest, {.estimate_warp = solution.warp_estimated, .tolerance = kTolerance}))
+      return {};
     for (const std::size_t v : left_out) {
       const auto sum = SquaresOfView(rest, solution.views[v]);
       if (!sum) return {};
@@ -88,7 +104,7 @@ std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int fo
 }
 
 std::optional<std::size_t> ChooseLens(std::vector<LensCandidate>& candidates) {
-  std::optional<std::size_t> best, chosen;
+  std::optional<std::size_t> best, chosen, whole;
   const auto usable = [&](std::size_t i) {
     return candidates[i].heldout && candidates[i].reason.empty();
   };
@@ -98,20 +114,18 @@ std::optional<std::size_t> ChooseLens(std::vector<LensCandidate>& candidates) {
     }
   }
   if (!best) return {};
+  const auto worse_by = [&](std::size_t i) {
+    return DifferenceInErrors(*candidates[i].heldout, *candidates[*best].heldout);
+  };
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!usable(i)) continue;
-    const double by = DifferenceInErrors(*candidates[i].heldout, *candidates[*best].heldout);
-    if (!chosen && (i == *best || by < 1.0)) {
-      chosen = i;
-      candidates[i].chosen = true;
-      candidates[i].reason = i == *best ? "the least held-out error"
-                                        : "no worse than the best on held-out views, and simpler";
-    } else if (by < 1.0) {
-      candidates[i].reason = "no better on held-out views than a simpler one";
-    } else {
-      candidates[i].reason =
-          fmt::format("worse on held-out views by {:.1f} standard errors", std::min(by, 99.0));
-    }
+    if (!usable(i) || (i != *best && worse_by(i) >= 1.0)) continue;
+    if (!chosen) chosen = i;
+    if (!whole && candidates[i].folds.empty()) whole = i;
+  }
+  chosen = whole ? whole : chosen;
+  candidates[*chosen].chosen = true;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (usable(i)) candidates[i].reason = Verdict(i, *chosen, *best, candidates[i], worse_by(i));
   }
   return chosen;
 }

@@ -36,20 +36,22 @@ struct LensCandidate {
   LensModel model;
   CameraSolution solution;              ///< over the corners that at least one model explains
   std::optional<HeldOutError> heldout;  ///< of those corners
+  std::string folds;                    ///< FoldsInPicture
   std::string reason;                   ///< why it cannot be used, or why it was not chosen
   bool chosen = false;
 };
 
 /// The simplest candidate whose held-out error is not above the least by more than its standard
-/// error (of the views' differences); `reason` and `chosen` are filled in. Candidates without an
-/// error or with a `reason` are left aside. Empty where none is left.
+/// error (of the views' differences), if there is one that does not fold; `reason` and `chosen` are
+/// filled in. Candidates without an error or with a `reason` are left aside. Empty where none is
+/// left.
 std::optional<std::size_t> ChooseLens(std::vector<LensCandidate>& candidates);
 
 /// Whether the board's warp makes the held-out error smaller by more than its standard error.
 bool WarpHelps(const HeldOutError& flat, const HeldOutError& warped);
 
-/// Why `camera` cannot be used over its whole picture: its distortion turns back on itself before
-/// the picture's corners. Empty where it can.
+/// Why `camera` cannot be used over its whole picture: beyond where the boards were seen its
+/// distortion turns back on itself. Empty where it can.
 std::string FoldsInPicture(const CameraCalibration& camera);
 
 }  // namespace flextip

@@ -13,8 +13,11 @@ namespace {
 constexpr double kFocalsOfWidth[] = {0.45, 0.7, 1.1, 1.7, 2.8, 5.0};
 // Robust scale while the lens is still coarse, and once all terms are free.
 constexpr double kCoarse_px = 3.0, kFine_px = 1.0;
+constexpr double kCoarseTolerance = 1e-4;
+// So many of the valleys that the coarse search ends in are followed to the bottom.
+constexpr std::size_t kFollowed = 3;
 // So many corners are enough to find the valley.
-constexpr std::size_t kCornersInSearch = 1200;
+constexpr std::size_t kCornersInSearch = 800;
 
 // The homography that takes (x, y) on the board to `to`; empty where the points do not fix one.
 std::optional<Eigen::Matrix3d> Homography(const std::vector<Eigen::Vector3d>& x_B,
@@ -74,16 +77,15 @@ std::optional<Pose> PoseFromCorners(const CameraCalibration& camera, const Solve
   return T_CB;
 }
 
-CameraSolution Blank(int width_px, int height_px, double focal_px, Distortion distortion,
-                     int terms) {
+CameraSolution Blank(int width_px, int height_px, double focal_px, bool equidistant) {
   CameraSolution s;
   s.camera.width_px = width_px;
   s.camera.height_px = height_px;
   s.camera.fu_px = s.camera.fv_px = focal_px;
   s.camera.cu_px = 0.5 * (width_px - 1);
   s.camera.cv_px = 0.5 * (height_px - 1);
-  s.camera.distortion = distortion;
-  s.camera.distortion_coefficients.assign(static_cast<std::size_t>(terms), 0.0);
+  s.camera.distortion = equidistant ? Distortion::kEquidistant : Distortion::kOpenCv;
+  s.camera.distortion_coefficients.assign(equidistant ? 4 : 5, 0.0);
   return s;
 }
 
@@ -125,19 +127,24 @@ std::vector<int> Range(int from, int to) {
   return v;
 }
 
-// Two radial terms first, then the principal point too, then all terms.
-bool AdjustStepByStep(CameraSolution& s) {
-  const int all = s.IntrinsicsCount();
-  std::vector<int> fixed = Range(6, all);
+// Two radial terms first, the principal point held.
+bool AdjustCoarsely(CameraSolution& s) {
+  std::vector<int> fixed = Range(6, s.IntrinsicsCount());
   fixed.insert(fixed.end(), {2, 3});
-  if (!AdjustBundle(s, {.fixed = fixed, .cauchy_px = kCoarse_px, .max_iterations = 40})) {
-    return false;
-  }
+  return AdjustBundle(s, {.fixed = fixed,
+                          .cauchy_px = kCoarse_px,
+                          .max_iterations = 30,
+                          .tolerance = kCoarseTolerance});
+}
+
+// Then the principal point too, then all terms.
+bool AdjustFinely(CameraSolution& s) {
   TryMirroredPoses(s, kCoarse_px);
-  if (!AdjustBundle(s, {.fixed = Range(6, all), .cauchy_px = kCoarse_px, .max_iterations = 40})) {
-    return false;
-  }
-  return AdjustBundle(s, {.cauchy_px = kFine_px, .max_iterations = 60});
+  const bool good = AdjustBundle(s, {.fixed = Range(6, s.IntrinsicsCount()),
+                                     .cauchy_px = kCoarse_px,
+                                     .max_iterations = 30,
+                                     .tolerance = kCoarseTolerance});
+  return good && AdjustBundle(s, {.cauchy_px = kFine_px, .tolerance = kCoarseTolerance});
 }
 
 // Views whose corners no pose explains are left out.
@@ -163,17 +170,16 @@ SolvedView Mirrored(SolvedView view) {
   return view;
 }
 
-// The solution of thinned views with all corners and all terms.
+// The solution of thinned views with all corners.
 std::optional<CameraSolution> Extended(const CameraSolution& thin,
-                                       const std::vector<SolvedView>& views, int terms) {
+                                       const std::vector<SolvedView>& views) {
   CameraSolution whole = WithPoses(thin, views);
   for (SolvedView& view : whole.views) {
     for (const SolvedView& of_thin : thin.views) {
       if (of_thin.index == view.index) view.T_CB = of_thin.T_CB;
     }
   }
-  whole.camera.distortion_coefficients.resize(static_cast<std::size_t>(terms), 0.0);
-  if (!AdjustBundle(whole, {.cauchy_px = kFine_px, .max_iterations = 100})) return {};
+  if (!AdjustBundle(whole, {.cauchy_px = kFine_px, .tolerance = kCoarseTolerance})) return {};
   TryMirroredPoses(whole, kFine_px);
   return whole;
 }
@@ -209,7 +215,8 @@ void TryMirroredPoses(CameraSolution& solution, double cauchy_px) {
     alone.camera = solution.camera;
     alone.warp = solution.warp;
     alone.views = {view};
-    const bool good = AdjustBundle(alone, {.fix_intrinsics = true, .cauchy_px = cauchy_px});
+    const bool good = AdjustBundle(
+        alone, {.fix_intrinsics = true, .cauchy_px = cauchy_px, .tolerance = kCoarseTolerance});
     median_px = good ? MedianPx(alone) : HUGE_VAL;
     return alone.views[0];
   };
@@ -222,22 +229,27 @@ void TryMirroredPoses(CameraSolution& solution, double cauchy_px) {
 }
 
 std::optional<CameraSolution> StartSolution(const std::vector<SolvedView>& views, int width_px,
-                                            int height_px, Distortion distortion, int terms) {
+                                            int height_px, bool equidistant) {
   const std::vector<SolvedView> thin = Thinned(views);
   const Eigen::Vector2d centre_px(0.5 * (width_px - 1), 0.5 * (height_px - 1));
   std::vector<double> focals_px;
   if (const auto focal = FocalOfVanishingPoints(thin, centre_px)) focals_px.push_back(*focal);
   for (const double f : kFocalsOfWidth) focals_px.push_back(f * width_px);
-  // Few terms cannot go astray; more come when the valley is known.
-  const int few = distortion == Distortion::kOpenCv ? 5 : 4;
-  std::optional<CameraSolution> best;
+  std::vector<CameraSolution> valleys;
   for (const double focal_px : focals_px) {
-    CameraSolution s = WithPoses(Blank(width_px, height_px, focal_px, distortion, few), thin);
-    if (2 * s.views.size() < views.size() || !AdjustStepByStep(s)) continue;
-    if (!best || MedianPx(s) < MedianPx(*best)) best = s;
+    CameraSolution s = WithPoses(Blank(width_px, height_px, focal_px, equidistant), thin);
+    if (2 * s.views.size() >= views.size() && AdjustCoarsely(s)) valleys.push_back(std::move(s));
+  }
+  const auto better = [](const CameraSolution& a, const CameraSolution& b) {
+    return MedianPx(a) < MedianPx(b);
+  };
+  std::sort(valleys.begin(), valleys.end(), better);
+  std::optional<CameraSolution> best;
+  for (std::size_t i = 0; i < valleys.size() && i < kFollowed; ++i) {
+    if (AdjustFinely(valleys[i]) && (!best || better(valleys[i], *best))) best = valleys[i];
   }
   if (!best) return {};
-  return Extended(*best, views, terms);
+  return Extended(*best, views);
 }
 
 }  // namespace flextip

@@ -8,14 +8,14 @@
 
 namespace flextip {
 
-/// A lens of `distortion` with `terms` coefficients, the board's poses and no warp, near the best
-/// minimum for the corners of `views` (their `ids`, `x_B`, `px`): bundle adjustment from several
-/// focal lengths (that of the vanishing points among them), first with two radial terms and the
-/// principal point in the picture's middle, robustly, the best of all with all terms; then both
+/// A lens of few terms (opencv with 5, or equidistant), the board's poses and no warp, near the
+/// best minimum for the corners of `views` (their `ids`, `x_B`, `px`): bundle adjustment from
+/// several focal lengths (that of the vanishing points among them), first with two radial terms and
+/// the principal point in the picture's middle, robustly, the best ones with all terms; then both
 /// planar poses of each view are tried. A view whose corners no pose explains is left out (`index`
 /// tells which are there). Empty where no start leads anywhere.
 std::optional<CameraSolution> StartSolution(const std::vector<SolvedView>& views, int width_px,
-                                            int height_px, Distortion distortion, int terms);
+                                            int height_px, bool equidistant);
 
 /// The focal length (px) under which the vanishing points of the boards' sides are at right angles
 /// in the mean, for square pixels without distortion and a principal point `centre_px` (Zhang

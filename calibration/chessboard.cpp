@@ -11,7 +11,7 @@ namespace {
 // The saddle at a corner is refined in a window of this part of the distance to the next corner. A
 // larger one reaches into the neighbours' edges where the board is tilted, and is pulled by them.
 constexpr double kWindowOfSpacing = 0.33;
-constexpr int kMinHalfWindow_px = 2, kMaxHalfWindow_px = 11;
+constexpr int kMinHalfWindow_px = 2, kMaxHalfWindow_px = 40;
 
 double SmallestSpacing(const std::vector<cv::Point2f>& corners, int columns, int rows) {
   double smallest = HUGE_VAL;

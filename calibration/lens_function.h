@@ -37,18 +37,14 @@ Eigen::Matrix<T, 2, 1> DistortEquidistant(const T* k, const Eigen::Matrix<T, 2, 
   return m * (theta_d / r);
 }
 
-/// The pixel of the point `x_C` in front of the camera. `c`: fu, fv, cu, cv (px), then the
-/// coefficients.
+/// The lens on the plane z = 1, in focal lengths from the principal point.
 template <Distortion kModel, int kTerms, class T>
-Eigen::Matrix<T, 2, 1> ProjectLens(const T* c, const Eigen::Matrix<T, 3, 1>& x_C) {
-  const Eigen::Matrix<T, 2, 1> m(x_C.x() / x_C.z(), x_C.y() / x_C.z());
-  Eigen::Matrix<T, 2, 1> d;
+Eigen::Matrix<T, 2, 1> DistortLens(const T* k, const Eigen::Matrix<T, 2, 1>& m) {
   if constexpr (kModel == Distortion::kEquidistant) {
-    d = DistortEquidistant(c + 4, m);
+    return DistortEquidistant(k, m);
   } else {
-    d = DistortOpenCv<kTerms>(c + 4, m);
+    return DistortOpenCv<kTerms>(k, m);
   }
-  return {c[0] * d.x() + c[2], c[1] * d.y() + c[3]};
 }
 
 }  // namespace flextip
