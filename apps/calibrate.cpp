@@ -13,6 +13,8 @@ void AddCalibrate(CLI::App& app, AppContext& context) {
   command->footer("Example:\n  flextip calibrate camera --help\n");
   AddCalibrateCamera(*command, context);
   AddCalibrateStiffness(*command, context);
+  AddCalibrateBudget(*command, context);
+  AddCalibrateStereo(*command, context);
   AddCalibrateStrain(*command, context);
   AddCalibrateHandEye(*command, context);
   AddCalibrateEm(*command, context);

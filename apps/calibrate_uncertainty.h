@@ -1,0 +1,37 @@
+// How well a calibrated camera knows where a point is seen, as the calibrate commands write it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/next_view.h"
+#include "calibration/projection_uncertainty.h"
+#include "report/figure.h"
+
+namespace flextip {
+
+/// Over the picture, at the depth the boards were at and at infinity.
+struct CameraUncertainty {
+  std::string camera;  ///< "cam0"
+  UncertaintyMap near, far;
+  std::vector<NextView> next;  ///< the best ones first; empty where none was looked for
+};
+
+/// Empty where the views do not determine the camera. `x_B`: the board's corners; empty: no next
+/// view is looked for.
+std::optional<CameraUncertainty> FindUncertainty(const CameraSolution& solution,
+                                                 const std::vector<Eigen::Vector3d>& x_B);
+/// Of one of two cameras that were calibrated together.
+std::optional<CameraUncertainty> FindUncertainty(const StereoSolution& solution, int eye);
+
+/// `working_distance_m`, of both maps mean, largest and centre, and `next_views`.
+nlohmann::json UncertaintyJson(const CameraUncertainty& uncertainty);
+/// Two fields, at the working distance and at infinity, with where corners were seen.
+std::vector<Figure> UncertaintyFigures(const CameraUncertainty& uncertainty,
+                                       const std::vector<SolvedView>& views);
+/// `#x [px],y [px],depth [m],sd [px],sd_across [mm]`; at infinity depth and sd_across are empty.
+std::string UncertaintyTable(const CameraUncertainty& uncertainty);
+
+}  // namespace flextip

@@ -1,0 +1,193 @@
+// Two cameras: known ones behind noise, and real ones.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "calibration/stereo_bundle.h"
+#include "calibration/stereo_calibration.h"
+#include "calibration/stereo_heldout.h"
+#include "calibration/stereo_rectification.h"
+#include "core/error.h"
+#include "tests/calibration/stereo_scene.h"
+#include "vision/reprojection.h"
+
+namespace flextip {
+namespace {
+
+constexpr double kNoise_px = 0.08;
+
+StereoSolution Noised(const StereoScene& scene, std::mt19937& random) {
+  StereoSolution s = scene.Exact();
+  for (StereoView& view : s.views) {
+    for (SolvedView& eye : view.eyes) AddNoise(kNoise_px, random, eye);
+  }
+  return s;
+}
+
+// What AdjustStereo finds from the truth, less the truth, in the order of the normal matrix.
+Eigen::VectorXd ErrorOf(const StereoSolution& found, const StereoScene& truth) {
+  Eigen::VectorXd error = Eigen::VectorXd::Zero(found.PairStart() + 6);
+  int at = 0;
+  for (int eye = 0; eye < 2; ++eye) {
+    const CameraCalibration &f = found.cameras[eye], &t = truth.cameras[eye];
+    error.segment<4>(at) << f.fu_px - t.fu_px, f.fv_px - t.fv_px, f.cu_px - t.cu_px,
+        f.cv_px - t.cv_px;
+    at += 4;
+    for (int i = 0; i < 4; ++i) {
+      error[at++] = f.distortion_coefficients[i] - t.distortion_coefficients[i];
+    }
+  }
+  error.segment<6>(at) = PoseDifference(truth.T_C0C1, found.T_C0C1);
+  return error;
+}
+
+TEST(StereoBundle, CovarianceIsTheSpreadOfWhatIsFound) {
+  const StereoScene scene = MakeStereoScene(7, 2);
+  std::mt19937 random(4);
+  constexpr int kRuns = 60;
+  double nees = 0, nees_pair = 0, inside = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    StereoSolution s = Noised(scene, random);
+    ASSERT_TRUE(AdjustStereo(s));
+    const Eigen::VectorXd error = ErrorOf(s, scene);
+    const Eigen::MatrixXd covariance = s.Covariance();
+    ASSERT_GT(covariance.rows(), 0);
+    const int n = static_cast<int>(error.size());
+    nees += error.dot(covariance.topLeftCorner(n, n).ldlt().solve(error)) / n / kRuns;
+    const Eigen::Matrix<double, 6, 6> pair = covariance.block<6, 6>(n - 6, n - 6);
+    nees_pair += error.tail<6>().dot(pair.ldlt().solve(error.tail<6>())) / 6 / kRuns;
+    const Baseline baseline = BaselineOf(s.T_C0C1, pair.bottomRightCorner<3, 3>());
+    inside += std::abs(baseline.length_m - scene.T_C0C1.p.norm()) < baseline.sd_m ? 1.0 / kRuns : 0;
+  }
+  // The mean of 60 has a standard deviation of sqrt(2 / (60 n)): 0.039 and 0.075.
+  EXPECT_NEAR(nees, 1.0, 0.12);
+  EXPECT_NEAR(nees_pair, 1.0, 0.23);
+  EXPECT_NEAR(inside, 0.683, 0.18);
+}
+
+TEST(StereoBundle, ViewsOfOneEyeAndAWarpedBoardAreUsed) {
+  StereoScene scene = MakeStereoScene(10, 2);
+  scene.warp.bulge_m = {1e-4, -5e-5};
+  std::mt19937 random(4);
+  StereoSolution s = Noised(scene, random);
+  for (int i = 6; i < 10; ++i) s.views[i].eyes[i % 2] = SolvedView();
+  s.warp.bulge_m.setZero();
+  StereoSolution flat = s;
+  ASSERT_TRUE(AdjustStereo(flat));
+  ASSERT_TRUE(AdjustStereo(s, {.estimate_warp = true}));
+  EXPECT_NEAR(s.RmsPx(), kNoise_px * std::sqrt(2.0), 0.01);
+  EXPECT_GT(flat.RmsPx(), 1.1 * s.RmsPx());
+  const Eigen::MatrixXd covariance = s.Covariance();
+  ASSERT_EQ(covariance.rows(), 8 + 8 + 6 + 2 + 60);
+  for (int i = 0; i < 2; ++i) {
+    const int at = s.PairStart() + 6 + i;
+    EXPECT_NEAR(s.warp.bulge_m[i], scene.warp.bulge_m[i], 4 * std::sqrt(covariance(at, at)));
+  }
+  const Eigen::VectorXd error = ErrorOf(s, scene);
+  for (int i = 0; i < error.size(); ++i) {
+    EXPECT_LT(std::abs(error[i]), 4 * std::sqrt(covariance(i, i))) << i;
+  }
+  // What only one eye saw makes both surer.
+  StereoSolution pairs_only = s;
+  pairs_only.views.resize(6);
+  ASSERT_TRUE(AdjustStereo(pairs_only, {.estimate_warp = true}));
+  EXPECT_LT(covariance(0, 0) / std::pow(s.noise_px, 2),
+            pairs_only.Covariance()(0, 0) / std::pow(pairs_only.noise_px, 2));
+}
+
+std::vector<StereoPair> AsPairs(const StereoSolution& s) {
+  std::vector<StereoPair> pairs;
+  for (const StereoView& view : s.views) {
+    StereoPair pair;
+    for (int eye = 0; eye < 2; ++eye) {
+      pair.eyes[eye].name = fmt::format("{} {}", eye == 0 ? "left" : "right", pairs.size());
+      BoardSighting& seen = pair.eyes[eye].sighting;
+      seen.ids = view.eyes[eye].ids;
+      seen.x_B = view.eyes[eye].x_B;
+      seen.px = view.eyes[eye].px;
+      if (!seen.Found()) seen.reason = "no board";
+    }
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+StereoOptions Radial() {
+  StereoOptions options;
+  options.camera.lens = LensModel{Distortion::kRadialTangential, 4};
+  options.camera.warp = false;
+  return options;
+}
+
+TEST(StereoCalibration, FindsThePairThatIsNotOfOneMoment) {
+  const StereoScene scene = MakeStereoScene(12, 6);
+  std::mt19937 random(9);
+  StereoSolution s = Noised(scene, random);
+  // The right picture of pair 4 is of another moment; pair 7 has none.
+  s.views[4].eyes[1] = scene.See(4, 1, RandomBoardPose(scene, random));
+  AddNoise(kNoise_px, random, s.views[4].eyes[1]);
+  s.views[7].eyes[1] = SolvedView();
+  const Eigen::Vector2i size(800, 600);
+  const StereoResult r = CalibrateStereo(AsPairs(s), {size, size}, scene.board, Radial());
+  ASSERT_TRUE(r.IsUsable()) << r.message;
+  ASSERT_EQ(r.pairs.size(), 12u);
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(r.pairs[i].apart.empty(), i != 4) << i;
+  EXPECT_EQ(r.pairs[7].reasons[1], "no board");
+  EXPECT_EQ(r.pairs_used, 10);
+  EXPECT_EQ(r.single_views_used, 3);
+  EXPECT_NEAR(r.baseline.length_m, scene.T_C0C1.p.norm(), 4 * r.baseline.sd_m);
+  EXPECT_LT(r.baseline.sd_m, 1e-4);
+  EXPECT_NEAR(r.solution.RmsPx(), kNoise_px * std::sqrt(2.0), 0.01);
+  ASSERT_TRUE(r.heldout);
+  EXPECT_NEAR(r.heldout->rms_px, kNoise_px * std::sqrt(2.0), 0.015);
+  // A difference of two rows.
+  EXPECT_NEAR(r.epipolar_rms_px, kNoise_px * std::sqrt(2.0), 0.03);
+  EXPECT_NEAR(r.heldout->epipolar_rms_px, kNoise_px * std::sqrt(2.0), 0.04);
+}
+
+TEST(StereoCalibration, SaysWhyNot) {
+  const StereoScene scene = MakeStereoScene(8, 6);
+  std::mt19937 random(9);
+  StereoSolution s = Noised(scene, random);
+  const Eigen::Vector2i size(800, 600);
+  for (int i = 0; i < 8; ++i) s.views[i].eyes[i % 2] = SolvedView();
+  const StereoResult apart = CalibrateStereo(AsPairs(s), {size, size}, scene.board, Radial());
+  EXPECT_EQ(apart.status, StereoStatus::kTooFewPairs) << apart.message;
+  for (StereoView& view : s.views) view.eyes[1] = SolvedView();
+  const StereoResult blind = CalibrateStereo(AsPairs(s), {size, size}, scene.board, Radial());
+  EXPECT_EQ(blind.status, StereoStatus::kEyeFailed);
+  EXPECT_EQ(blind.message.find("right camera"), 0u) << blind.message;
+}
+
+TEST(StereoRectification, PutsAPointInOneRowAtItsDepth) {
+  const StereoScene scene = MakeStereoScene(0, 1);
+  const Rectification r = Rectify(scene.cameras, scene.T_C0C1);
+  const CameraModel left(scene.cameras[0]), right(scene.cameras[1]);
+  for (const Eigen::Vector3d& x_C0 :
+       {Eigen::Vector3d(0, 0, 0.1), Eigen::Vector3d(0.03, 0.01, 0.2)}) {
+    const auto a = RectifiedPixel(r, 0, scene.cameras[0], left.Project(x_C0).value());
+    const auto b = RectifiedPixel(r, 1, scene.cameras[1],
+                                  right.Project(scene.T_C0C1.Inverse() * x_C0).value());
+    ASSERT_TRUE(a && b);
+    EXPECT_NEAR(a->y(), b->y(), 1e-6);
+    const Eigen::Vector4d x = r.Q() * Eigen::Vector4d(a->x(), a->y(), a->x() - b->x(), 1);
+    EXPECT_LT((x.hnormalized() - r.R[0] * x_C0).norm(), 1e-9);
+  }
+  // All of the rectified picture is seen.
+  for (int eye = 0; eye < 2; ++eye) {
+    const Eigen::Matrix3d K = r.P[eye].leftCols<3>();
+    for (const Eigen::Vector3d& px : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(799, 0, 1),
+                                      Eigen::Vector3d(0, 599, 1), Eigen::Vector3d(799, 599, 1)}) {
+      const auto at = CameraModel(scene.cameras[eye]).Project(r.R[eye].transpose() * K.inverse() * px);
+      ASSERT_TRUE(at);
+      EXPECT_GE(at->minCoeff(), -1.0);
+      EXPECT_LE(at->x(), 800.0);
+      EXPECT_LE(at->y(), 600.0);
+    }
+  }
+  EXPECT_THROW(Rectify(scene.cameras, {Eigen::Matrix3d::Identity(), {0, 0, 0.01}}), InputError);
+}
+
+}  // namespace
+}  // namespace flextip
