@@ -19,7 +19,10 @@ ProjectionDerivative Differentiate(const CameraCalibration& camera, const Eigen:
   for (int i = 0; i < 3; ++i) x[i] = Jet(x_C[i], i);
   Jet intrinsics[kIntrinsics];
   for (int i = 0; i < kIntrinsics; ++i) intrinsics[i] = Jet(values[i], 3 + i);
-  const Eigen::Matrix<Jet, 2, 1> at = ProjectLens<kModel, kTerms>(intrinsics, x);
+  const Eigen::Matrix<Jet, 2, 1> m(x[0] / x[2], x[1] / x[2]);
+  const Eigen::Matrix<Jet, 2, 1> d_m = DistortLens<kModel, kTerms>(intrinsics + 4, m);
+  const Jet at[2] = {intrinsics[0] * d_m[0] + intrinsics[2],
+                     intrinsics[1] * d_m[1] + intrinsics[3]};
   ProjectionDerivative d;
   d.by_intrinsics.resize(2, kIntrinsics);
   for (int row = 0; row < 2; ++row) {
