@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/frames.h"
-#include "apps/overlay.h"
+#include "apps/calibrate_camera_pictures.h"
+#include "calibration/camera_choice.h"
+#include "calibration/camera_split.h"
 #include "core/error.h"
 #include "recording/calibration_file.h"
 #include "recording/camera_file.h"
@@ -152,6 +153,10 @@ void WriteCameraResults(OutputFolder& output, const CornersFile& corners,
   for (const CalibrationView& view : result.views) {
     if (!view.used) output.Warn(fmt::format("{}: {}", view.name, view.reason));
   }
+  const std::string folds = FoldsInPicture(result.solution.camera);
+  if (!folds.empty())
+    output.Warn(fmt::format("the lens holds only where boards were seen: {}", folds));
+  DrawCameraPictures(folder, corners, result);
   output.WriteSummary(Summary(result));
   WriteCalibrateReport(folder);
   output.Commit();

@@ -2,6 +2,7 @@
 
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -183,6 +184,18 @@ void AddCorners(const CameraSolution& s, double cauchy_px, Parameters& at,
   }
 }
 
+// A step that cannot be solved for is taken again with more damping; Ceres writes it to stderr.
+class QuietLog {
+ public:
+  QuietLog() : level_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
+  ~QuietLog() { FLAGS_minloglevel = level_; }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
+
+ private:
+  int level_;
+};
+
 bool Minimise(const CameraSolution& s, const BundleOptions& options, Parameters& at) {
   ceres::Problem problem;
   AddCorners(s, options.cauchy_px, at, problem);
@@ -213,6 +226,7 @@ bool Minimise(const CameraSolution& s, const BundleOptions& options, Parameters&
   solver.gradient_tolerance = 1e-12;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
+  const QuietLog quiet;
   ceres::Solve(solver, &problem, &summary);
   return summary.IsSolutionUsable() && at.Finite();
 }

@@ -139,17 +139,56 @@ void AddCorners(const BoardSpec& board, const std::vector<cv::Point2f>& corners,
   }
 }
 
-// The two markers beside a corner look alike from it, a gap and a border's cell deep.
+// The corners refined with a window of `reach` distances to the next corner; one that is nearer to
+// the picture's end is left out.
+BoardSighting Refined(const Image& grey, const BoardSighting& coarse, double reach, int columns) {
+  BoardSighting seen;
+  for (std::size_t i = 0; i < coarse.px.size(); ++i) {
+    const double reach_px = reach * Spacing(coarse.ids, coarse.px, i, columns);
+    const Eigen::Array2d from_end =
+        Eigen::Array2d(grey.width_px - 1, grey.height_px - 1) - coarse.px[i].array();
+    if (coarse.px[i].minCoeff() < reach_px + 1 || from_end.minCoeff() < reach_px + 1) continue;
+    std::vector<Eigen::Vector2d> one = {coarse.px[i]};
+    RefineSaddles(grey, reach_px, one);
+    seen.ids.push_back(coarse.ids[i]);
+    seen.x_B.push_back(coarse.x_B[i]);
+    seen.px.push_back(one[0]);
+  }
+  seen.layout = coarse.layout;
+  return seen;
+}
+
+// How unevenly three corners in a row follow one another, in the median: noise, and a pull that
+// changes its sign from corner to corner as the markers do.
+double Unevenness(const BoardSighting& seen, int columns) {
+  std::map<int, Eigen::Vector2d> at;
+  for (std::size_t i = 0; i < seen.ids.size(); ++i) at[seen.ids[i]] = seen.px[i];
+  std::vector<double> bends;
+  for (const auto& [id, px] : at) {
+    for (const int step : {1, columns}) {
+      if (step == 1 && (id % columns == 0 || id % columns == columns - 1)) continue;
+      if (!at.contains(id - step) || !at.contains(id + step)) continue;
+      bends.push_back((at[id - step] - 2 * px + at[id + step]).norm());
+    }
+  }
+  if (bends.empty()) return HUGE_VAL;
+  std::nth_element(bends.begin(), bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2),
+                   bends.end());
+  return bends[bends.size() / 2];
+}
+
+// In a sharp picture a window that ends before the markers begin is best. In a blurred one a larger
+// one is: the two markers beside a corner look alike from it, a gap and a border's cell deep.
 void RefineEach(const Image& grey, const BoardSpec& board, BoardSighting& seen) {
   const double gap = 0.5 * (board.square_m - board.marker_m);
   const double cell = board.marker_m / (DictionaryOf(board)->markerSize + 2);
-  const double reach = std::min(kSaddleReach, (gap + 0.8 * cell) / board.square_m);
-  const std::vector<Eigen::Vector2d> coarse = seen.px;
-  for (std::size_t i = 0; i < coarse.size(); ++i) {
-    std::vector<Eigen::Vector2d> one = {coarse[i]};
-    RefineSaddles(grey, reach * Spacing(seen.ids, coarse, i, board.columns - 1), one);
-    seen.px[i] = one[0];
-  }
+  const int columns = board.columns - 1;
+  const auto with = [&](double reach_m) {
+    return Refined(grey, seen, std::min(kSaddleReach, reach_m / board.square_m), columns);
+  };
+  BoardSighting narrow = with(0.9 * gap), wide = with(gap + 0.8 * cell);
+  seen =
+      Unevenness(narrow, columns) < Unevenness(wide, columns) ? std::move(narrow) : std::move(wide);
 }
 
 }  // namespace
