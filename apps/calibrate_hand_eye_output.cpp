@@ -159,8 +159,8 @@ json HandEyeSummary(const HandEyeResult& r, const Calibration& calibration) {
 }
 
 void WriteHandEyeTables(const std::filesystem::path& folder, const HandEyeResult& result) {
-  CsvWriter csv({"view", "corners []", "board [px]", "px [px]", "mm [mm]", "heldout_px [px]",
-                 "heldout_mm [mm]", "chi2 []", "used []", "reason"});
+  CsvWriter csv({"timestamp [ns]", "view", "corners []", "board [px]", "px [px]", "mm [mm]",
+                 "heldout_px [px]", "heldout_mm [mm]", "chi2 []", "used []", "reason"});
   for (const HandEyeViewResult& v : result.views) {
     csv.Add(v.t_ns).Add(Quoted(v.name)).Add(static_cast<double>(v.corners)).Add(v.board_px);
     for (const double value : {v.px, v.mm, v.held_out_px, v.held_out_mm}) AddOrEmpty(csv, value);
@@ -200,8 +200,7 @@ std::string HandEyeInWords(const HandEyeResult& r, const Calibration& calibratio
   }
   std::string last;
   for (const auto& u : calibration.unobservable) {
-    if (u.reason == last) continue;
-    text += fmt::format("not known, {} and others: {}\n", u.parameter, u.reason);
+    if (u.reason != last) text += fmt::format("not known: {}: {}\n", u.parameter, u.reason);
     last = u.reason;
   }
   if (!r.motions.empty()) {

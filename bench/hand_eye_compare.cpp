@@ -15,6 +15,7 @@
 
 #include "bench/hand_eye_data.h"
 #include "bench/tool.h"
+#include "calibration/hand_eye_fit.h"
 #include "vision/camera_model.h"
 #include "vision/reprojection.h"
 
@@ -219,36 +220,65 @@ void CompareFarBoards(int views, double distance_m, double tilt_rad, double nois
   fmt::print("  {:.1f} of {} views were flipped\n", flipped / static_cast<double>(kRuns), views);
 }
 
+HandEyeInput WithViews(const HandEyeInput& input, const HandEyeResult& result) {
+  HandEyeInput some = input;
+  some.views.clear();
+  for (std::size_t i = 0; i < result.views.size(); ++i) {
+    if (result.views[i].used) some.views.push_back(input.views[i]);
+  }
+  return some;
+}
+
+void PrintUpstream(const char* name, const UpstreamError& error) {
+  fmt::print("  {:24} {:8.2f} px {:8.2f} mm\n", name, error.px, error.mm);
+}
+
+// What no other frames could do better by the distance in the picture: the wrists taken as exact.
+Frames LeastPixels(const HandEyeInput& input, const HandEyeResult& start) {
+  HandEyeProblem problem;
+  problem.noise = {1.0, 1e-7, 1e-8};
+  for (const HandEyeView& view : input.views) {
+    FitView& one = problem.views.emplace_back();
+    for (std::size_t i = 0; i < view.sighting.px.size(); ++i) {
+      one.points.push_back({view.sighting.x_B[i], view.sighting.px[i]});
+    }
+    one.wrist = WristAround(input.wrist, view.t_ns).value();
+  }
+  const auto fit = FitHandEye(problem, {start.T_FC, start.T_KB, input.camera, 0.0, {}});
+  if (!fit) throw WorkError("the fit of least pixels did not converge");
+  return {fit->state.T_FC, fit->state.T_KB};
+}
+
+void CompareOn(const HandEyeInput& input, const HandEyeResult& ours) {
+  const Poses poses = PosesByOpenCv(input);
+  fmt::print("upstream's measures over {} views, in sample\n", poses.T_CB.size());
+  const auto print = [&](const char* name, const Frames& frames, const CameraCalibration& camera) {
+    PrintUpstream(name, UpstreamErrorOf(input, camera, frames, poses.T_RW));
+  };
+  for (const Method& method : Methods()) print(method.name, method.run(poses), input.camera);
+  print("flextip", {ours.T_FC, ours.T_KB}, ours.camera);
+  print("least possible px", LeastPixels(input, ours), input.camera);
+}
+
 void CompareScope(const Arguments& a) {
   const HandEyeInput input = ReadTrackedScope(a.scope, ParseBoardSpec(a.board),
                                               a.orientation_noise_rad, a.position_noise_m);
-  const Poses poses = PosesByOpenCv(input);
-  fmt::print("\ntracked scope, {}: upstream's measures over {} views\n", a.board,
-             poses.T_CB.size());
-  for (const Method& method : Methods()) {
-    const Frames frames = method.run(poses);
-    const auto error = UpstreamErrorOf(input, input.camera, frames, poses.T_RW);
-    fmt::print("  {:18} {:8.2f} px {:8.2f} mm\n", method.name, error.px, error.mm);
-  }
   const auto start = std::chrono::steady_clock::now();
   const auto r = CalibrateHandEye(input, {.refine_intrinsics = a.refine_intrinsics});
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   if (!r.IsUsable()) throw WorkError(r.message);
-  const auto error = UpstreamErrorOf(input, r.camera, {r.T_FC, r.T_KB}, poses.T_RW);
-  fmt::print("  {:18} {:8.2f} px {:8.2f} mm, {:.2f} s\n", "flextip", error.px, error.mm,
-             seconds.count());
-  fmt::print("  used {}: {:.2f} px, {:.2f} mm; held out {:.2f} px, {:.2f} mm; corners {:.2f} px\n",
-             r.views_used, r.rms_px, r.rms_mm, r.held_out_px, r.held_out_mm, r.corner_noise_px);
-  fmt::print("  wrist noise over stated: orientation {:.2f}, position {:.2f}\n",
-             r.orientation_noise_scale, r.position_noise_scale);
+  fmt::print("tracked scope, {}: {} of {} views used, {:.2f} s\n", a.board, r.views_used,
+             r.views.size(), seconds.count());
+  fmt::print("{:.2f} px, {:.2f} mm; held out {:.2f} px, {:.2f} mm; corners' noise {:.2f} px\n",
+             r.rms_px, r.rms_mm, r.held_out_px, r.held_out_mm, r.corner_noise_px);
+  fmt::print("tracker's noise: {:.2f} deg, {:.2f} mm an axis\n",
+             57.3 * r.orientation_noise_scale * a.orientation_noise_rad,
+             1e3 * r.position_noise_scale * a.position_noise_m);
   for (const auto& view : r.views) {
-    fmt::print(
-        "  {}: board {:.2f} px, {:.2f} px, {:.2f} mm, held out {:.2f} px {:.2f} mm, chi2 {:.1f} "
-        "{} step {:.2f} deg {:.2f} mm {}\n",
-        view.name, view.board_px, view.px, view.mm, view.held_out_px, view.held_out_mm, view.chi2,
-        view.flipped ? "flipped" : "", 57.3 * view.wrist_step.head<3>().norm(),
-        1e3 * view.wrist_step.tail<3>().norm(), view.reason);
+    if (!view.used) fmt::print("not used: {}: {}\n", view.name, view.reason);
   }
+  CompareOn(input, r);
+  CompareOn(WithViews(input, r), r);
 }
 
 void Run(Arguments& a) {

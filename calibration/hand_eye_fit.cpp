@@ -1,13 +1,17 @@
 #include "calibration/hand_eye_fit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace flextip {
 namespace {
 
-constexpr int kMaxIterations = 60;
+constexpr int kMaxIterations = 100;
 constexpr double kConverged = 1e-9;  // of the cost
+// Where a motion leaves something open the steps along it never end; chi2 says when they mean
+// nothing.
+constexpr double kMeansNothing = 0.01;
 
 struct Linearised {
   std::vector<ViewNormal> views;
@@ -169,13 +173,15 @@ std::optional<HandEyeFit> FitHandEye(const HandEyeProblem& problem, HandEyeState
   if (!at) return {};
   double damping = 1e-6;
   bool converged = false;
+  double last_gain = HUGE_VAL;
   for (int i = 0; i < kMaxIterations && !converged; ++i) {
     const HandEyeState next = Moved(fit.state, Solve(*at, unknowns, damping));
     auto there = next.camera.fu_px > 0 && next.camera.fv_px > 0 && next.T_FC.p.allFinite()
                      ? Linearise(problem, next)
                      : std::nullopt;
     if (there && there->cost <= at->cost) {
-      converged = at->cost - there->cost < kConverged * (1 + at->cost);
+      last_gain = at->cost - there->cost;
+      converged = last_gain < kConverged * (1 + at->cost);
       fit.state = next;
       at = std::move(there);
       damping = std::max(1e-12, 0.1 * damping);
@@ -184,7 +190,7 @@ std::optional<HandEyeFit> FitHandEye(const HandEyeProblem& problem, HandEyeState
       converged = damping > 1e8;  // only rounding is left
     }
   }
-  if (!converged) return {};
+  if (!converged && last_gain > kMeansNothing) return {};
   fit.cost = at->cost;
   fit.covariance = CovarianceOf(*at, unknowns);
   fit.variances = VariancesOf(problem, *at, unknowns, fit.covariance);
