@@ -60,10 +60,12 @@ nlohmann::json Summary(const StiffnessCalibration& result) {
                     {"along_load_m_N", bin.along_load_m_N}});
   }
   const auto& port = result.port_shift_m;
+  nlohmann::json models = nlohmann::json::object();
+  if (result.constant) models["constant"] = ModelJson(*result.constant);
+  if (result.tapered) models["taper"] = ModelJson(*result.tapered);
   return {{"status", Name(result.status)},
           {"model", result.taper_chosen ? "taper" : "constant"},
-          {"constant", ModelJson(result.constant)},
-          {"taper", ModelJson(result.tapered)},
+          {"models", models},
           {"holds_used", used},
           {"holds_rejected", rejected},
           {"unobservable", unobservable},
@@ -136,17 +138,23 @@ void Warn(const StiffnessCalibration& result, OutputFolder& output) {
   }
   for (const auto& u : result.found.unobservable) output.Warn(u.parameter + ": " + u.reason);
   if (result.status == StiffnessStatus::kModelIncomplete) {
-    const auto& m = result.taper_chosen ? result.tapered : result.constant;
+    const auto& m = result.chosen();
     output.Warn(fmt::format(
         "no stiffness explains these shapes to their noise (chi2 {:.1f} a degree of freedom): "
         "something else gives way too, and the stiffness found makes up for it; flextip diagnose "
         "says what it may be. The uncertainty stated is wider by that",
         m.chi2_per_dof));
   }
+  if (result.port_shift_m.norm() > 4 * result.port_noise_m) {
+    output.Warn(
+        fmt::format("the port would have to be {:.2f} mm from where it is registered, which "
+                    "is said to be good to {:.2f} mm",
+                    1e3 * result.port_shift_m.norm(), 1e3 * result.port_noise_m));
+  }
 }
 
 void Print(const StiffnessCalibration& result) {
-  const auto& m = result.taper_chosen ? result.tapered : result.constant;
+  const auto& m = result.chosen();
   fmt::print("{}: E I {:.5g} +- {:.2g} Nm2", Name(result.status), m.stiffness_Nm2,
              m.stiffness_sd_Nm2);
   if (result.taper_chosen) fmt::print(", taper {:.3f} +- {:.3f}", m.taper, m.taper_sd);

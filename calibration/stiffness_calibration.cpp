@@ -105,7 +105,7 @@ class ModelFit {
 
 /// Where many are far off it is not they who are wrong: then all stay.
 void ModelFit::RejectOutliers() {
-  for (int round = 0; round < 4; ++round) {
+  for (int round = 0; round < 4 && fit_.converged; ++round) {
     std::vector<double> ratios;
     for (const StiffnessRows& rows : fit_.rows) {
       const auto n = static_cast<double>(rows.residual.size());
@@ -199,7 +199,7 @@ void ModelFit::HoldOut() {
 /// The taper is believed where it predicts better and is no chance.
 bool IsTaperBetter(const StiffnessModel& constant, const StiffnessModel& tapered) {
   return tapered.converged && tapered.taper_sd < kKnownTaper &&
-         std::abs(tapered.taper) > 2 * tapered.taper_sd &&
+         std::abs(tapered.taper) > 3 * tapered.taper_sd &&
          tapered.heldout_chi2 < constant.heldout_chi2 &&
          tapered.heldout_tip_rms_m < constant.heldout_tip_rms_m;
 }
@@ -285,10 +285,10 @@ std::string Advice(ModelFit& chosen, bool for_taper, const Eigen::Vector3d& p_RP
   for (const NextLoad& next : NextLoads(placed, p_RP)) {
     const StiffnessRows rows = chosen.fitter().RowsOf(next.hold, chosen.fit().x);
     if (!rows.usable) continue;
-    const double then = VarianceWith(
-        chosen.fit().information +
-            rows.by_unknowns.transpose() * rows.covariance.ldlt().solve(rows.by_unknowns),
-        unknown);
+    const double then =
+        VarianceWith(chosen.fit().information + rows.by_unknowns.transpose() *
+                                                    rows.covariance.ldlt().solve(rows.by_unknowns),
+                     unknown);
     if (then >= best) continue;
     best = then;
     words = next.words;
@@ -298,12 +298,10 @@ std::string Advice(ModelFit& chosen, bool for_taper, const Eigen::Vector3d& p_RP
                      for_taper ? "taper" : "stiffness", 100 * std::sqrt(best / now));
 }
 
-void FillFound(const ModelFit& constant, const ModelFit& tapered, StiffnessCalibration& result) {
-  const ModelFit& chosen = result.taper_chosen ? tapered : constant;
+void FillFound(const ModelFit& chosen, StiffnessCalibration& result) {
   const StiffnessModel& model = chosen.model();
   Calibration& found = result.found;
   found.kind = "stiffness";
-  const StiffnessModel& t = tapered.model();
   if (result.status == StiffnessStatus::kUnobservable) {
     found.unobservable.push_back(
         {"instrument.bending_stiffness_Nm2",
@@ -320,12 +318,13 @@ void FillFound(const ModelFit& constant, const ModelFit& tapered, StiffnessCalib
     }
     found.covariance = J * chosen.covariance().topLeftCorner<2, 2>() * J.transpose();
   }
-  if (!result.taper_chosen && !(t.converged && t.taper_sd < kKnownTaper)) {
+  const auto& tapered = result.tapered;
+  if (tapered && !(tapered->converged && tapered->taper_sd < kKnownTaper)) {
     found.unobservable.push_back(
         {"instrument.stiffness_taper",
          fmt::format("a stiffer wrist end and a stiffer tip end look alike here (standard "
                      "deviation {:.2g}); load at more insertions",
-                     t.taper_sd)});
+                     tapered->taper_sd)});
   }
 }
 
@@ -347,33 +346,32 @@ StiffnessCalibration CalibrateStiffness(const Recording& recording, const std::s
                                         const StiffnessCalibrationOptions& options) {
   const LoadClock clock = ClockOf(recording, source);
   const std::vector<LoadHold> holds = LoadHolds(recording, clock, options.most_holds);
-  StiffnessSetup setup = SetupOf(recording, holds, options);
-  ModelFit constant(setup, holds);
-  const auto usable = std::count_if(constant.fit().rows.begin(), constant.fit().rows.end(),
-                                    [](const StiffnessRows& r) { return r.usable && r.has_place; });
+  const auto usable =
+      std::count_if(holds.begin(), holds.end(), [](const LoadHold& h) { return h.p_RE || h.T_RS; });
   if (usable < 5) {
     throw InputError::At(
         source, 0, fmt::format("found {} loads with wrist and tip, expected at least 5", usable));
   }
+  StiffnessSetup setup = SetupOf(recording, holds, options);
+  std::optional<ModelFit> constant, tapered;
+  if (options.choice != StiffnessChoice::kTaper) constant.emplace(setup, holds);
   setup.taper_prior = kTaperPrior;
-  ModelFit tapered(setup, holds);
+  if (options.choice != StiffnessChoice::kConstant) tapered.emplace(setup, holds);
   StiffnessCalibration result;
-  result.constant = constant.model();
-  result.tapered = tapered.model();
-  result.taper_chosen =
-      options.choice == StiffnessChoice::kTaper ||
-      (options.choice == StiffnessChoice::kByHeldoutError &&
-       IsTaperBetter(result.constant, result.tapered));
-  ModelFit& chosen = result.taper_chosen ? tapered : constant;
+  if (constant) result.constant = constant->model();
+  if (tapered) result.tapered = tapered->model();
+  result.taper_chosen = !constant || (tapered && IsTaperBetter(*result.constant, *result.tapered));
+  ModelFit& chosen = result.taper_chosen ? *tapered : *constant;
+  result.port_noise_m = options.port_noise_m;
   FillHolds(holds, chosen, result);
   FillInsertions(recording.instrument.length_m, result);
   result.port_shift_m = chosen.fit().x.segment<3>(kStiffnessPort);
-  const double sd = chosen.model().stiffness_sd_Nm2 / chosen.model().stiffness_Nm2;
-  result.status = !chosen.model().converged || !(sd < kKnownStiffness)
+  const double sd = result.chosen().stiffness_sd_Nm2 / result.chosen().stiffness_Nm2;
+  result.status = !result.chosen().converged || !(sd < kKnownStiffness)
                       ? StiffnessStatus::kUnobservable
                   : chosen.IsIncomplete() ? StiffnessStatus::kModelIncomplete
                                           : StiffnessStatus::kOk;
-  FillFound(constant, tapered, result);
+  FillFound(chosen, result);
   result.advice = Advice(chosen, result.taper_chosen, recording.p_RP, result);
   return result;
 }

@@ -50,11 +50,13 @@ struct InsertionResidual {
 
 struct StiffnessCalibration {
   StiffnessStatus status = StiffnessStatus::kUnobservable;
-  StiffnessModel constant, tapered;
+  std::optional<StiffnessModel> constant, tapered;  ///< those that were asked for
   bool taper_chosen = false;
+  const StiffnessModel& chosen() const { return taper_chosen ? *tapered : *constant; }
   double bend_m = 0.0;  ///< how far the loads bend the tip away at most
-  Eigen::Vector3d port_shift_m = Eigen::Vector3d::Zero();
-  std::vector<StiffnessHoldResult> holds;  ///< of the model chosen
+  Eigen::Vector3d port_shift_m = Eigen::Vector3d::Zero();  ///< from where it is registered
+  double port_noise_m = 0.0;                               ///< as it was taken to be
+  std::vector<StiffnessHoldResult> holds;                  ///< of the model chosen
   std::vector<InsertionResidual> by_insertion;
   Calibration found;
   std::string advice;

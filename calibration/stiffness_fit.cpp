@@ -105,13 +105,14 @@ StiffnessRows StiffnessFitter::Rows(const LoadHold& hold, const StiffnessVector&
   rod.f_tip = hold.f_tip_N + hidden.d.head<3>();
   rod.q_weight = setup_.instrument.mass_per_length_kg_m * setup_.gravity_m_s2;
   problem.taper = x[kStiffnessTaper];
-  problem.y_wrist = hold.R_RW ? Eigen::Vector3d(hold.R_RW->col(1))
-                              : Eigen::Vector3d(NormalBasis((rod.p_port - rod.p_wrist).normalized()).col(0));
+  problem.y_wrist =
+      hold.R_RW ? Eigen::Vector3d(hold.R_RW->col(1))
+                : Eigen::Vector3d(NormalBasis((rod.p_port - rod.p_wrist).normalized()).col(0));
   const double stations[] = {setup_.stations_m[0], setup_.stations_m[1],
                              rod.length_m - setup_.em_from_tip_m};
   const bool strain = setup_.moment_noise_Nm > 0 && hold.readings && hold.R_RW;
-  const std::span<const double> asked = strain ? std::span<const double>(stations, 3)
-                                               : std::span<const double>(stations + 2, 1);
+  const std::span<const double> asked =
+      strain ? std::span<const double>(stations, 3) : std::span<const double>(stations + 2, 1);
   StiffnessRows out;
   const TaperedRodState state = solver.Solve(problem, asked);
   if (!state.usable) return out;
@@ -167,8 +168,7 @@ StiffnessVector StiffnessFitter::PriorInformation() const {
 
 /// Fills the equations and the fit's rows at `x`; the cost.
 double StiffnessFitter::Evaluate(const StiffnessVector& x, const std::vector<double>& weights,
-                                 StiffnessMatrix& N, StiffnessVector& gradient,
-                                 StiffnessFit& fit) {
+                                 StiffnessMatrix& N, StiffnessVector& gradient, StiffnessFit& fit) {
   const StiffnessVector prior = PriorInformation();
   const StiffnessVector from_prior = x - Nominal();
   N = prior.asDiagonal();
@@ -194,28 +194,49 @@ StiffnessVector StiffnessFitter::Nominal() const {
   return StiffnessVector::Unit(kLogStiffness) * std::log(setup_.instrument.bending_stiffness_Nm2);
 }
 
+/// Levenberg and Marquardt's damping: towards a taper that the loads say little of, plain steps
+/// overshoot.
 StiffnessFit StiffnessFitter::Fit(const std::vector<double>& weights,
                                   const StiffnessVector& start) {
   StiffnessFit fit;
   fit.x = start;
   StiffnessMatrix N;
   StiffnessVector gradient;
+  double cost = Evaluate(fit.x, weights, N, gradient, fit), damping = 0.0;
   for (int i = 0; i < kMaxIterations && !fit.converged; ++i) {
-    Evaluate(fit.x, weights, N, gradient, fit);
     const StiffnessVector unit = N.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::LDLT<StiffnessMatrix> solver(unit.asDiagonal() * N * unit.asDiagonal());
-    StiffnessVector dx = unit.cwiseProduct(solver.solve(unit.cwiseProduct(gradient)));
-    fit.information = N;
-    fit.covariance =
-        unit.asDiagonal() * StiffnessMatrix(solver.solve(StiffnessMatrix::Identity())) *
-        unit.asDiagonal();
-    fit.converged = dx.dot(N * dx) < kSettled;
-    const double stretch = std::max({1.0, std::abs(dx[kLogStiffness]) / 0.5,
-                                     std::abs(dx[kStiffnessTaper]) / 0.5});
-    fit.x += dx / stretch;
-    fit.x[kStiffnessTaper] = std::clamp(fit.x[kStiffnessTaper], -kMostTaper, kMostTaper);
+    StiffnessMatrix scaled = unit.asDiagonal() * N * unit.asDiagonal();
+    scaled.diagonal().array() += damping;
+    const StiffnessVector dx = unit.cwiseProduct(scaled.ldlt().solve(unit.cwiseProduct(gradient)));
+    StiffnessVector x = fit.x + dx;
+    x[kStiffnessTaper] = std::clamp(x[kStiffnessTaper], -kMostTaper, kMostTaper);
+    const std::vector<Hidden> hidden = hidden_;
+    StiffnessFit next = fit;
+    StiffnessMatrix next_N;
+    StiffnessVector next_gradient;
+    const double next_cost = Evaluate(x, weights, next_N, next_gradient, next);
+    const bool settled = dx.dot(N * dx) < kSettled;
+    // A hold whose rod has no equilibrium drops out of the cost: that is no progress.
+    if (!settled && !(next_cost < cost + 1e-9 * std::abs(cost) && next.Usable() >= fit.Usable())) {
+      hidden_ = hidden;
+      damping = std::max(1e-4, 10 * damping);
+      if (damping > 1e6) break;
+      continue;
+    }
+    next.x = x;
+    fit = std::move(next);
+    N = next_N;
+    gradient = next_gradient;
+    cost = next_cost;
+    damping = damping < 1e-6 ? 0.0 : damping / 10;
+    fit.converged = settled;
   }
-  Evaluate(fit.x, weights, N, gradient, fit);
+  const StiffnessVector unit = N.diagonal().cwiseSqrt().cwiseInverse();
+  const StiffnessMatrix scaled = unit.asDiagonal() * N * unit.asDiagonal();
+  fit.information = N;
+  fit.covariance = unit.asDiagonal() *
+                   StiffnessMatrix(scaled.ldlt().solve(StiffnessMatrix::Identity())) *
+                   unit.asDiagonal();
   return fit;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <vector>
 
 #include "calibration/known_loads.h"
@@ -48,6 +49,10 @@ struct StiffnessFit {
   StiffnessVector x = StiffnessVector::Zero();
   StiffnessMatrix covariance = StiffnessMatrix::Zero(), information = StiffnessMatrix::Zero();
   std::vector<StiffnessRows> rows;  ///< of each hold, at `x`
+
+  auto Usable() const {
+    return std::count_if(rows.begin(), rows.end(), [](const auto& r) { return r.usable; });
+  }
 };
 
 /// The most likely unknowns, with every hold's true load and wrist as unknowns of its own (errors
@@ -71,8 +76,8 @@ class StiffnessFitter {
   StiffnessRows Rows(const LoadHold& hold, const StiffnessVector& x, TaperedRodSolver& solver,
                      Hidden& hidden) const;
   StiffnessVector PriorInformation() const;
-  double Evaluate(const StiffnessVector& x, const std::vector<double>& weights,
-                  StiffnessMatrix& N, StiffnessVector& gradient, StiffnessFit& fit);
+  double Evaluate(const StiffnessVector& x, const std::vector<double>& weights, StiffnessMatrix& N,
+                  StiffnessVector& gradient, StiffnessFit& fit);
 
   StiffnessSetup setup_;
   const std::vector<LoadHold>& holds_;

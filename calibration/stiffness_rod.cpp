@@ -14,7 +14,7 @@ namespace {
 using namespace tapered_input;
 
 constexpr int kUnknowns = 6;  // two turns of the wrist's tangent, the port's place, its force
-constexpr int kSteps = 24;    // along the whole shaft, at least
+constexpr int kSteps = 16;    // along the whole shaft, at least
 constexpr int kMaxNewton = 20;
 constexpr double kConverged = 1e-11;
 constexpr double kMostTurn = 0.4;  // rad, in one Newton step
@@ -122,8 +122,7 @@ Scaled<T> ScaledOf(const TaperedRodProblem& problem, int first, double part) {
     for (int i = 0; i < 3; ++i) out[i] = variable(v[i], input + i);
     return out;
   };
-  const T force =
-      exp(variable(std::log(problem.rod.bending_stiffness_Nm2), kStiffness)) / T(L * L);
+  const T force = exp(variable(std::log(problem.rod.bending_stiffness_Nm2), kStiffness)) / T(L * L);
   Scaled<T> scaled;
   scaled.span = (vector(problem.rod.p_port, kPort) - vector(problem.rod.p_wrist, kWrist)) / T(L);
   scaled.f = vector(problem.rod.f_tip, kForce) * (T(part) / force);
@@ -139,8 +138,8 @@ template <class T>
 void ShootFrom(const Scaled<T>& scaled, const Unknowns& x, std::span<const double> places,
                Shot<T>& shot) {
   const Eigen::Matrix<double, 3, 2> basis = NormalBasis(x.t_wrist);
-  Vector3<T> t = x.t_wrist.cast<T>() + basis.col(0).cast<T>() * T(0, 0) +
-                 basis.col(1).cast<T>() * T(0, 1);
+  Vector3<T> t =
+      x.t_wrist.cast<T>() + basis.col(0).cast<T>() * T(0, 0) + basis.col(1).cast<T>() * T(0, 1);
   t /= sqrt(t.squaredNorm());
   Vector3<T> r;
   for (int i = 0; i < 3; ++i) r[i] = T(x.r[i], 3 + i);

@@ -36,8 +36,8 @@ struct TaperedRodState {
   std::vector<TaperedRodSection> stations;  ///< as asked for, in that order
 };
 
-/// By shooting, integrated with Runge and Kutta's fourth order (two dozen steps: 1e-8 of the
-/// length), derivatives by automatic differentiation. Starts from the last equilibrium.
+/// By shooting, integrated with Runge and Kutta's fourth order (sixteen steps and more: 1e-7 of
+/// the length), derivatives by automatic differentiation. Starts from the last equilibrium.
 class TaperedRodSolver {
  public:
   /// `stations_m` from the wrist, within the shaft.

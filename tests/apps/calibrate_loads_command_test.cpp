@@ -1,0 +1,91 @@
+// flextip calibrate strain and stiffness on recordings of the plant, and what other commands make
+// of their results.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "recording/calibration_file.h"
+#include "recording/recording_writer.h"
+#include "run_program.h"
+#include "tests/calibration/hung_masses.h"
+
+namespace flextip {
+namespace {
+
+using ::testing::HasSubstr;
+
+nlohmann::json SummaryOf(const std::filesystem::path& folder) {
+  return nlohmann::json::parse(ReadText(folder / "summary.json"));
+}
+
+/// Amplified gages on a shaft that is softer than the recording says.
+std::string Masses(const TestFolder& folder) {
+  testing::Bench bench;
+  bench.gains = 200 * Eigen::Matrix4d::Identity();
+  bench.gains(1, 0) = -6;
+  bench.offset << 12, -30, 4, 55;
+  bench.noise.reading = 0.15;
+  bench.effects.stiffness_scale = 0.8;
+  const auto masses = testing::AllWays({-0.08, 0.0, 0.08}, {0.15, 0.3});
+  Recording recording = RecordBench(bench, masses, Hang(bench, masses), 11);
+  std::filesystem::create_directories(folder / "masses");
+  WriteRecording(folder / "masses", recording);
+  return (folder / "masses").string();
+}
+
+TEST(CalibrateLoads, GagesThenStiffnessThenAnEstimateThatFits) {
+  TestFolder folder;
+  const std::string masses = Masses(folder);
+  const std::string gages = (folder / "gages").string(), shaft = (folder / "shaft").string();
+  auto run = RunProgram({"calibrate", "strain", masses, "-o", gages});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const char* file : {"calibration.yaml", "residuals.csv", "figures.json", "report.html"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / "gages" / file)) << file;
+  }
+  const std::string gages_yaml = gages + "/calibration.yaml";
+  run = RunProgram(
+      {"calibrate", "stiffness", masses, "--calibration", gages_yaml, "-o", shaft, "--quiet"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto summary = SummaryOf(folder / "shaft");
+  EXPECT_EQ(summary["status"], "ok");
+  ASSERT_EQ(summary["calibrations"].size(), 1);
+  EXPECT_EQ(summary["calibrations"][0]["kind"], "strain");
+  const Calibration found = ReadCalibration(folder / "shaft" / "calibration.yaml");
+  EXPECT_NEAR(found.numbers.at("instrument.bending_stiffness_Nm2")[0], 0.8 * 0.304, 0.003);
+
+  // Without what was found the readings are no moments and the shaft is too stiff.
+  const auto estimate = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"estimate", masses,   "-o", (folder / "out").string(),
+                                          "--force",  "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto result = RunProgram(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return SummaryOf(folder / "out");
+  };
+  EXPECT_GT(estimate({})["chi2_per_measurement"], 100);
+  const auto both =
+      estimate({"--calibration", gages_yaml, "--calibration", shaft + "/calibration.yaml"});
+  EXPECT_LT(both["chi2_per_measurement"], 1.5);
+  ASSERT_EQ(both["calibrations"].size(), 2);
+  EXPECT_EQ(both["calibrations"][1]["names"][0], "instrument.bending_stiffness_Nm2");
+}
+
+TEST(CalibrateLoads, CalibrationsThatDoNotFitAreRefused) {
+  TestFolder folder;
+  const std::string masses = Masses(folder);
+  const std::string head = "format: flextip-calibration\nversion: 1\nkind: hand-eye\nfound:\n";
+  const auto file = folder.Write("wrong.yaml", head + "  cam0.magic: 1\n");
+  const std::string out = (folder / "out").string();
+  EXPECT_TRUE(IsRefused(RunProgram({"estimate", masses, "-o", out, "--calibration", file}),
+                        {"wrong.yaml", "cam0.magic", "unknown name"}));
+  const auto camera = folder.Write("camera.yaml", head + "  cam0.intrinsics: [1, 1, 0, 0]\n");
+  EXPECT_TRUE(IsRefused(RunProgram({"diagnose", masses, "-o", out, "--calibration", camera}),
+                        {"camera.yaml", "cam0.intrinsics", "the recording has no cam0"}));
+  EXPECT_TRUE(IsRefused(RunProgram({"estimate", masses, "-o", out, "--calibration", "/no/file"}),
+                        {"/no/file"}));
+}
+
+}  // namespace
+}  // namespace flextip
