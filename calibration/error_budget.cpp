@@ -56,6 +56,7 @@ void AddBending(const TipBending& bending, const Pose& T_RE, double distance_m, 
       BendBeyondCollar(bending.f_R, T_RE.R.col(0), distance_m, bending.stiffness_Nm2);
   const Eigen::Matrix3d square = budget.bend_R * budget.bend_R.transpose();
   budget.parts.push_back({"bending", square, true});
+  if (!(bending.stiffness_sd_Nm2 > 0)) return;
   const double relative = bending.stiffness_sd_Nm2 / bending.stiffness_Nm2;
   budget.parts.push_back({"stiffness", relative * relative * square, false});
 }
