@@ -66,8 +66,9 @@ Chain ChainOf(const std::vector<UsedCalibration>& used) {
                         const char* by) {
     if (m.size() > 0) return;
     chain.not_known.push_back(
-        {part, fmt::format("no calibration with a covariance of {} was given (flextip calibrate {})",
-                           name, by)});
+        {part,
+         fmt::format("no calibration with a covariance of {} was given (flextip calibrate {})",
+                     name, by)});
   };
   need(chain.covariance.lens, "lens", "cam0.intrinsics", "camera");
   need(chain.covariance.hand_eye, "hand-eye", "cam0.T_RC", "hand-eye");
@@ -112,9 +113,8 @@ std::vector<TimedBudget> Budgets(const CalibrateBudgetOptions& options, const Re
   std::size_t at = 0;
   while (const auto frame = frames->Next()) {
     const auto tags = detector.Detect(frame->image);
-    auto budget =
-        BudgetOfTip(recording.cam0->calibration, *recording.tags0, tags, chain.covariance,
-                    BendingAt(options, recording, chain, frame->t_ns));
+    auto budget = BudgetOfTip(recording.cam0->calibration, *recording.tags0, tags, chain.covariance,
+                              BendingAt(options, recording, chain, frame->t_ns));
     if (budget) {
       UseTrackedCovariance(recording, frame->t_ns, *budget);
       budgets.push_back({frame->t_ns, *budget});

@@ -60,13 +60,13 @@ nlohmann::json Row(const std::string& peer, const std::string& model, const Corn
     return {{"peer", peer}, {"model", model}, {"failed", error.what()}};
   }
   nlohmann::json row = {{"peer", peer},
-          {"model", model},
-          {"outliers", whole.outliers},
-          {"rms_px", whole.rms_px},
-          {"heldout_rms_px", HeldOutRms(set, calibrate)},
-          {"fu_px", whole.camera.fu_px},
-          {"fu_sd_px", whole.sd.front()},
-          {"seconds", whole.seconds}};
+                        {"model", model},
+                        {"outliers", whole.outliers},
+                        {"rms_px", whole.rms_px},
+                        {"heldout_rms_px", HeldOutRms(set, calibrate)},
+                        {"fu_px", whole.camera.fu_px},
+                        {"fu_sd_px", whole.sd.front()},
+                        {"seconds", whole.seconds}};
   const auto uncertainty =
       whole.solution ? ProjectionUncertainty::Of(*whole.solution) : std::nullopt;
   if (!uncertainty) return row;
@@ -103,8 +103,8 @@ void Run(Arguments& a) {
     fmt::print("{}\n", rows.back().dump());
   }
   const auto add_own = [&](const std::string& name, const std::optional<LensModel>& lens) {
-    rows.push_back(Row("flextip", name, set,
-                       [&](const CornerSet& s) { return CalibrateByFlextip(s, lens); }));
+    rows.push_back(
+        Row("flextip", name, set, [&](const CornerSet& s) { return CalibrateByFlextip(s, lens); }));
     fmt::print("{}\n", rows.back().dump());
   };
   for (const int terms : {5, 8, 12}) {
@@ -118,7 +118,7 @@ void Run(Arguments& a) {
 }  // namespace flextip
 
 int main(int argc, char** argv) {
-  return flextip::RunTool<flextip::Arguments>(
-      argc, argv, "Calibrations of one camera from the same corners", flextip::AddOptions,
-      flextip::Run);
+  return flextip::RunTool<flextip::Arguments>(argc, argv,
+                                              "Calibrations of one camera from the same corners",
+                                              flextip::AddOptions, flextip::Run);
 }

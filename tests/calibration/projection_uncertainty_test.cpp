@@ -81,8 +81,7 @@ TEST(ProjectionUncertainty, IsTheSpreadOfCalibrationsFromOtherNoise) {
     ASSERT_TRUE(own);
     for (Place& place : places) {
       const Eigen::Vector3d ray = model.Unproject(place.px).value();
-      const Eigen::Vector2d error =
-          SeenBy(found, truth, ray / ray.z() * place.depth_m) - place.px;
+      const Eigen::Vector2d error = SeenBy(found, truth, ray / ray.z() * place.depth_m) - place.px;
       place.spread += error * error.transpose() / kRuns;
       mean_nees += error.dot(own->CovariancePx(place.px, place.depth_m)->ldlt().solve(error)) /
                    (kRuns * static_cast<double>(places.size()));
