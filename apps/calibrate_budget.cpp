@@ -8,21 +8,19 @@
 
 #include "apps/calibrate.h"
 #include "apps/calibrate_budget_output.h"
-#include "apps/calibration_input.h"
 #include "apps/frame_source.h"
 #include "apps/output.h"
 #include "apps/progress.h"
+#include "apps/recording_input.h"
 #include "apps/vector_option.h"
 #include "core/error.h"
-#include "recording/recording_reader.h"
 #include "recording/resample.h"
 
 namespace flextip {
 namespace {
 
 struct CalibrateBudgetOptions {
-  std::filesystem::path recording, out;
-  CalibrationFiles calibrations;
+  RecordingInput input;
   Eigen::Vector3d force_N = Eigen::Vector3d::Zero();
   bool force_given = false;
   int frames = 50;
@@ -68,8 +66,9 @@ Chain ChainOf(const std::vector<UsedCalibration>& used) {
                         const char* by) {
     if (m.size() > 0) return;
     chain.not_known.push_back(
-        {part, fmt::format("no calibration with a covariance of {} was given (flextip calibrate {})",
-                           name, by)});
+        {part,
+         fmt::format("no calibration with a covariance of {} was given (flextip calibrate {})",
+                     name, by)});
   };
   need(chain.covariance.lens, "lens", "cam0.intrinsics", "camera");
   need(chain.covariance.hand_eye, "hand-eye", "cam0.T_RC", "hand-eye");
@@ -91,13 +90,22 @@ std::optional<TipBending> BendingAt(const CalibrateBudgetOptions& options,
   return bending;
 }
 
+// The tracker's own covariance, where it found the tip in that frame: it knows more than corners.
+void UseTrackedCovariance(const Recording& recording, TimeNs t_ns, TipBudget& budget) {
+  const auto tip = recording.vision0 ? TipAt(*recording.vision0, t_ns) : std::nullopt;
+  if (!tip || tip->value.status != TipStatus::kOk) return;
+  for (BudgetPart& part : budget.parts) {
+    if (part.name == "pixels") part.covariance_R = tip->value.covariance_m2;
+  }
+}
+
 // `options.frames` frames, spread over the recording.
 std::vector<TimedBudget> Budgets(const CalibrateBudgetOptions& options, const Recording& recording,
                                  const Chain& chain, bool quiet) {
   TagDetectorOptions detector_options;
   detector_options.family = recording.tags0->family;
   TagDetector detector(detector_options);
-  const auto frames = OpenRecordedFrames(options.recording, "cam0", *recording.cam0);
+  const auto frames = OpenRecordedFrames(options.input.recording, "cam0", *recording.cam0);
   const std::size_t count = std::max<std::size_t>(1, frames->Count());
   const std::size_t step = std::max<std::size_t>(1, count / options.frames);
   std::vector<TimedBudget> budgets;
@@ -105,10 +113,12 @@ std::vector<TimedBudget> Budgets(const CalibrateBudgetOptions& options, const Re
   std::size_t at = 0;
   while (const auto frame = frames->Next()) {
     const auto tags = detector.Detect(frame->image);
-    const auto budget =
-        BudgetOfTip(recording.cam0->calibration, *recording.tags0, tags, chain.covariance,
-                    BendingAt(options, recording, chain, frame->t_ns));
-    if (budget) budgets.push_back({frame->t_ns, *budget});
+    auto budget = BudgetOfTip(recording.cam0->calibration, *recording.tags0, tags, chain.covariance,
+                              BendingAt(options, recording, chain, frame->t_ns));
+    if (budget) {
+      UseTrackedCovariance(recording, frame->t_ns, *budget);
+      budgets.push_back({frame->t_ns, *budget});
+    }
     frames->Skip(step - 1);
     at += step;
     progress.Update(std::min(at, count));
@@ -117,24 +127,21 @@ std::vector<TimedBudget> Budgets(const CalibrateBudgetOptions& options, const Re
 }
 
 void RunCalibrateBudget(const CalibrateBudgetOptions& options, bool quiet) {
-  std::vector<std::filesystem::path> inputs = options.calibrations;
-  inputs.push_back(options.recording);
-  OutputFolder output(options.out, "calibrate budget", {.force = options.force, .inputs = inputs});
-  ReadResult read = ReadRecording(options.recording);
-  std::vector<std::string> warnings = read.warnings;
-  const auto used = UseCalibrations(options.calibrations, read.recording, warnings);
+  OutputFolder output(options.input.out, "calibrate budget",
+                      {.force = options.force, .inputs = options.input.Files()});
+  const InputRead read = ReadInput(options.input);
   if (!read.recording.cam0 || !read.recording.tags0) {
-    throw InputError::At(options.recording.string(), 0,
+    throw InputError::At(options.input.recording.string(), 0,
                          "has no cam0 or no tags0: the tip is seen by neither");
   }
-  output.Warn(warnings);
-  Chain chain = ChainOf(used);
+  output.Warn(read.warnings);
+  Chain chain = ChainOf(read.calibrations);
   const auto budgets = Budgets(options, read.recording, chain, quiet);
   if (budgets.empty()) throw WorkError("calibrate budget: the collar is seen in no frame");
   if (!options.force_given && !read.recording.load0) {
     chain.not_known.push_back({"bending", "no force on the tip is known: load0 or --tip-force"});
   }
-  WriteBudgetResults(output, budgets, chain.not_known, CalibrationsJson(used));
+  WriteBudgetResults(output, budgets, chain.not_known, CalibrationsJson(read.calibrations));
   if (quiet) return;
   fmt::print("{}", BudgetText(budgets));
 }
@@ -145,16 +152,12 @@ void AddCalibrateBudget(CLI::App& calibrate, AppContext& context) {
   auto* command = calibrate.add_subcommand(
       "budget", "What lens, hand-eye, tip offset and bending contribute to the tip's error");
   auto options = std::make_shared<CalibrateBudgetOptions>();
-  command->add_option("recording", options->recording, "With cam0's frames and tags0")
-      ->required()
-      ->type_name("RECORDING");
-  AddCalibrationOption(*command, options->calibrations);
+  AddRecordingInput(*command, options->input);
   auto* force = AddVectorOption(*command, "--tip-force", options->force_N,
                                 "Force on the tip in R (N), in place of load0");
   command->add_option("--frames", options->frames, "So many, spread over the recording")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("-o,--output", options->out, "Folder for the results")->required();
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->footer(
       "Example:\n"

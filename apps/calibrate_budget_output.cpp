@@ -73,8 +73,8 @@ std::string Table(const std::vector<TimedBudget>& budgets) {
   std::string text = fmt::format("#timestamp [ns],{}\n", fmt::join(columns, ","));
   for (const TimedBudget& b : budgets) {
     const Eigen::Vector3d& p = b.value.p_RE;
-    text += fmt::format("{},{},{},{}", b.t_ns, NumberText(p.x()), NumberText(p.y()),
-                        NumberText(p.z()));
+    text +=
+        fmt::format("{},{},{},{}", b.t_ns, NumberText(p.x()), NumberText(p.y()), NumberText(p.z()));
     const std::vector<BudgetPart> parts = WithTotal(b.value);
     for (const std::string& name : names) {
       const auto part = std::find_if(parts.begin(), parts.end(),
@@ -138,8 +138,9 @@ std::string Advice(const std::vector<PartFigures>& parts) {
       {"lens", "the lens: calibrate the camera again with the views it asks for"},
       {"hand-eye", "hand-eye: calibrate it again with the motion it asks for"},
       {"tip offset", "the tip's place on the collar: calibrate the tip again, with wider turns"},
-      {"bending", "the bending beyond the collar: nearer to the tip the collar sees it, or the "
-                  "force has to be taken into account"}};
+      {"bending",
+       "the bending beyond the collar: nearer to the tip the collar sees it, or the "
+       "force has to be taken into account"}};
   for (const PartFigures& part : parts) {
     if (!part.in_total || part.name == kTotal) continue;
     return "most is from " + kWhatToDo.at(part.name);
@@ -163,8 +164,7 @@ void WriteBudgetResults(OutputFolder& output, const std::vector<TimedBudget>& bu
                         const std::vector<NotKnown>& not_known, const json& calibrations) {
   const std::vector<PartFigures> parts = Figures(budgets);
   WriteTextFile(output.folder() / "budget.csv", Table(budgets));
-  WriteFigures(output.folder() / "figures.json",
-               {BarFigure(parts), TimeFigure(budgets, parts)});
+  WriteFigures(output.folder() / "figures.json", {BarFigure(parts), TimeFigure(budgets, parts)});
   json list = json::array(), missing = json::array();
   for (const PartFigures& part : parts) {
     list.push_back({{"part", part.name},

@@ -85,8 +85,8 @@ void RunCalibrateStereo(const CalibrateStereoOptions& options, bool quiet) {
                result.heldout->rms_px, result.heldout->epipolar_rms_px,
                1e3 * result.heldout->length_rms_m);
   }
-  fmt::print("baseline {:.4f} mm, standard deviation {:.4f} mm\n",
-             1e3 * result.baseline.length_m, 1e3 * result.baseline.sd_m);
+  fmt::print("baseline {:.4f} mm, standard deviation {:.4f} mm\n", 1e3 * result.baseline.length_m,
+             1e3 * result.baseline.sd_m);
 }
 
 }  // namespace

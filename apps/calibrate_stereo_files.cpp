@@ -39,7 +39,8 @@ Eigen::Matrix3d K(const CameraCalibration& c) {
 Eigen::MatrixXd D(const CameraCalibration& c) {
   const auto& k = c.distortion_coefficients;
   const bool pad = c.distortion == Distortion::kRadialTangential;
-  Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, static_cast<Eigen::Index>(k.size()) + (pad ? 1 : 0));
+  Eigen::MatrixXd row =
+      Eigen::MatrixXd::Zero(1, static_cast<Eigen::Index>(k.size()) + (pad ? 1 : 0));
   for (std::size_t i = 0; i < k.size(); ++i) row(0, static_cast<Eigen::Index>(i)) = k[i];
   return row;
 }
@@ -50,8 +51,8 @@ std::string OpenCvStereoText(const std::array<CameraCalibration, 2>& cameras, co
                              const Rectification& r) {
   const Pose T_C1C0 = T_C0C1.Inverse();
   std::string text = "%YAML:1.0\n---\n";
-  text += fmt::format("image_width: {}\nimage_height: {}\n", cameras[0].width_px,
-                      cameras[0].height_px);
+  text +=
+      fmt::format("image_width: {}\nimage_height: {}\n", cameras[0].width_px, cameras[0].height_px);
   for (int eye = 0; eye < 2; ++eye) {
     text += OpenCvMatrix(fmt::format("K{}", eye + 1), K(cameras[eye]));
     text += OpenCvMatrix(fmt::format("D{}", eye + 1), D(cameras[eye]));

@@ -131,10 +131,10 @@ std::string ResidualTable(const StereoSolution& s) {
     for (int eye = 0; eye < 2; ++eye) {
       const SolvedView& v = view.eyes[eye];
       for (std::size_t i = 0; i < v.px.size(); ++i) {
-        text +=
-            fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{}\n",
-                        fs::path(v.name).filename().string(), eye, v.ids[i], v.px[i].x(),
-                        v.px[i].y(), v.residual_px[i].x(), v.residual_px[i].y(), v.IsUsed(i) ? 1 : 0);
+        text += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{}\n",
+                            fs::path(v.name).filename().string(), eye, v.ids[i], v.px[i].x(),
+                            v.px[i].y(), v.residual_px[i].x(), v.residual_px[i].y(),
+                            v.IsUsed(i) ? 1 : 0);
       }
     }
   }
@@ -180,8 +180,8 @@ void WriteCameras(const fs::path& folder, const StereoResult& r, const std::stri
 
 }  // namespace
 
-void WriteStereoResults(OutputFolder& output, const StereoResult& result,
-                        const std::string& board, const Pose& T_RC0) {
+void WriteStereoResults(OutputFolder& output, const StereoResult& result, const std::string& board,
+                        const Pose& T_RC0) {
   const fs::path& folder = output.folder();
   WriteCameras(folder, result, board, T_RC0);
   WriteCalibration(folder / "calibration.yaml", ToCalibration(result));

@@ -12,9 +12,8 @@ constexpr std::size_t kNextViews = 3;
 constexpr double kHighestOfMean = 3.0;
 
 nlohmann::json MapJson(const UncertaintyMap& map) {
-  nlohmann::json json = {{"centre_px", map.CentrePx()},
-                         {"mean_px", map.MeanPx()},
-                         {"largest_px", map.LargestPx()}};
+  nlohmann::json json = {
+      {"centre_px", map.CentrePx()}, {"mean_px", map.MeanPx()}, {"largest_px", map.LargestPx()}};
   if (map.sd_mm.size() > 0) json["mean_mm"] = map.MeanMm();
   return json;
 }
@@ -101,9 +100,8 @@ std::optional<CameraUncertainty> FindUncertainty(const CameraSolution& solution,
 nlohmann::json UncertaintyJson(const CameraUncertainty& u) {
   nlohmann::json next = nlohmann::json::array();
   for (const NextView& view : u.next) {
-    next.push_back({{"do", view.words},
-                    {"mean_px_before", view.before_px},
-                    {"mean_px_after", view.after_px}});
+    next.push_back(
+        {{"do", view.words}, {"mean_px_before", view.before_px}, {"mean_px_after", view.after_px}});
   }
   return {{"working_distance_m", u.near.depth_m},
           {"at_working_distance", MapJson(u.near)},

@@ -11,6 +11,7 @@
 #include "bench/calibration_peer.h"
 #include "bench/tool.h"
 #include "calibration/projection_uncertainty.h"
+#include "core/error.h"
 
 namespace flextip {
 namespace {
@@ -33,22 +34,39 @@ void AddOptions(CLI::App& app, Arguments& a) {
       "  bench/calibration_mrcal.py out\n");
 }
 
-nlohmann::json Row(const std::string& peer, const std::string& model, const CornerSet& set,
-                   const std::function<CalibrationAnswer(const CornerSet&)>& calibrate) {
-  const CalibrationAnswer whole = calibrate(set);
+using Calibrate = std::function<CalibrationAnswer(const CornerSet&)>;
+
+// Both halves by the other; null where a lens from half of the views cannot be had or has no place
+// for a corner of the other half.
+nlohmann::json HeldOutRms(const CornerSet& set, const Calibrate& calibrate) {
   double sum_px2 = 0;
-  for (int half : {0, 1}) {
-    const double rms = FittedPosesRms(calibrate(HalfOf(set, half)), HalfOf(set, 1 - half));
-    sum_px2 += 0.5 * rms * rms;
+  try {
+    for (int half : {0, 1}) {
+      const double rms = FittedPosesRms(calibrate(HalfOf(set, half)), HalfOf(set, 1 - half));
+      sum_px2 += 0.5 * rms * rms;
+    }
+  } catch (const WorkError&) {
+    return nullptr;
+  }
+  return std::sqrt(sum_px2);
+}
+
+nlohmann::json Row(const std::string& peer, const std::string& model, const CornerSet& set,
+                   const Calibrate& calibrate) {
+  CalibrationAnswer whole;
+  try {
+    whole = calibrate(set);
+  } catch (const WorkError& error) {
+    return {{"peer", peer}, {"model", model}, {"failed", error.what()}};
   }
   nlohmann::json row = {{"peer", peer},
-          {"model", model},
-          {"outliers", whole.outliers},
-          {"rms_px", whole.rms_px},
-          {"heldout_rms_px", std::sqrt(sum_px2)},
-          {"fu_px", whole.camera.fu_px},
-          {"fu_sd_px", whole.sd.front()},
-          {"seconds", whole.seconds}};
+                        {"model", model},
+                        {"outliers", whole.outliers},
+                        {"rms_px", whole.rms_px},
+                        {"heldout_rms_px", HeldOutRms(set, calibrate)},
+                        {"fu_px", whole.camera.fu_px},
+                        {"fu_sd_px", whole.sd.front()},
+                        {"seconds", whole.seconds}};
   const auto uncertainty =
       whole.solution ? ProjectionUncertainty::Of(*whole.solution) : std::nullopt;
   if (!uncertainty) return row;
@@ -85,8 +103,8 @@ void Run(Arguments& a) {
     fmt::print("{}\n", rows.back().dump());
   }
   const auto add_own = [&](const std::string& name, const std::optional<LensModel>& lens) {
-    rows.push_back(Row("flextip", name, set,
-                       [&](const CornerSet& s) { return CalibrateByFlextip(s, lens); }));
+    rows.push_back(
+        Row("flextip", name, set, [&](const CornerSet& s) { return CalibrateByFlextip(s, lens); }));
     fmt::print("{}\n", rows.back().dump());
   };
   for (const int terms : {5, 8, 12}) {
@@ -100,7 +118,7 @@ void Run(Arguments& a) {
 }  // namespace flextip
 
 int main(int argc, char** argv) {
-  return flextip::RunTool<flextip::Arguments>(
-      argc, argv, "Calibrations of one camera from the same corners", flextip::AddOptions,
-      flextip::Run);
+  return flextip::RunTool<flextip::Arguments>(argc, argv,
+                                              "Calibrations of one camera from the same corners",
+                                              flextip::AddOptions, flextip::Run);
 }

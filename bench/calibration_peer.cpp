@@ -1,6 +1,6 @@
 #include "bench/calibration_peer.h"
 
-#include <chrono>
+#include <ctime>
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/camera_calibration.h"
@@ -64,12 +64,11 @@ CalibrationAnswer CalibrateByOpenCv(const CornerSet& set, int terms) {
   cv::Mat K, distortion, deviations;
   std::vector<cv::Mat> rotations, translations;
   CalibrationAnswer answer;
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   answer.rms_px = cv::calibrateCamera(
       points.board, points.seen, cv::Size(set.width_px, set.height_px), K, distortion, rotations,
       translations, deviations, cv::noArray(), cv::noArray(), Flags(terms));
-  answer.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  answer.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   CameraCalibration& c = answer.camera;
   c.width_px = set.width_px;
   c.height_px = set.height_px;
@@ -89,11 +88,10 @@ CalibrationAnswer CalibrateByFlextip(const CornerSet& set, const std::optional<L
   for (std::size_t i = 0; i < set.names.size(); ++i) views.push_back({set.names[i], set.seen[i]});
   CameraCalibrationOptions options;
   options.lens = lens;
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   const auto result = CalibrateCamera(views, set.width_px, set.height_px, set.board, options);
   CalibrationAnswer answer;
-  answer.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  answer.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   if (!result.IsUsable()) throw WorkError(result.message);
   answer.camera = result.solution.camera;
   answer.warp = result.solution.warp;

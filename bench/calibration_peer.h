@@ -17,7 +17,7 @@ struct CalibrationAnswer {
   std::vector<double> sd;  ///< of fu, fv, cu, cv (px) and the coefficients, as the peer has them
   double rms_px = 0;       ///< of the corners it used, per distance
   int outliers = 0;
-  double seconds = 0;
+  double seconds = 0;                      ///< of the processor, all threads
   std::optional<CameraSolution> solution;  ///< this program's
 };
 

@@ -92,10 +92,10 @@ void WriteTruth(const std::filesystem::path& file, const Truth& t) {
     const Eigen::Vector3d x_C = ray / ray.z() * depth_m;
     places.push_back({{"px", {px.x(), px.y()}}, {"x_C", {x_C.x(), x_C.y(), x_C.z()}}});
   }
-  std::ofstream(file) << nlohmann::json{{"fu_px", t.camera.fu_px},
-                                        {"T_CB", poses},
-                                        {"places", places}}
-                             .dump(1);
+  std::ofstream(file) << nlohmann::json{
+      {"fu_px", t.camera.fu_px},
+      {"T_CB", poses},
+      {"places", places}}.dump(1);
 }
 
 CornerSet Noised(const CornerSet& exact, std::mt19937& random) {
@@ -139,8 +139,7 @@ void AddProjections(const Truth& t, const CameraSolution& found, Score& score) {
               static_cast<double>(found.views.size());
     }
     const Eigen::Vector2d error = CameraModel(found.camera).Project(mean).value() - px;
-    score.projection_nees +=
-        error.dot(uncertainty->CovariancePx(px, depth_m)->ldlt().solve(error));
+    score.projection_nees += error.dot(uncertainty->CovariancePx(px, depth_m)->ldlt().solve(error));
     ++score.projections;
   }
 }
@@ -168,6 +167,6 @@ void Run(Arguments& a) {
 }  // namespace flextip
 
 int main(int argc, char** argv) {
-  return flextip::RunTool<flextip::Arguments>(argc, argv, "Whether calibrations know how good they are",
-                                              flextip::AddOptions, flextip::Run);
+  return flextip::RunTool<flextip::Arguments>(
+      argc, argv, "Whether calibrations know how good they are", flextip::AddOptions, flextip::Run);
 }

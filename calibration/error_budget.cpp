@@ -52,10 +52,10 @@ double CollarDistance(const TagCollar& collar, const std::vector<TagDetection>& 
 
 void AddBending(const TipBending& bending, const Pose& T_RE, double distance_m, TipBudget& budget) {
   if (!(bending.stiffness_Nm2 > 0)) return;
-  budget.bend_R =
-      BendBeyondCollar(bending.f_R, T_RE.R.col(0), distance_m, bending.stiffness_Nm2);
+  budget.bend_R = BendBeyondCollar(bending.f_R, T_RE.R.col(0), distance_m, bending.stiffness_Nm2);
   const Eigen::Matrix3d square = budget.bend_R * budget.bend_R.transpose();
   budget.parts.push_back({"bending", square, true});
+  if (!(bending.stiffness_sd_Nm2 > 0)) return;
   const double relative = bending.stiffness_sd_Nm2 / bending.stiffness_Nm2;
   budget.parts.push_back({"stiffness", relative * relative * square, false});
 }
@@ -101,8 +101,7 @@ std::optional<TipBudget> BudgetOfTip(const CameraCalibration& camera, const TagC
     budget.parts.push_back({"hand-eye", J * chain.hand_eye * J.transpose(), true});
   }
   if (chain.tip_offset.size() > 0) {
-    budget.parts.push_back(
-        {"tip offset", T_RE.R * chain.tip_offset * T_RE.R.transpose(), true});
+    budget.parts.push_back({"tip offset", T_RE.R * chain.tip_offset * T_RE.R.transpose(), true});
   }
   if (bending) AddBending(*bending, T_RE, CollarDistance(collar, tags), budget);
   return budget;

@@ -22,7 +22,8 @@ struct ChainCovariance {
 /// The shaft between collar and tip, which the tracker takes for rigid.
 struct TipBending {
   Eigen::Vector3d f_R = Eigen::Vector3d::Zero();  ///< force on the tip (N)
-  double stiffness_Nm2 = 0.0, stiffness_sd_Nm2 = 0.0;
+  double stiffness_Nm2 = 0.0;
+  double stiffness_sd_Nm2 = 0.0;  ///< 0: not known
 };
 
 /// One source's part. `covariance_R` of the tip in R (m^2); a bend that is not corrected counts

@@ -82,9 +82,8 @@ std::vector<NextView> RankNextViews(const ProjectionUncertainty& uncertainty,
     views.push_back(
         {T_CB, before_px, after_px, HoldTheBoard(uncertainty.Camera(), centre_B, T_CB)});
   }
-  std::stable_sort(views.begin(), views.end(), [](const NextView& a, const NextView& b) {
-    return a.after_px < b.after_px;
-  });
+  std::stable_sort(views.begin(), views.end(),
+                   [](const NextView& a, const NextView& b) { return a.after_px < b.after_px; });
   return views;
 }
 
@@ -108,8 +107,8 @@ std::string HoldTheBoard(const CameraCalibration& camera, const Eigen::Vector3d&
   std::string tilt = "facing the camera";
   if (tilt_deg > 5) {
     const bool sideways = std::abs(normal.x()) > std::abs(normal.y());
-    const char* side = sideways ? (normal.x() > 0 ? "right" : "left")
-                                : (normal.y() > 0 ? "lower" : "upper");
+    const char* side =
+        sideways ? (normal.x() > 0 ? "right" : "left") : (normal.y() > 0 ? "lower" : "upper");
     tilt = fmt::format("tilted by {:.0f} deg, its {} side nearer", tilt_deg, side);
   }
   return fmt::format("hold the board {}, {:.0f} mm away, {}", place, 1e3 * centre.z(), tilt);

@@ -9,7 +9,7 @@ namespace flextip {
 
 struct ProjectionDerivative {
   Eigen::Vector2d px;
-  Eigen::Matrix<double, 2, 3> by_point;                   ///< px/m, of x_C
+  Eigen::Matrix<double, 2, 3> by_point;                    ///< px/m, of x_C
   Eigen::Matrix<double, 2, Eigen::Dynamic> by_intrinsics;  ///< fu, fv, cu, cv (px), coefficients
 };
 

@@ -148,8 +148,8 @@ bool Minimise(const StereoSolution& s, const StereoBundleOptions& options, Param
   if (problem.NumResidualBlocks() == 0) return false;
   ceres::Solver::Options solver;
   solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (double* common : {at.intrinsics[0].data(), at.intrinsics[1].data(), at.warp_m.data(),
-                         at.pair.data()}) {
+  for (double* common :
+       {at.intrinsics[0].data(), at.intrinsics[1].data(), at.warp_m.data(), at.pair.data()}) {
     if (!problem.HasParameterBlock(common)) continue;
     solver.linear_solver_ordering->AddElementToGroup(common, 1);
     if (options.fix_cameras || (common == at.warp_m.data() && !options.estimate_warp)) {
@@ -203,16 +203,15 @@ bool Evaluate(const StereoBundleOptions& options, StereoSolution& s) {
         squares_px2 += seen.residual_px[i].squaredNorm();
         std::vector<Eigen::MatrixXd> used = {J[0], J[1].leftCols(s.WarpCount()), J[2]};
         if (eye == 1) used.push_back(J[3]);
-        AddNormal(used,
-                  {eye == 0 ? 0 : s.IntrinsicsCount(0), s.PairStart() + 6, s.ViewStart(v),
-                   s.PairStart()},
-                  s.normal_matrix);
+        AddNormal(
+            used,
+            {eye == 0 ? 0 : s.IntrinsicsCount(0), s.PairStart() + 6, s.ViewStart(v), s.PairStart()},
+            s.normal_matrix);
       }
     }
   }
   const int fixed = options.fix_cameras ? s.ViewStart(0) : 0;
-  s.noise_px =
-      std::sqrt(squares_px2 / std::max(1, 2 * s.CornersUsed() - (s.Size() - fixed)));
+  s.noise_px = std::sqrt(squares_px2 / std::max(1, 2 * s.CornersUsed() - (s.Size() - fixed)));
   return std::isfinite(s.noise_px) && s.normal_matrix.allFinite();
 }
 

@@ -105,8 +105,8 @@ double MedianPairRms(const StereoSolution& s) {
 }
 
 // Takes the worst pair apart where its pictures, good by themselves, do not fit together.
-bool TakeApart(const std::array<CameraCalibrationResult, 2>& alone, double ratio,
-               StereoSolution& s, StereoResult& result) {
+bool TakeApart(const std::array<CameraCalibrationResult, 2>& alone, double ratio, StereoSolution& s,
+               StereoResult& result) {
   StereoView* worst = nullptr;
   for (StereoView& view : s.views) {
     if (view.InBoth() && (!worst || PairRms(view) > PairRms(*worst))) worst = &view;
@@ -185,13 +185,14 @@ StereoResult CalibrateStereo(const std::vector<StereoPair>& pairs,
   Describe(pairs, result);
   for (int eye = 0; eye < 2; ++eye) {
     if (result.alone[eye].IsUsable()) continue;
-    return Failed(result, StereoStatus::kEyeFailed,
-                  fmt::format("{} camera: {}", eye == 0 ? "left" : "right",
-                              result.alone[eye].message));
+    return Failed(
+        result, StereoStatus::kEyeFailed,
+        fmt::format("{} camera: {}", eye == 0 ? "left" : "right", result.alone[eye].message));
   }
   auto joined = Join(result.alone);
   if (!joined) {
-    return Failed(result, StereoStatus::kTooFewPairs, "no pair in which both cameras see the board");
+    return Failed(result, StereoStatus::kTooFewPairs,
+                  "no pair in which both cameras see the board");
   }
   result.solution = std::move(*joined);
   if (!Solve(options, result)) {

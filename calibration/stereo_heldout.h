@@ -11,7 +11,8 @@ namespace flextip {
 /// solved.
 std::optional<StereoHeldOut> LeavePairsOut(const StereoSolution& solution, int folds);
 
-/// Root of the mean squared difference of rows after rectification, over corners that both eyes saw.
+/// Root of the mean squared difference of rows after rectification, over corners that both eyes
+/// saw.
 double EpipolarRmsPx(const StereoSolution& solution);
 
 }  // namespace flextip

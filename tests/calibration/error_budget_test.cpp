@@ -151,19 +151,21 @@ TEST_F(ErrorBudget, AllTogetherAreTheSpreadOverAll) {
     c.T_RC = MovePose(c.T_RC, Draw(chain.hand_eye));
     offset_E = Draw(chain.tip_offset);
     for (TagDetection& tag : seen) {
-      for (Eigen::Vector2d& px : tag.corners_px) px += Eigen::Vector2d(corner(random), corner(random));
+      for (Eigen::Vector2d& px : tag.corners_px)
+        px += Eigen::Vector2d(corner(random), corner(random));
     }
   });
   // The exact corners' own covariance says less than the noise that is put on them here.
   auto noisy = tags;
   for (TagDetection& tag : noisy) {
-    for (Eigen::Vector2d& px : tag.corners_px) px += Eigen::Vector2d(corner(random), corner(random));
+    for (Eigen::Vector2d& px : tag.corners_px)
+      px += Eigen::Vector2d(corner(random), corner(random));
   }
   const CollarPose pose = EstimateCollarPose(CameraModel(camera), collar, noisy);
   const double scale = std::pow(0.1 / pose.corner_noise_px, 2);
   Eigen::Matrix3d claimed = budget.TotalCovariance() - Part(budget, "pixels").covariance_R;
-  claimed += scale * camera.T_RC.R * pose.covariance.bottomRightCorner<3, 3>() *
-             camera.T_RC.R.transpose();
+  claimed +=
+      scale * camera.T_RC.R * pose.covariance.bottomRightCorner<3, 3>() * camera.T_RC.R.transpose();
   ExpectSpread(spread, claimed, budget.depth_R);
 }
 

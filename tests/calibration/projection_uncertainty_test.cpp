@@ -6,6 +6,7 @@
 #include "calibration/camera_bundle.h"
 #include "calibration/next_view.h"
 #include "calibration/projection_derivative.h"
+#include "calibration/stereo_bundle.h"
 #include "core/derivative_check.h"
 #include "tests/calibration/stereo_scene.h"
 
@@ -80,8 +81,7 @@ TEST(ProjectionUncertainty, IsTheSpreadOfCalibrationsFromOtherNoise) {
     ASSERT_TRUE(own);
     for (Place& place : places) {
       const Eigen::Vector3d ray = model.Unproject(place.px).value();
-      const Eigen::Vector2d error =
-          SeenBy(found, truth, ray / ray.z() * place.depth_m) - place.px;
+      const Eigen::Vector2d error = SeenBy(found, truth, ray / ray.z() * place.depth_m) - place.px;
       place.spread += error * error.transpose() / kRuns;
       mean_nees += error.dot(own->CovariancePx(place.px, place.depth_m)->ldlt().solve(error)) /
                    (kRuns * static_cast<double>(places.size()));
@@ -97,6 +97,40 @@ TEST(ProjectionUncertainty, IsTheSpreadOfCalibrationsFromOtherNoise) {
   // Far away is as good as infinitely far away.
   EXPECT_NEAR(WorstSd(claimed->CovariancePx({30, 40}, HUGE_VAL).value()),
               WorstSd(claimed->CovariancePx({30, 40}, 1e4).value()), 1e-4);
+}
+
+// The same of the right one of two cameras, whose boards' poses are known by way of the left one.
+TEST(ProjectionUncertainty, OfTheOtherEyeIsTheSpreadToo) {
+  const StereoScene scene = MakeStereoScene(7, 3);
+  const StereoSolution truth = scene.Exact();
+  const std::vector<std::pair<Eigen::Vector2d, double>> places = {{{400, 300}, 0.10},
+                                                                  {{60, 60}, 0.3}};
+  const CameraModel model(scene.cameras[1]);
+  std::mt19937 random(8);
+  constexpr int kRuns = 60;
+  double nees = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    StereoSolution s = truth;
+    for (StereoView& view : s.views) {
+      for (SolvedView& eye : view.eyes) AddNoise(kNoise_px, random, eye);
+    }
+    ASSERT_TRUE(AdjustStereo(s));
+    const auto uncertainty = ProjectionUncertainty::Of(s, 1);
+    ASSERT_TRUE(uncertainty);
+    for (const auto& [px, depth_m] : places) {
+      const Eigen::Vector3d ray = model.Unproject(px).value(), x_C1 = ray / ray.z() * depth_m;
+      Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+      for (std::size_t v = 0; v < s.views.size(); ++v) {
+        mean += s.T_CB(s.views[v], 1) * (truth.T_CB(truth.views[v], 1).Inverse() * x_C1);
+      }
+      const Eigen::Vector2d error =
+          CameraModel(s.cameras[1]).Project(mean / static_cast<double>(s.views.size())).value() -
+          px;
+      nees += error.dot(uncertainty->CovariancePx(px, depth_m)->ldlt().solve(error));
+    }
+  }
+  // The two places are not independent: at worst a standard deviation of 2 / sqrt(60).
+  EXPECT_NEAR(nees / (kRuns * 2), 2.0, 0.6);
 }
 
 TEST(ProjectionUncertainty, MapIsLeastWhereTheBoardsWere) {

@@ -14,8 +14,12 @@
 namespace flextip {
 
 struct StereoScene {
-  BoardSpec board{.kind = BoardKind::kChessboard, .columns = 8, .rows = 6, .square_m = 0.005,
-                  .marker_m = 0, .dictionary = {}};
+  BoardSpec board{.kind = BoardKind::kChessboard,
+                  .columns = 8,
+                  .rows = 6,
+                  .square_m = 0.005,
+                  .marker_m = 0,
+                  .dictionary = {}};
   std::array<CameraCalibration, 2> cameras;
   Pose T_C0C1;
   BoardWarp warp;
@@ -68,7 +72,8 @@ inline void AddNoise(double sd_px, std::mt19937& random, SolvedView& view) {
 
 inline Pose RandomBoardPose(const StereoScene& scene, std::mt19937& random, double depth_m = 0.10) {
   std::uniform_real_distribution<double> u(-1, 1);
-  const Eigen::Vector3d centre = Eigen::Vector3d(scene.warp.centre_m.x(), scene.warp.centre_m.y(), 0);
+  const Eigen::Vector3d centre =
+      Eigen::Vector3d(scene.warp.centre_m.x(), scene.warp.centre_m.y(), 0);
   Pose T;
   T.R = ExpRotation({0.6 * u(random), 0.6 * u(random), 0.3 * u(random)});
   T.p = Eigen::Vector3d(0.010 * u(random), 0.008 * u(random), depth_m * (1 + 0.2 * u(random))) -

@@ -179,7 +179,8 @@ TEST(StereoRectification, PutsAPointInOneRowAtItsDepth) {
     const Eigen::Matrix3d K = r.P[eye].leftCols<3>();
     for (const Eigen::Vector3d& px : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(799, 0, 1),
                                       Eigen::Vector3d(0, 599, 1), Eigen::Vector3d(799, 599, 1)}) {
-      const auto at = CameraModel(scene.cameras[eye]).Project(r.R[eye].transpose() * K.inverse() * px);
+      const auto at =
+          CameraModel(scene.cameras[eye]).Project(r.R[eye].transpose() * K.inverse() * px);
       ASSERT_TRUE(at);
       EXPECT_GE(at->minCoeff(), -1.0);
       EXPECT_LE(at->x(), 800.0);
