@@ -17,20 +17,11 @@ ProjectionDerivative Differentiate(const CameraCalibration& camera, const Eigen:
   assert(values.size() == kIntrinsics);
   Eigen::Matrix<Jet, 3, 1> x;
   for (int i = 0; i < 3; ++i) x[i] = Jet(x_C[i], i);
-<<<<<<< HEAD
-  Jet intrinsics[kIntrinsics];
-  for (int i = 0; i < kIntrinsics; ++i) intrinsics[i] = Jet(values[i], 3 + i);
-  const Eigen::Matrix<Jet, 2, 1> m(x[0] / x[2], x[1] / x[2]);
-  const Eigen::Matrix<Jet, 2, 1> d_m = DistortLens<kModel, kTerms>(intrinsics + 4, m);
-  const Jet at[2] = {intrinsics[0] * d_m[0] + intrinsics[2],
-                     intrinsics[1] * d_m[1] + intrinsics[3]};
-=======
   Jet c[kIntrinsics];
   for (int i = 0; i < kIntrinsics; ++i) c[i] = Jet(values[i], 3 + i);
   const Eigen::Matrix<Jet, 2, 1> on_plane(x[0] / x[2], x[1] / x[2]);
   const Eigen::Matrix<Jet, 2, 1> bent = DistortLens<kModel, kTerms>(c + 4, on_plane);
   const Eigen::Matrix<Jet, 2, 1> at(c[0] * bent.x() + c[2], c[1] * bent.y() + c[3]);
->>>>>>> 9fd91dd7107d4f535a0588c2da9ab0a543e5e20b
   ProjectionDerivative d;
   d.by_intrinsics.resize(2, kIntrinsics);
   for (int row = 0; row < 2; ++row) {
