@@ -28,7 +28,7 @@ std::optional<CameraUncertainty> FindUncertainty(const StereoSolution& solution,
 
 /// `working_distance_m`, of both maps mean, largest and centre, and `next_views`.
 nlohmann::json UncertaintyJson(const CameraUncertainty& uncertainty);
-/// Two fields, at the working distance and at infinity, with where corners were seen.
+/// Two fields, at the working distance and at infinity, with a line around the corners seen.
 std::vector<Figure> UncertaintyFigures(const CameraUncertainty& uncertainty,
                                        const std::vector<SolvedView>& views);
 /// `#x [px],y [px],depth [m],sd [px],sd_across [mm]`; at infinity depth and sd_across are empty.
