@@ -41,25 +41,45 @@ CameraCalibrationOptions CalibrationOptions(const CalibrateCameraOptions& o) {
   return calibration;
 }
 
+Image ReadSized(const fs::path& file, const CornersFile& corners) {
+  Image image = ReadImageFile(file);
+  if (!corners.views.empty() &&
+      (image.width_px != corners.width_px || image.height_px != corners.height_px)) {
+    throw InputError::At(
+        file.string(), 0,
+        fmt::format("expected {}x{} pixels as in {}, found {}x{}", corners.width_px,
+                    corners.height_px, corners.views[0].name, image.width_px, image.height_px));
+  }
+  return image;
+}
+
+// Pictures that did not tell a charuco board's layout, once others have.
+void DetectAgain(const CalibrateCameraOptions& options, BoardSpec board, CornersFile& corners) {
+  const auto telling =
+      std::find_if(corners.views.begin(), corners.views.end(),
+                   [](const BoardView& v) { return v.sighting.layout != CharucoLayout::kUnknown; });
+  if (board.kind != BoardKind::kCharuco || telling == corners.views.end()) return;
+  board.layout = telling->sighting.layout;
+  for (std::size_t i = 0; i < corners.views.size(); ++i) {
+    BoardSighting& seen = corners.views[i].sighting;
+    if (seen.layout == board.layout) continue;
+    seen = DetectBoard(ReadSized(options.images[i], corners), board);
+  }
+}
+
 // Finds the board in every picture; only one picture is held at a time.
 CornersFile Detect(const CalibrateCameraOptions& options, const BoardSpec& board, bool quiet) {
   if (options.images.empty()) throw InputError("calibrate camera: no images to find the board in");
   CornersFile corners{.board = options.board, .width_px = 0, .height_px = 0, .views = {}};
   Progress progress("images", options.images.size(), quiet);
   for (const fs::path& file : options.images) {
-    const Image image = ReadImageFile(file);
-    if (corners.views.empty()) {
-      corners.width_px = image.width_px;
-      corners.height_px = image.height_px;
-    } else if (image.width_px != corners.width_px || image.height_px != corners.height_px) {
-      throw InputError::At(
-          file.string(), 0,
-          fmt::format("expected {}x{} pixels as in {}, found {}x{}", corners.width_px,
-                      corners.height_px, corners.views[0].name, image.width_px, image.height_px));
-    }
+    const Image image = ReadSized(file, corners);
+    corners.width_px = image.width_px;
+    corners.height_px = image.height_px;
     corners.views.push_back({file.string(), DetectBoard(image, board)});
     progress.Update(corners.views.size());
   }
+  DetectAgain(options, board, corners);
   return corners;
 }
 

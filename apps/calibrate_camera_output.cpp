@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/frames.h"
-#include "apps/overlay.h"
+#include "apps/calibrate_camera_pictures.h"
+#include "apps/calibrate_uncertainty.h"
+#include "calibration/camera_choice.h"
+#include "calibration/camera_split.h"
 #include "core/error.h"
 #include "recording/calibration_file.h"
 #include "recording/camera_file.h"
@@ -152,7 +154,13 @@ void WriteCameraResults(OutputFolder& output, const CornersFile& corners,
   for (const CalibrationView& view : result.views) {
     if (!view.used) output.Warn(fmt::format("{}: {}", view.name, view.reason));
   }
-  output.WriteSummary(Summary(result));
+  const std::string folds = FoldsInPicture(result.solution.camera);
+  if (!folds.empty())
+    output.Warn(fmt::format("the lens holds only where boards were seen: {}", folds));
+  DrawCameraPictures(folder, corners, result);
+  json summary = Summary(result);
+  AddUncertainty(folder, result.solution, BoardCorners(ParseBoardSpec(corners.board)), summary);
+  output.WriteSummary(summary);
   WriteCalibrateReport(folder);
   output.Commit();
 }

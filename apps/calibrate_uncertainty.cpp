@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "recording/text.h"
+
 namespace flextip {
 namespace {
 
@@ -146,6 +148,15 @@ std::string UncertaintyTable(const CameraUncertainty& u) {
   AddRows(u.near, text);
   AddRows(u.far, text);
   return text;
+}
+
+void AddUncertainty(const std::filesystem::path& folder, const CameraSolution& solution,
+                    const std::vector<Eigen::Vector3d>& x_B, nlohmann::json& summary) {
+  const auto uncertainty = FindUncertainty(solution, x_B);
+  if (!uncertainty) return;
+  summary["projection_uncertainty"] = UncertaintyJson(*uncertainty);
+  WriteTextFile(folder / "cam0_uncertainty.csv", UncertaintyTable(*uncertainty));
+  WriteFigures(folder / "figures.json", UncertaintyFigures(*uncertainty, solution.views));
 }
 
 }  // namespace flextip

@@ -1,5 +1,7 @@
 #include "calibration/board.h"
 
+#include "calibration/april_grid.h"
+#include "calibration/charuco.h"
 #include "calibration/chessboard.h"
 #include "core/error.h"
 #include "vision/tag_detector.h"
@@ -7,8 +9,14 @@
 namespace flextip {
 
 std::vector<Eigen::Vector3d> BoardCorners(const BoardSpec& board) {
-  if (board.kind != BoardKind::kChessboard) {
-    throw InputError("charuco and aprilgrid boards are not supported yet, only chessboard");
+  switch (board.kind) {
+    case BoardKind::kCharuco:
+      CheckCharuco(board);
+      return CharucoPoints(board);
+    case BoardKind::kAprilGrid:
+      return AprilGridPoints(board);
+    case BoardKind::kChessboard:
+      break;
   }
   return ChessboardPoints(board.columns, board.rows, board.square_m);
 }
@@ -25,11 +33,11 @@ std::pair<Eigen::Vector2d, Eigen::Vector2d> BoardExtent(const BoardSpec& board) 
 
 BoardSighting DetectBoard(const Image& image, const BoardSpec& board) {
   if (image.Empty()) throw InputError("the image is empty");
-  if (board.kind != BoardKind::kChessboard) {
-    throw InputError("charuco and aprilgrid boards are not supported yet, only chessboard");
-  }
+  const Image grey = ToGrey(image);
+  if (board.kind == BoardKind::kCharuco) return FindCharuco(grey, board);
+  if (board.kind == BoardKind::kAprilGrid) return FindAprilGrid(grey, board);
   BoardSighting seen;
-  seen.px = FindChessboard(ToGrey(image), board.columns, board.rows);
+  seen.px = FindChessboard(grey, board.columns, board.rows);
   if (!seen.Found()) {
     seen.reason =
         fmt::format("no chessboard with {}x{} inner corners found", board.columns, board.rows);

@@ -8,7 +8,7 @@ namespace flextip {
 namespace {
 
 constexpr const char* kForms =
-    "chessboard:COLSxROWS:SQUARE_M, charuco:COLSxROWS:SQUARE_M:MARKER_M:DICT or "
+    "chessboard:COLSxROWS:SQUARE_M, charuco:COLSxROWS:SQUARE_M:MARKER_M:DICT[:old|:present] or "
     "aprilgrid:COLSxROWS:TAG_M:GAP_M";
 
 std::vector<std::string> Split(const std::string& text, char separator) {
@@ -67,7 +67,11 @@ BoardSpec ParseBoardSpec(const std::string& spec) {
     ParseSize(spec, parts[1], 3, board);
     board.square_m = Length(spec, parts[2], "the square's side");
   } else if (parts[0] == "charuco") {
-    expect_parts(5);
+    if (parts.size() == 6 && (parts[5] == "old" || parts[5] == "present")) {
+      board.layout = parts[5] == "old" ? CharucoLayout::kOld : CharucoLayout::kPresent;
+    } else {
+      expect_parts(5);
+    }
     board.kind = BoardKind::kCharuco;
     ParseSize(spec, parts[1], 2, board);
     board.square_m = Length(spec, parts[2], "the square's side");

@@ -2,6 +2,7 @@
 
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,8 @@ namespace flextip {
 namespace {
 
 constexpr int kPose = 6, kWarp = 2;
+// Where a corner lands farther off the lens function has run away.
+constexpr double kFarthest_px = 1e6;
 
 // One corner. The pose is a step (dw, dp) from where the view's pose is now. Ceres's numbers
 // differentiate the lens alone: they would be most of the time.
@@ -40,6 +43,7 @@ class CornerError : public ceres::SizedCostFunction<2, 4 + kTerms, kWarp, kPose>
     const Eigen::Vector2d m = x_C.head<2>() / x_C.z(), d = Lens(c + 4, m, dd_dm, dd_dk);
     error[0] = c[0] * d.x() + c[2] - px_.x();
     error[1] = c[1] * d.y() + c[3] - px_.y();
+    if (!(std::abs(error[0]) + std::abs(error[1]) < kFarthest_px)) return false;
     if (!jacobians) return true;
 
     const Eigen::DiagonalMatrix<double, 2> focal(c[0], c[1]);
@@ -180,6 +184,18 @@ void AddCorners(const CameraSolution& s, double cauchy_px, Parameters& at,
   }
 }
 
+// A step that cannot be solved for is taken again with more damping; Ceres writes it to stderr.
+class QuietLog {
+ public:
+  QuietLog() : level_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
+  ~QuietLog() { FLAGS_minloglevel = level_; }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
+
+ private:
+  int level_;
+};
+
 bool Minimise(const CameraSolution& s, const BundleOptions& options, Parameters& at) {
   ceres::Problem problem;
   AddCorners(s, options.cauchy_px, at, problem);
@@ -204,12 +220,13 @@ bool Minimise(const CameraSolution& s, const BundleOptions& options, Parameters&
   }
   solver.max_num_iterations = options.max_iterations;
   // Always some damping: parameters that the views do not tell would make the matrix singular.
-  solver.max_trust_region_radius = 1e9;
+  solver.max_trust_region_radius = 1e7;
   solver.function_tolerance = options.tolerance;
   solver.parameter_tolerance = 1e-11;
   solver.gradient_tolerance = 1e-12;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
+  const QuietLog quiet;
   ceres::Solve(solver, &problem, &summary);
   return summary.IsSolutionUsable() && at.Finite();
 }

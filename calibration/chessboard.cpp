@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
+
+#include "calibration/board_saddles.h"
 
 namespace flextip {
 namespace {
-
-// The saddle at a corner is refined in a window of this part of the distance to the next corner. A
-// larger one reaches into the neighbours' edges where the board is tilted, and is pulled by them.
-constexpr double kWindowOfSpacing = 0.33;
-constexpr int kMinHalfWindow_px = 2, kMaxHalfWindow_px = 40;
 
 double SmallestSpacing(const std::vector<cv::Point2f>& corners, int columns, int rows) {
   double smallest = HUGE_VAL;
@@ -36,14 +32,11 @@ std::vector<Eigen::Vector2d> FindChessboard(const Image& grey, int columns, int 
   std::vector<cv::Point2f> corners;
   const int flags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
   if (!cv::findChessboardCorners(picture, size, corners, flags)) return {};
-  const double spacing = SmallestSpacing(corners, columns, rows);
-  const int half = std::clamp(static_cast<int>(std::lround(kWindowOfSpacing * spacing)),
-                              kMinHalfWindow_px, kMaxHalfWindow_px);
-  cv::cornerSubPix(picture, corners, cv::Size(half, half), cv::Size(-1, -1),
-                   cv::TermCriteria(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 60, 1e-4));
   std::vector<Eigen::Vector2d> result;
   result.reserve(corners.size());
   for (const cv::Point2f& c : corners) result.emplace_back(c.x, c.y);
+  const double reach_px = kSaddleReach * SmallestSpacing(corners, columns, rows);
+  RefineSaddles(grey, reach_px, result);
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include "calibration/corners_file.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -107,6 +108,9 @@ void ReadRow(const Lines& lines, const std::vector<Eigen::Vector3d>& board, Corn
   if (same && (nothing || !corners.views.back().sighting.Found())) {
     throw lines.Wrong(fmt::format("'{}' is listed twice", cells[0]));
   }
+  const bool earlier = !same && std::any_of(corners.views.begin(), corners.views.end(),
+                                            [&](const BoardView& v) { return v.name == cells[0]; });
+  if (earlier) throw lines.Wrong(fmt::format("'{}' stands in two places", cells[0]));
   if (!same) corners.views.push_back({cells[0], {}});
   BoardSighting& seen = corners.views.back().sighting;
   if (nothing) {
