@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/calibrate_camera_pictures.h"
+#include "apps/calibrate_uncertainty.h"
 #include "calibration/camera_choice.h"
 #include "calibration/camera_split.h"
 #include "core/error.h"
@@ -157,7 +158,9 @@ void WriteCameraResults(OutputFolder& output, const CornersFile& corners,
   if (!folds.empty())
     output.Warn(fmt::format("the lens holds only where boards were seen: {}", folds));
   DrawCameraPictures(folder, corners, result);
-  output.WriteSummary(Summary(result));
+  json summary = Summary(result);
+  AddUncertainty(folder, result.solution, BoardCorners(ParseBoardSpec(corners.board)), summary);
+  output.WriteSummary(summary);
   WriteCalibrateReport(folder);
   output.Commit();
 }

@@ -4,13 +4,12 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include "apps/calibrate_stereo_files.h"
 #include "apps/calibrate_uncertainty.h"
-#include "core/error.h"
 #include "recording/calibration_file.h"
 #include "recording/camera_file.h"
+#include "recording/text.h"
 #include "report/figure.h"
 #include "report/pages.h"
 
@@ -19,14 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-void WriteText(const fs::path& file, const std::string& text) {
-  fs::create_directories(file.parent_path());
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw WorkError(fmt::format("{}: cannot be written", file.string()));
-}
 
 // Places in the solution's covariance, in the order of Calibration::CoordinateNames: the pose, then
 // by name each camera's coefficients and intrinsics.
@@ -172,10 +163,10 @@ void WriteCameras(const fs::path& folder, const StereoResult& r, const std::stri
     WriteCameraCalibration(folder / name / "sensor.yaml", camera,
                            fmt::format("calibrated as a stereo pair from {}", board));
     const std::string ros = RosCameraInfoText(name, eye, camera, rectification);
-    if (!ros.empty()) WriteText(folder / "ros" / (name + "_camera_info.yaml"), ros);
+    if (!ros.empty()) WriteTextFile(folder / "ros" / (name + "_camera_info.yaml"), ros);
   }
-  WriteText(folder / "opencv_stereo.yml",
-            OpenCvStereoText(r.solution.cameras, r.solution.T_C0C1, rectification));
+  WriteTextFile(folder / "opencv_stereo.yml",
+                OpenCvStereoText(r.solution.cameras, r.solution.T_C0C1, rectification));
 }
 
 }  // namespace
@@ -185,7 +176,7 @@ void WriteStereoResults(OutputFolder& output, const StereoResult& result, const 
   const fs::path& folder = output.folder();
   WriteCameras(folder, result, board, T_RC0);
   WriteCalibration(folder / "calibration.yaml", ToCalibration(result));
-  WriteText(folder / "residuals.csv", ResidualTable(result.solution));
+  WriteTextFile(folder / "residuals.csv", ResidualTable(result.solution));
   json summary = Summary(result);
   std::vector<Figure> figures = {PairFigure(result)};
   for (int eye = 0; eye < 2; ++eye) {
@@ -193,7 +184,7 @@ void WriteStereoResults(OutputFolder& output, const StereoResult& result, const 
     if (!uncertainty) continue;
     const std::string name = fmt::format("cam{}", eye);
     summary[name]["projection_uncertainty"] = UncertaintyJson(*uncertainty);
-    WriteText(folder / (name + "_uncertainty.csv"), UncertaintyTable(*uncertainty));
+    WriteTextFile(folder / (name + "_uncertainty.csv"), UncertaintyTable(*uncertainty));
     std::vector<SolvedView> views;
     for (const StereoView& view : result.solution.views) views.push_back(view.eyes[eye]);
     for (Figure& figure : UncertaintyFigures(*uncertainty, views)) {

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "recording/text.h"
 
 namespace flextip {
 namespace {
@@ -18,6 +22,39 @@ nlohmann::json MapJson(const UncertaintyMap& map) {
   return json;
 }
 
+// The line around all corners used (Andrew's monotone chain).
+FigureTrace HullOfCorners(const std::vector<SolvedView>& views) {
+  std::vector<std::pair<double, double>> points;
+  for (const SolvedView& view : views) {
+    for (std::size_t i = 0; i < view.px.size(); ++i) {
+      if (view.IsUsed(i)) points.emplace_back(view.px[i].x(), -view.px[i].y());
+    }
+  }
+  FigureTrace line{.name = "corners seen", .color = "#d55e00"};
+  if (points.size() < 3) return line;
+  std::sort(points.begin(), points.end());
+  const auto add_half = [&](auto from, auto to) {
+    std::vector<std::pair<double, double>> half;
+    for (auto p = from; p != to; ++p) {
+      const auto turns_left = [&] {
+        const auto &a = half[half.size() - 2], &b = half.back();
+        return (b.first - a.first) * (p->second - a.second) -
+                   (b.second - a.second) * (p->first - a.first) >
+               0;
+      };
+      while (half.size() >= 2 && !turns_left()) half.pop_back();
+      half.push_back(*p);
+    }
+    for (const auto& [x, y] : half) {
+      line.x.push_back(x);
+      line.y.push_back(y);
+    }
+  };
+  add_half(points.begin(), points.end());
+  add_half(points.rbegin(), points.rend());
+  return line;
+}
+
 Figure MapFigure(const CameraUncertainty& u, const UncertaintyMap& map, const std::string& name,
                  const std::string& where, const std::vector<SolvedView>& views) {
   Figure figure;
@@ -25,7 +62,8 @@ Figure MapFigure(const CameraUncertainty& u, const UncertaintyMap& map, const st
   figure.title = fmt::format("{}: projection uncertainty {}", u.camera, where);
   figure.caption =
       "Standard deviation, in its worst direction, of where a point that stands still relative to "
-      "the boards is seen after calibrating again from as noisy corners. Dots: the corners used.";
+      "the boards is seen after calibrating again from as noisy corners. The line is around all "
+      "corners used.";
   figure.x_label = "x (px)";
   figure.y_label = "y (px, down)";
   figure.equal_axes = true;
@@ -41,17 +79,7 @@ Figure MapFigure(const CameraUncertainty& u, const UncertaintyMap& map, const st
   field.low = 0.0;
   field.high = kHighestOfMean * map.MeanPx();
   figure.fields.push_back(field);
-  FigureTrace corners;
-  corners.kind = FigureTrace::Kind::kPoints;
-  corners.color = "#888";
-  for (const SolvedView& view : views) {
-    for (std::size_t i = 0; i < view.px.size(); ++i) {
-      if (!view.IsUsed(i)) continue;
-      corners.x.push_back(view.px[i].x());
-      corners.y.push_back(-view.px[i].y());
-    }
-  }
-  figure.traces.push_back(corners);
+  figure.traces.push_back(HullOfCorners(views));
   return figure;
 }
 
@@ -120,6 +148,15 @@ std::string UncertaintyTable(const CameraUncertainty& u) {
   AddRows(u.near, text);
   AddRows(u.far, text);
   return text;
+}
+
+void AddUncertainty(const std::filesystem::path& folder, const CameraSolution& solution,
+                    const std::vector<Eigen::Vector3d>& x_B, nlohmann::json& summary) {
+  const auto uncertainty = FindUncertainty(solution, x_B);
+  if (!uncertainty) return;
+  summary["projection_uncertainty"] = UncertaintyJson(*uncertainty);
+  WriteTextFile(folder / "cam0_uncertainty.csv", UncertaintyTable(*uncertainty));
+  WriteFigures(folder / "figures.json", UncertaintyFigures(*uncertainty, solution.views));
 }
 
 }  // namespace flextip

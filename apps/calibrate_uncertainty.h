@@ -1,6 +1,7 @@
 // How well a calibrated camera knows where a point is seen, as the calibrate commands write it.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -28,10 +29,15 @@ std::optional<CameraUncertainty> FindUncertainty(const StereoSolution& solution,
 
 /// `working_distance_m`, of both maps mean, largest and centre, and `next_views`.
 nlohmann::json UncertaintyJson(const CameraUncertainty& uncertainty);
-/// Two fields, at the working distance and at infinity, with where corners were seen.
+/// Two fields, at the working distance and at infinity, with a line around the corners seen.
 std::vector<Figure> UncertaintyFigures(const CameraUncertainty& uncertainty,
                                        const std::vector<SolvedView>& views);
 /// `#x [px],y [px],depth [m],sd [px],sd_across [mm]`; at infinity depth and sd_across are empty.
 std::string UncertaintyTable(const CameraUncertainty& uncertainty);
+
+/// Writes FOLDER/cam0_uncertainty.csv and FOLDER/figures.json and adds `projection_uncertainty`,
+/// with the views to add next, to a summary. Nothing where the views do not determine the camera.
+void AddUncertainty(const std::filesystem::path& folder, const CameraSolution& solution,
+                    const std::vector<Eigen::Vector3d>& x_B, nlohmann::json& summary);
 
 }  // namespace flextip
