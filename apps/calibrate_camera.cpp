@@ -27,6 +27,7 @@ struct CalibrateCameraOptions {
   std::string distortion = "auto";
   int terms = 5;
   std::string warp = "auto";
+  double board_sd_m = 0.0;
   fs::path corners;
   bool force = false;
   fs::path out;
@@ -38,6 +39,7 @@ CameraCalibrationOptions CalibrationOptions(const CalibrateCameraOptions& o) {
   if (o.distortion == "equidistant") calibration.lens = {Distortion::kEquidistant, 4};
   if (o.distortion == "opencv") calibration.lens = {Distortion::kOpenCv, o.terms};
   if (o.warp != "auto") calibration.warp = o.warp == "on";
+  calibration.board_sd_m = o.board_sd_m;
   return calibration;
 }
 
@@ -165,6 +167,12 @@ void AddCalibrateCamera(CLI::App& calibrate, AppContext& context) {
   command->add_option("--warp", options->warp, "Whether the board may be bent: auto, on or off")
       ->check(CLI::IsMember({"auto", "on", "off"}))
       ->capture_default_str();
+  command
+      ->add_option("--board-error", options->board_sd_m,
+                   "How well each corner's place on the board is known; above 0 they are "
+                   "estimated too (a print or a sheet that is not true)")
+      ->check(CLI::Range(0.0, 0.1))
+      ->type_name("METRES");
   command
       ->add_option("--corners", options->corners,
                    "Detected corners: read where the file exists, else written")

@@ -157,6 +157,9 @@ void WriteCameraResults(OutputFolder& output, const CornersFile& corners,
   const std::string folds = FoldsInPicture(result.solution.camera);
   if (!folds.empty())
     output.Warn(fmt::format("the lens holds only where boards were seen: {}", folds));
+  if (!result.shape.empty()) {
+    output.Warn("the covariance takes the estimated shape of the board as known: it is optimistic");
+  }
   DrawCameraPictures(folder, corners, result);
   json summary = Summary(result);
   AddUncertainty(folder, result.solution, BoardCorners(ParseBoardSpec(corners.board)), summary);

@@ -279,12 +279,19 @@ CameraCalibrationResult CalibrateCamera(const std::vector<BoardView>& views, int
     return Failed(result, CameraCalibrationStatus::kNotDetermined,
                   "the views do not determine the camera (are they all alike?)");
   }
+  const auto heldout = LeaveViewsOut(fit->solution, options.folds, options.board_sd_m);
+  result.heldout_rms_px = heldout ? heldout->rms_px : 0.0;
+  if (options.board_sd_m > 0) {
+    const auto shape = AdjustBoardShape(fit->solution, options.board_sd_m);
+    if (!shape) {
+      return Failed(result, CameraCalibrationStatus::kNotDetermined,
+                    "the views do not determine the board's shape");
+    }
+    result.shape = *shape;
+  }
   MarkViews(*fit, result);
   result.solution = std::move(fit->solution);
   result.covariance = result.solution.Covariance();
-  if (const auto heldout = LeaveViewsOut(result.solution, options.folds)) {
-    result.heldout_rms_px = heldout->rms_px;
-  }
   const std::string wrong = NotDetermined(result);
   if (!wrong.empty()) return Failed(result, CameraCalibrationStatus::kNotDetermined, wrong);
   result.status = CameraCalibrationStatus::kOk;

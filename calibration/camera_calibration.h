@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/board.h"
+#include "calibration/camera_board_shape.h"
 #include "calibration/camera_choice.h"
 #include "calibration/camera_outliers.h"
 #include "calibration/camera_solution.h"
@@ -23,6 +24,8 @@ struct CameraCalibrationOptions {
   std::optional<LensModel> lens;  ///< empty: all are tried, and held-out views choose
   /// Whether the board may be bent; empty: held-out views decide.
   std::optional<bool> warp;
+  /// How well each corner's place on the board is known; above 0 the places are estimated too.
+  double board_sd_m = 0.0;
   int folds = 6;
   OutlierRule outliers;
 };
@@ -42,6 +45,7 @@ struct CameraCalibrationResult {
   Eigen::MatrixXd covariance;             ///< solution.Covariance()
   double heldout_rms_px = 0.0;            ///< of the views used, each left out once
   std::vector<LensCandidate> candidates;  ///< where the lens was chosen
+  BoardShape shape;                       ///< with `board_sd_m`: the corners' offsets
   std::string warp_reason;                ///< why the board was, or was not, taken for flat
   std::vector<CalibrationView> views;     ///< all that were given
   int views_used = 0, views_rejected = 0;

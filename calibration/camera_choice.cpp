@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/camera_board_shape.h"
 #include "calibration/camera_bundle.h"
 #include "vision/camera_model.h"
 
@@ -73,7 +74,8 @@ const std::vector<LensModel>& AllLensModels() {
   return models;
 }
 
-std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int folds) {
+std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int folds,
+                                          double board_sd_m) {
   HeldOutError error;
   error.squared_px2.assign(solution.views.size(), 0.0);
   double squares = 0.0, count = 0.0;
@@ -90,8 +92,16 @@ std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int fo
     }
     if (!AdjustBundle(rest, {.estimate_warp = solution.warp_estimated, .tolerance = kTolerance}))
       return {};
+    BoardShape shape;
+    if (board_sd_m > 0) {
+      const auto found = AdjustBoardShape(rest, board_sd_m);
+      if (!found) return {};
+      shape = *found;
+    }
     for (const std::size_t v : left_out) {
-      const auto sum = SquaresOfView(rest, solution.views[v]);
+      SolvedView view = solution.views[v];
+      MoveCorners(shape, view);
+      const auto sum = SquaresOfView(rest, view);
       if (!sum) return {};
       const double free = std::max(1.0, solution.views[v].CountUsed() - 3.0);  // 6 / 2 for the pose
       error.squared_px2[v] = *sum / free;

@@ -28,8 +28,11 @@ struct HeldOutError {
   std::vector<double> squared_px2;  ///< of each view: the mean squared distance, likewise
 };
 
-/// Only corners that `solution` uses count. Empty where a fold cannot be solved.
-std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int folds);
+/// Only corners that `solution` uses count. With `board_sd_m` above 0 the board's shape
+/// (camera_board_shape.h) is found anew in each fold, `solution` being one over the board as
+/// described. Empty where a fold cannot be solved.
+std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int folds,
+                                          double board_sd_m = 0.0);
 
 /// One model's part in the choice.
 struct LensCandidate {
