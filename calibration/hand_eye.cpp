@@ -42,8 +42,7 @@ double MedianChi2(HandEyeWork& work) {
   for (const WorkView& view : work.views) {
     if (view.Usable()) all.push_back(view.chi2);
   }
-  std::nth_element(all.begin(), all.begin() + all.size() / 2, all.end());
-  return all[all.size() / 2];
+  return MedianOf(all);
 }
 
 void ScaleWristNoise(HandEyeWork& work, double scale) {

@@ -54,7 +54,8 @@ Step Solve(const Linearised& at, const std::vector<int>& unknowns, double dampin
   const Eigen::MatrixXd H_unknown = H(unknowns, unknowns);
   const Eigen::VectorXd g_unknown = g(unknowns);
   const Eigen::VectorXd x = -H_unknown.ldlt().solve(g_unknown);
-  for (std::size_t i = 0; i < unknowns.size(); ++i) step.shared[unknowns[i]] = x[i];
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    step.shared[unknowns[static_cast<std::size_t>(i)]] = x[i];
   for (std::size_t i = 0; i < at.views.size(); ++i) {
     const ViewNormal& view = at.views[i];
     step.wrists.emplace_back(-solvers[i].solve(view.h + view.W.transpose() * step.shared));

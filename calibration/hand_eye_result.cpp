@@ -64,7 +64,7 @@ void FillViews(const HandEyeWork& work, HandEyeResult& result) {
     out.held_out_px = out.held_out_mm = out.px = out.mm = kAbsent;
     out.px_seen = view.given->sighting.px;
     out.corners = static_cast<int>(view.board.points.size());
-    out.board_px = view.board.Rms_px();
+    out.board_px = view.board.RmsPx();
     (out.used ? result.views_used : result.views_rejected)++;
     out.seen = view.Usable();
     if (!out.seen || !result.IsUsable()) continue;

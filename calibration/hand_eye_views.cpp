@@ -101,9 +101,7 @@ std::vector<Correspondence> Fitting(const CameraModel& camera,
   for (const auto& point : points) {
     distance_px.push_back((camera.Project(T_CB * point.x_E).value() - point.px).norm());
   }
-  std::vector<double> sorted = distance_px;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const double limit = std::max(kOutlier_px, kOutlierOfMedian * sorted[sorted.size() / 2]);
+  const double limit = std::max(kOutlier_px, kOutlierOfMedian * MedianOf(distance_px));
   std::vector<Correspondence> fitting;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (distance_px[i] <= limit) fitting.push_back(points[i]);
@@ -113,7 +111,14 @@ std::vector<Correspondence> Fitting(const CameraModel& camera,
 
 }  // namespace
 
-double SeenBoard::Rms_px() const {
+double MedianOf(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double SeenBoard::RmsPx() const {
   if (poses.empty() || points.empty()) return 0.0;
   return std::sqrt(poses.front().squared_px2 / static_cast<double>(points.size()));
 }

@@ -24,8 +24,11 @@ struct SeenBoard {
   std::string reason;                  ///< why there is no pose
 
   int Dof() const { return 2 * static_cast<int>(points.size()) - 6; }
-  double Rms_px() const;
+  double RmsPx() const;
 };
+
+/// The greater one of the two in the middle; 0 of none.
+double MedianOf(std::vector<double> values);
 
 /// Both planar poses of a flat board, or those of every four corners of a collar, refined on all
 /// corners. Corners far off what the others say are left out.

@@ -14,26 +14,20 @@ namespace {
 constexpr double kLeast_px = 0.02, kLeast_rad = 1e-5, kLeast_m = 1e-5;
 constexpr double kPoorOfMedian = 4.0;  // a view's error over the median's
 
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
 // Marks the views whose corners fit no board; the noise of the others' corners.
 double JudgeBoards(std::vector<WorkView>& views) {
   std::vector<double> all_px;
   for (const WorkView& view : views) {
-    if (!view.board.poses.empty()) all_px.push_back(view.board.Rms_px());
+    if (!view.board.poses.empty()) all_px.push_back(view.board.RmsPx());
   }
   const double median_px = MedianOf(all_px);
   double squared = 0, dof = 0;
   for (WorkView& view : views) {
     if (view.board.poses.empty()) {
       view.reason = view.board.reason.empty() ? "no board seen" : view.board.reason;
-    } else if (view.board.Rms_px() > kPoorOfMedian * median_px + kLeast_px) {
+    } else if (view.board.RmsPx() > kPoorOfMedian * median_px + kLeast_px) {
       view.reason = fmt::format("the corners fit no board: {:.2f} px, in most views {:.2f} px",
-                                view.board.Rms_px(), median_px);
+                                view.board.RmsPx(), median_px);
     } else {
       view.fits_board = true;
       squared += view.board.poses.front().squared_px2;

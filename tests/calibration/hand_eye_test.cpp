@@ -246,6 +246,34 @@ TEST(HandEye, AllIsKnownWhereTheWristTurnedAboutAll) {
   EXPECT_TRUE(c.CovarianceOf("board.T_WB").isApprox(r.covariance.bottomRightCorner(6, 6)));
 }
 
+// Three faces of a collar, four corners each: not flat, and no four corners alone are enough.
+TEST(HandEye, ACollarOfTagsIsATargetToo) {
+  const Scene s = EyeToHand();
+  HandEyeInput input = Record(s, 12, 4);
+  const CameraModel model(s.camera);
+  std::mt19937 random(9);
+  std::normal_distribution<double> noise(0, 0.1);
+  for (HandEyeView& view : input.views) {
+    const Pose T_CB = s.board(1e-9 * static_cast<double>(view.t_ns));
+    view.sighting = {};
+    for (int face = 0; face < 3; ++face) {
+      const Pose T_BG = {ExpRotation({0, 0.8 * (face - 1), 0}),
+                         {0.03 * face, 0.02, 0.012 * (face != 1)}};
+      for (const auto& [x, y] : {std::pair(-1, 1), {1, 1}, {1, -1}, {-1, -1}}) {
+        view.sighting.x_B.push_back(T_BG * Eigen::Vector3d(0.012 * x, 0.012 * y, 0));
+        view.sighting.px.push_back(model.Project(T_CB * view.sighting.x_B.back()).value() +
+                                   Eigen::Vector2d(noise(random), noise(random)));
+      }
+    }
+  }
+  const auto r = CalibrateHandEye(input, kQuick);
+  ASSERT_TRUE(r.IsUsable()) << r.message;
+  EXPECT_EQ(r.views_used, 12);
+  const Eigen::VectorXd e = ErrorOf(r, s);
+  EXPECT_LT(e.dot(r.covariance.ldlt().solve(e)), 35.0);  // 12 numbers: 1 in 2000
+  EXPECT_EQ(HandEyeCalibration(r, "tags0").poses.count("tags0.T_WE"), 1u);
+}
+
 TEST(HandEye, TooFewViewsIsAStatusWithReasons) {
   HandEyeInput input = Record(EyeToHand(), 4, 2);
   input.views[1].sighting = {{}, {}, {}, "no chessboard"};
