@@ -84,6 +84,7 @@ nlohmann::json TipSummary(const std::vector<PivotPose>& poses, const PivotResult
                   {"algebraic_rms_residual_m", result.algebraic_rms_m},
                   {"position_noise_found_over_stated", result.position_noise_scale},
                   {"orientation_noise_found_over_stated", result.orientation_noise_scale},
+                  {"noises_found_apart", result.separate_noise},
                   {"poses_counted_as_one", result.correlation_time},
                   {"least_turn_rad", result.turn_rad[0]},
                   {"advice", AdviceText(result, body)}});

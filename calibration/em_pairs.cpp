@@ -42,7 +42,7 @@ EmPairs PairByWrist(const Recording& recording) {
                          SensorNoise(em) + wrist_sd * wrist_sd * J * J.transpose()});
   }
   if (recording.instrument.mass_per_length_kg_m > 0) {
-    out.warnings.push_back("the shaft has weight: the reference takes it as straight");
+    out.warnings.emplace_back("the shaft has weight: the reference takes it as straight");
   }
   return out;
 }

@@ -79,20 +79,55 @@ std::string WhatIsMissing(const PivotResult& result, const PivotOptions& options
       1e3 * sd_m, AxisText(tip.eigenvectors().col(2)));
 }
 
-/// Takes outliers out until none is left or comes back; the weights are 1 and 0.
-PivotPoint FitWithoutOutliers(const std::vector<PivotPose>& poses, const PivotOptions& options,
-                              PivotPoint point, std::vector<double>& weights) {
+struct PivotSolution {
+  PivotPoint point;
+  std::vector<double> weights;  // 1, or 0 for an outlier
+};
+
+/// Takes outliers out until none is left or comes back.
+PivotSolution FitWithoutOutliers(const std::vector<PivotPose>& poses, const PivotPoint& start,
+                                 PivotNoise noise) {
   constexpr int kRounds = 15;
   const double limit = OutlierLimit(poses.size());
+  PivotSolution solution{start, std::vector<double>(poses.size(), 1.0)};
   for (int round = 0; round < kRounds; ++round) {
-    const std::vector<double> before = weights;
+    const std::vector<double> before = solution.weights;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      weights[i] = PivotSigmas(poses[i], point) <= limit ? 1.0 : 0.0;
+      solution.weights[i] = PivotSigmas(poses[i], solution.point) <= limit ? 1.0 : 0.0;
     }
-    if (round > 0 && weights == before) break;
-    point = LikelyPivot(poses, weights, point, options.separate_noise);
+    if (round > 0 && solution.weights == before) break;
+    solution.point = LikelyPivot(poses, solution.weights, solution.point, noise);
   }
-  return point;
+  return solution;
+}
+
+/// Squared error (m^2) of the poses that `counted` uses, each block of time by a fit to the others.
+double BlockError(const std::vector<PivotPose>& poses, const PivotSolution& solution,
+                  const PivotSolution& counted) {
+  constexpr std::size_t kBlocks = 5;
+  double sum = 0.0;
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    std::vector<double> others = solution.weights;
+    const auto in_block = [&](std::size_t i) { return i * kBlocks / poses.size() == block; };
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (in_block(i)) others[i] = 0.0;
+    }
+    const PivotPoint point = LikelyPivot(poses, others, solution.point, PivotNoise::kKept);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (in_block(i)) sum += counted.weights[i] * PivotError(poses[i], point).squaredNorm();
+    }
+  }
+  return sum;
+}
+
+PivotSolution FitPoses(const std::vector<PivotPose>& poses, const PivotOptions& options,
+                       const PivotPoint& start, PivotResult& result) {
+  constexpr double kWorse = 1.06;  // in squares
+  const PivotSolution one = FitWithoutOutliers(poses, start, PivotNoise::kOneFactor);
+  if (!options.separate_noise) return one;
+  const PivotSolution two = FitWithoutOutliers(poses, start, PivotNoise::kTwoFactors);
+  result.separate_noise = BlockError(poses, two, two) <= kWorse * BlockError(poses, one, two);
+  return result.separate_noise ? two : one;
 }
 
 void DescribeResiduals(const std::vector<PivotPose>& poses, const PivotPoint& point,
@@ -150,10 +185,9 @@ PivotResult CalibratePivot(const std::vector<PivotPose>& poses, const PivotOptio
     result.unobservable = fmt::format("{} poses, expected {} at least", poses.size(), kFewestPoses);
     return result;
   }
-  std::vector<double> weights(poses.size(), 1.0);
-  const PivotPoint start = AlgebraicPivot(poses, weights);
+  const PivotPoint start = AlgebraicPivot(poses, std::vector<double>(poses.size(), 1.0));
   result.algebraic_rms_m = AlgebraicRms(poses, start);
-  const PivotPoint point = FitWithoutOutliers(poses, options, RobustPivot(poses, start), weights);
+  const auto [point, weights] = FitPoses(poses, options, RobustPivot(poses, start), result);
   const Matrix6d H = PivotInformation(poses, weights, point);
   const Matrix6d C = H.completeOrthogonalDecomposition().pseudoInverse();
   DescribeResiduals(poses, point, weights, C, result);

@@ -21,7 +21,9 @@ struct PivotPose {
 
 struct PivotOptions {
   /// How far the stated noise is off is found from the residuals: one factor for position and one
-  /// for orientation (whose error grows with the lever to the tip), or one for both.
+  /// for orientation (whose error grows with the lever to the tip), or one for both. Two are taken
+  /// only where they do not predict poses left out worse than one: an error that follows the pose,
+  /// as a tracker's scale, can pass for noise of one kind.
   bool separate_noise = true;
   double least_turn_over_noise = 4.0;  ///< a turn below so many times its noise counts as none
   double max_sd_m = 0.005;             ///< a tip less certain than this is not named
@@ -58,6 +60,7 @@ struct PivotResult {
   Eigen::Vector3d p_BE = Eigen::Vector3d::Zero(), p_R = Eigen::Vector3d::Zero();  ///< m
   Matrix6d covariance = Matrix6d::Zero();  ///< of (p_BE, p_R); the noise is that found
   double position_noise_scale = 1.0, orientation_noise_scale = 1.0;  ///< found over stated
+  bool separate_noise = false;    ///< whether these two were found apart
   double correlation_time = 1.0;  ///< in poses; `covariance` counts so many as one
   std::vector<PivotResidual> residuals;
   int used = 0;

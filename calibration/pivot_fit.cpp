@@ -154,7 +154,7 @@ PivotPoint RobustPivot(const std::vector<PivotPose>& poses, const PivotPoint& st
 }
 
 PivotPoint LikelyPivot(const std::vector<PivotPose>& poses, const std::vector<double>& weights,
-                       const PivotPoint& start, bool separate_noise) {
+                       const PivotPoint& start, PivotNoise noise) {
   constexpr int kIterations = 100;
   PivotPoint point = start;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -162,7 +162,9 @@ PivotPoint LikelyPivot(const std::vector<PivotPose>& poses, const std::vector<do
     point.x_B += step.head<3>();
     point.p_R += step.tail<3>();
     const PivotPoint before = point;
-    UpdateNoise(poses, weights, separate_noise, point);
+    if (noise != PivotNoise::kKept) {
+      UpdateNoise(poses, weights, noise == PivotNoise::kTwoFactors, point);
+    }
     const double change = std::abs(std::log(point.position_factor / before.position_factor)) +
                           std::abs(std::log(point.orientation_factor / before.orientation_factor));
     if (step.norm() < 1e-9 && change < 1e-4) break;

@@ -30,10 +30,14 @@ PivotPoint AlgebraicPivot(const std::vector<PivotPose>& poses, const std::vector
 /// Least absolute residuals from `start`, the noise as stated up to one factor.
 PivotPoint RobustPivot(const std::vector<PivotPose>& poses, const PivotPoint& start);
 
+/// What is found of the noise beside tip and pivot: nothing (the start's is kept), one factor, or
+/// one for orientation and one for position.
+enum class PivotNoise : std::uint8_t { kKept, kOneFactor, kTwoFactors };
+
 /// Maximum likelihood with errors in position and orientation (the covariance of an error depends
 /// on the tip, which takes off the bias that noisy orientations give a linear fit); the factors of
 /// the noise by restricted maximum likelihood.
 PivotPoint LikelyPivot(const std::vector<PivotPose>& poses, const std::vector<double>& weights,
-                       const PivotPoint& start, bool separate_noise);
+                       const PivotPoint& start, PivotNoise noise);
 
 }  // namespace flextip

@@ -1,15 +1,12 @@
 // Pivot calibration against known tips, by Monte Carlo, and on a real tracked pointer.
 #include "calibration/pivot.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
 #include <filesystem>
 #include <fstream>
 #include <random>
 
-#include "calibration/pivot_fit.h"
 #include "calibration/tip_poses.h"
 #include "calibration/tip_statistics.h"
 #include "tests/calibration/pivot_scene.h"
@@ -61,17 +58,17 @@ TEST(Pivot, IsExactWithoutNoise) {
   EXPECT_EQ(result.used, scene.poses);
 }
 
-TEST(Pivot, CovarianceIsHonest) { EXPECT_NEAR(MeanNees({}, 300, 2), 6.0, NeesBound(300)); }
+TEST(Pivot, CovarianceIsHonest) { EXPECT_NEAR(MeanNees({}, 200, 2), 6.0, NeesBound(200)); }
 
 TEST(Pivot, CovarianceIsHonestWhereTheStatedNoiseIsWrong) {
   PivotScene scene;
   scene.position_true = 3.0;
   scene.orientation_true = 0.3;
-  EXPECT_NEAR(MeanNees(scene, 300, 3), 6.0, NeesBound(300));
+  EXPECT_NEAR(MeanNees(scene, 200, 3), 6.0, NeesBound(200));
   scene.position_true = 0.5;
   scene.orientation_true = 4.0;
   Eigen::Vector2d scales;
-  EXPECT_NEAR(MeanNees(scene, 300, 4, &scales), 6.0, NeesBound(300));
+  EXPECT_NEAR(MeanNees(scene, 200, 4, &scales), 6.0, NeesBound(200));
   // The orientation's factor is the mean of 120 squares: 6 % each, 0.4 % in the mean.
   EXPECT_NEAR(scales[1], 4.0, 0.06);
   EXPECT_NEAR(scales[0], 0.5, 0.02);
@@ -92,7 +89,7 @@ TEST(Pivot, NoiseThatLastsWidensTheCovariance) {
 // Noisy orientations pull a linear fit's tip toward the body; the likelihood takes that off.
 TEST(Pivot, NoisyOrientationsDoNotPullTheTip) {
   PivotScene scene;
-  scene.poses = 2000;
+  scene.poses = 1000;
   scene.orientation_noise_rad = 0.02;
   scene.turn_sd_rad = {0.1, 0.1, 0.1};
   std::mt19937 random(6);
@@ -245,13 +242,17 @@ TEST(Pivot, RealPointer) {
   for (std::size_t i = 0; i < result.residuals.size(); ++i) {
     if (!result.residuals[i].used) outliers.push_back(i);
   }
-  EXPECT_THAT(outliers, testing::ElementsAre(24, 25));
+  // Two are gross, 13 and 9 mm off; the third is 7 mm off where the others are within 6.
+  EXPECT_THAT(outliers, testing::ElementsAre(20, 24, 25));
   EXPECT_GT(result.residuals[24].r_R.norm(), 0.012);
-  EXPECT_LT(result.heldout_rms_m, 1.6e-3);
-  // Each half of the poses says the same within what the covariance allows.
+  EXPECT_LT(result.heldout_rms_m, 1.4e-3);
+  // An error that follows the pose would pass for noise of the orientation alone.
+  EXPECT_FALSE(result.separate_noise);
+  // Each half of the poses says the same within what the covariances allow.
   const std::vector<PivotPose> all = WristPoses(recording);
   const PivotResult first = CalibratePivot({all.begin(), all.begin() + 28});
   const PivotResult second = CalibratePivot({all.begin() + 28, all.end()});
+<<<<<<< HEAD
   const Vector6d apart = ErrorOf(first, {.p_BE = second.p_BE, .p_R = second.p_R});
   const double nees = apart.dot((first.covariance + second.covariance).ldlt().solve(apart));
   EXPECT_LT(nees, 22.5);
@@ -310,6 +311,11 @@ TEST(Pivot, RealPointer) {
                1e3 * r.dot(lever), 1e3 * (r - r.dot(lever) * lever).norm(), lever.y(), lever.z(),
                1e3 * r.x(), 1e3 * r.y(), 1e3 * r.z());
   }
+=======
+  Vector6d apart;
+  apart << first.p_BE - second.p_BE, first.p_R - second.p_R;
+  EXPECT_LT(apart.dot((first.covariance + second.covariance).ldlt().solve(apart)), 16.8);  // 99 %
+>>>>>>> 132ceae515f7ba90ab653d3d15d4ceaf645198de
 }
 
 }  // namespace
