@@ -16,6 +16,7 @@ void RefineSaddles(const Image& grey, double reach_px, std::vector<Eigen::Vector
   const cv::Mat picture(grey.height_px, grey.width_px, CV_8UC1,
                         const_cast<std::uint8_t*>(grey.data.data()));  // only read
   std::vector<cv::Point2f> corners;
+  corners.reserve(px.size());
   for (const Eigen::Vector2d& p : px) {
     corners.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
   }

@@ -46,7 +46,8 @@ std::optional<ProjectionDifference> DifferenceOf(const CameraCalibration& a,
   const CameraModel from(a), to(b);
   std::vector<Correspondence> points;
   for (int i = 0; i < kGrid * kGrid; ++i) {
-    const Eigen::Array2d share(double(i % kGrid) / (kGrid - 1), double(i / kGrid) / (kGrid - 1));
+    const int row = i / kGrid, column = i % kGrid;
+    const Eigen::Array2d share = Eigen::Array2d(column, row) / (kGrid - 1);
     const Eigen::Vector2d px = low_px.array() + share * (high_px - low_px).array();
     const auto ray = from.Unproject(px);
     if (ray && to.Project(*ray)) points.push_back({*ray * distance_m, px});

@@ -252,70 +252,9 @@ TEST(Pivot, RealPointer) {
   const std::vector<PivotPose> all = WristPoses(recording);
   const PivotResult first = CalibratePivot({all.begin(), all.begin() + 28});
   const PivotResult second = CalibratePivot({all.begin() + 28, all.end()});
-<<<<<<< HEAD
-  const Vector6d apart = ErrorOf(first, {.p_BE = second.p_BE, .p_R = second.p_R});
-  const double nees = apart.dot((first.covariance + second.covariance).ldlt().solve(apart));
-  EXPECT_LT(nees, 22.5);
-  const Eigen::Vector3d p = 1e3 * result.p_BE;
-  const Eigen::Vector3d sd = 1e3 * result.covariance.diagonal().head<3>().cwiseSqrt();
-  fmt::print("tip {} +- {} mm, halves apart by {} mm, nees {}\n", fmt::join(p, " "),
-             fmt::join(sd, " "), 1e3 * apart.head<3>().norm(), nees);
-  std::vector<PivotPose> rest;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (i != 24 && i != 25) rest.push_back(all[i]);
-  const PivotPoint linear = AlgebraicPivot(rest, std::vector<double>(rest.size(), 1.0));
-  double sum = 0;
-  for (const auto& pose : rest)
-    sum += PivotError(pose, linear).squaredNorm() / (3.0 * static_cast<double>(rest.size()));
-  fmt::print("linear {} rms {}, turn {} rad, pivot {}\n",
-             fmt::join(Eigen::Vector3d(1e3 * linear.x_B), " "), 1e3 * std::sqrt(sum),
-             fmt::join(result.turn_rad, " "), fmt::join(Eigen::Vector3d(1e3 * result.p_R), " "));
-  const auto cross = [&](auto fit, const char* name) {
-    double total = 0;
-    int count = 0;
-    for (int blocks : {2, 4, 7}) {
-      total = 0;
-      count = 0;
-      for (int k = 0; k < blocks; ++k) {
-        std::vector<PivotPose> train, test;
-        for (std::size_t i = 0; i < rest.size(); ++i)
-          (static_cast<int>(i * blocks / rest.size()) == k ? test : train).push_back(rest[i]);
-        const PivotPoint point = fit(train);
-        for (const auto& t : test) {
-          total += PivotError(t, point).squaredNorm();
-          count += 3;
-        }
-      }
-      fmt::print("{} blocks {}: {:.4f} mm\n", name, blocks, 1e3 * std::sqrt(total / count));
-    }
-  };
-  cross([](const auto& t) { return AlgebraicPivot(t, std::vector<double>(t.size(), 1.0)); },
-        "linear");
-  cross(
-      [](const auto& t) {
-        const auto r = CalibratePivot(t);
-        return PivotPoint{.x_B = r.p_BE, .p_R = r.p_R};
-      },
-      "two");
-  cross(
-      [](const auto& t) {
-        const auto r = CalibratePivot(t, {.separate_noise = false});
-        fmt::print("{} ", fmt::join(Eigen::Vector3d(1e3 * r.p_BE), " "));
-        return PivotPoint{.x_B = r.p_BE, .p_R = r.p_R};
-      },
-      "one");
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Eigen::Vector3d lever = (all[i].T_RB.R * result.p_BE).normalized();
-    const Eigen::Vector3d r = result.residuals[i].r_R;
-    fmt::print("{} along {:.2f} across {:.2f} lever {:.3f} {:.3f} r {:.2f} {:.2f} {:.2f}\n", i,
-               1e3 * r.dot(lever), 1e3 * (r - r.dot(lever) * lever).norm(), lever.y(), lever.z(),
-               1e3 * r.x(), 1e3 * r.y(), 1e3 * r.z());
-  }
-=======
   Vector6d apart;
   apart << first.p_BE - second.p_BE, first.p_R - second.p_R;
   EXPECT_LT(apart.dot((first.covariance + second.covariance).ldlt().solve(apart)), 16.8);  // 99 %
->>>>>>> 132ceae515f7ba90ab653d3d15d4ceaf645198de
 }
 
 }  // namespace
