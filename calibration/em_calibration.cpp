@@ -34,6 +34,7 @@ std::vector<EmPair> Used(const std::vector<EmPair>& pairs, const std::vector<dou
 std::vector<double> Inliers(const std::vector<EmPair>& pairs, const EmSolution& solution,
                             double limit) {
   std::vector<double> sigmas;
+  sigmas.reserve(pairs.size());
   for (const EmPair& pair : pairs) sigmas.push_back(EmSigmas(pair, solution));
   const double scale = std::max(1e-9, RobustScale(sigmas));
   for (double& s : sigmas) s = s <= limit * scale ? 1.0 : 0.0;
@@ -165,6 +166,7 @@ void DescribeLag(const std::vector<EmPair>& pairs, EmResult& result) {
 /// Noise of one component of a typical pair, as found (m).
 double TypicalNoise(const std::vector<EmPair>& pairs, double noise_scale) {
   std::vector<double> variances;
+  variances.reserve(pairs.size());
   for (const EmPair& pair : pairs) variances.push_back(pair.covariance.trace() / 3.0);
   return noise_scale * std::sqrt(Median(variances));
 }
