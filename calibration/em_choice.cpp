@@ -112,6 +112,7 @@ std::vector<int> PartsOfSpace(const std::vector<Eigen::Vector3d>& places) {
 void ChooseField(const std::vector<EmPair>& pairs, const EmSolution& start,
                  std::vector<EmCandidate>& candidates) {
   std::vector<Eigen::Vector3d> places;
+  places.reserve(pairs.size());
   for (const EmPair& pair : pairs) places.push_back(start.T_RF * pair.T_FS.p);
   const std::vector<int> part = PartsOfSpace(places);
   PartSums sums;

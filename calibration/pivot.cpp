@@ -47,6 +47,7 @@ void DescribeTurns(const std::vector<PivotPose>& poses, const std::vector<double
 /// What noise alone makes of turn_rad: the median pose's, by the greater of stated and found.
 double TurnByNoise(const std::vector<PivotPose>& poses, const PivotPoint& point) {
   std::vector<double> variances;
+  variances.reserve(poses.size());
   for (const PivotPose& pose : poses)
     variances.push_back(pose.covariance.topLeftCorner<3, 3>().trace());
   return std::sqrt(2.0 / 3.0 * Median(variances) * std::max(1.0, point.orientation_factor));

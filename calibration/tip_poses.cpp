@@ -20,6 +20,7 @@ std::vector<PivotPose> WristPoses(const Recording& recording) {
   if (!recording.wrist0) return poses;
   const WristStream& wrist = *recording.wrist0;
   const Matrix6d noise = NoiseOf(wrist.position_noise_m, wrist.orientation_noise_rad);
+  poses.reserve(wrist.samples.size());
   for (const auto& sample : wrist.samples) {
     if (!sample.value.q_RW) continue;
     poses.push_back(
@@ -33,6 +34,7 @@ std::vector<PivotPose> EmPoses(const Recording& recording) {
   if (!recording.em0) return poses;
   const EmStream& em = *recording.em0;
   const Matrix6d noise = NoiseOf(em.position_noise_m, em.orientation_noise_rad);
+  poses.reserve(em.samples.size());
   for (const auto& sample : em.samples) {
     poses.push_back(
         {sample.t_ns, Pose::FromQuaternion(sample.value.q_RS, sample.value.p_RS), noise});
