@@ -12,7 +12,8 @@ namespace flextip {
 /// OpenCV's lens on the plane z = 1 with the first `kTerms` of k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4.
 template <int kTerms, class T>
 Eigen::Matrix<T, 2, 1> DistortOpenCv(const T* k, const Eigen::Matrix<T, 2, 1>& m) {
-  const T x = m.x(), y = m.y(), r2 = x * x + y * y;
+  const T &x = m.x(), &y = m.y();
+  const T r2 = x * x + y * y;
   T f = T(1) + r2 * (k[0] + r2 * k[1]);
   if constexpr (kTerms >= 5) f += r2 * r2 * r2 * k[4];
   if constexpr (kTerms >= 8) f /= T(1) + r2 * (k[5] + r2 * (k[6] + r2 * k[7]));
