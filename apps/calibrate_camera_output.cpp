@@ -92,7 +92,7 @@ json WarpJson(const CameraCalibrationResult& r) {
 
 json Summary(const CameraCalibrationResult& r) {
   const CameraCalibration& c = r.solution.camera;
-  return {
+  json summary = {
       {"rms_reprojection_error_px", r.solution.RmsPx()},
       {"heldout_error_px", r.heldout_rms_px},
       {"views_used", r.views_used},
@@ -106,6 +106,15 @@ json Summary(const CameraCalibrationResult& r) {
       {"lens_candidates", CandidatesJson(r)},
       {"board_warp", WarpJson(r)},
       {"views", ViewsJson(r)}};
+  if (!r.shape.empty()) {
+    const auto [rms_m, longest_m] = SizeOf(r.shape);
+    summary["board_shape"] = {{"rms_m", rms_m}, {"longest_m", longest_m}};
+  }
+  if (const auto split = SplitViews(r.solution)) {
+    summary["split_views_rms_px"] = split->rms_px;
+    summary["split_views_max_px"] = split->max_px;
+  }
+  return summary;
 }
 
 // Intrinsics and coefficients with their covariance, in the order of Calibration::CoordinateNames.

@@ -193,8 +193,9 @@ std::optional<double> FocalOfVanishingPoints(const std::vector<SolvedView>& view
   const double size2 = centre_px.squaredNorm();
   for (const SolvedView& view : views) {
     std::vector<Eigen::Vector2d> centred;
-    for (const Eigen::Vector2d& px : view.px)
-      centred.push_back((px - centre_px) / std::sqrt(size2));
+    for (const Eigen::Vector2d& px : view.px) {
+      centred.emplace_back((px - centre_px) / std::sqrt(size2));
+    }
     const auto H = Homography(view.x_B, centred);
     if (!H) continue;
     const Eigen::Vector3d a = H->col(0) / H->col(0).norm(), b = H->col(1) / H->col(0).norm();
