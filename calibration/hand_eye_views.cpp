@@ -98,6 +98,7 @@ std::vector<BoardPose> Minima(const CameraModel& camera,
 std::vector<Correspondence> Fitting(const CameraModel& camera,
                                     const std::vector<Correspondence>& points, const Pose& T_CB) {
   std::vector<double> distance_px;
+  distance_px.reserve(points.size());
   for (const auto& point : points) {
     distance_px.push_back((camera.Project(T_CB * point.x_E).value() - point.px).norm());
   }
