@@ -233,7 +233,7 @@ void PrintUpstream(const char* name, const UpstreamError& error) {
   fmt::print("  {:24} {:8.2f} px {:8.2f} mm\n", name, error.px, error.mm);
 }
 
-// What no other frames could do better by the distance in the picture: the wrists taken as exact.
+// The least distance in the picture near `start`: the wrists taken as exact.
 Frames LeastPixels(const HandEyeInput& input, const HandEyeResult& start) {
   HandEyeProblem problem;
   problem.noise = {1.0, 1e-7, 1e-8};
@@ -257,7 +257,7 @@ void CompareOn(const HandEyeInput& input, const HandEyeResult& ours) {
   };
   for (const Method& method : Methods()) print(method.name, method.run(poses), input.camera);
   print("flextip", {ours.T_FC, ours.T_KB}, ours.camera);
-  print("least possible px", LeastPixels(input, ours), input.camera);
+  print("pixels alone", LeastPixels(input, ours), input.camera);
 }
 
 void CompareScope(const Arguments& a) {
