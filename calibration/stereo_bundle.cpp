@@ -202,7 +202,7 @@ bool Evaluate(const StereoBundleOptions& options, StereoSolution& s) {
         if (!seen.IsUsed(i)) continue;
         squares_px2 += seen.residual_px[i].squaredNorm();
         std::vector<Eigen::MatrixXd> used = {J[0], J[1].leftCols(s.WarpCount()), J[2]};
-        if (eye == 1) used.push_back(J[3]);
+        if (eye == 1) used.emplace_back(J[3]);
         AddNormal(
             used,
             {eye == 0 ? 0 : s.IntrinsicsCount(0), s.PairStart() + 6, s.ViewStart(v), s.PairStart()},

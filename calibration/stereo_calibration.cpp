@@ -28,6 +28,7 @@ CameraCalibrationResult CalibrateEye(const std::vector<StereoPair>& pairs, int e
                                      const Eigen::Vector2i& size_px, const BoardSpec& board,
                                      const StereoOptions& options) {
   std::vector<BoardView> views;
+  views.reserve(pairs.size());
   for (const StereoPair& pair : pairs) views.push_back(pair.eyes[eye]);
   return CalibrateCamera(views, size_px.x(), size_px.y(), board, options.camera);
 }
@@ -100,8 +101,9 @@ double MedianPairRms(const StereoSolution& s) {
     if (view.InBoth()) rms.push_back(PairRms(view));
   }
   if (rms.empty()) return 0.0;
-  std::nth_element(rms.begin(), rms.begin() + rms.size() / 2, rms.end());
-  return rms[rms.size() / 2];
+  const auto middle = rms.begin() + static_cast<std::ptrdiff_t>(rms.size() / 2);
+  std::nth_element(rms.begin(), middle, rms.end());
+  return *middle;
 }
 
 // Takes the worst pair apart where its pictures, good by themselves, do not fit together.
