@@ -83,8 +83,8 @@ json PairsJson(const StereoResult& r) {
 json EyeJson(const StereoResult& r, int eye) {
   const CameraCalibration& c = r.solution.cameras[eye];
   const int first = eye == 0 ? 0 : r.solution.IntrinsicsCount(0);
-  std::vector<double> sd;
-  for (int i = 0; i < 4; ++i) sd.push_back(std::sqrt(r.covariance(first + i, first + i)));
+  std::vector<double> sd(4);
+  for (int i = 0; i < 4; ++i) sd[i] = std::sqrt(r.covariance(first + i, first + i));
   return {
       {"lens", LensModel{c.distortion, static_cast<int>(c.distortion_coefficients.size())}.Name()},
       {"rms_reprojection_error_px", r.solution.RmsPx(eye)},
