@@ -13,9 +13,6 @@ namespace flextip {
 namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
-// The uncertainty is compared on a coarse grid: it is smooth.
-constexpr int kColumns = 9, kRows = 7;
-
 // The board's part of the picture's width when it faces the camera.
 constexpr std::array kWidths = {0.25, 0.4, 0.6, 0.85};
 constexpr std::array kPlaces = {0.2, 0.5, 0.8};  // of its centre, as a part of the picture
@@ -40,7 +37,7 @@ bool AllSeen(const CameraModel& model, const Pose& T_CB, const std::vector<Eigen
 }
 
 double Figure(const ProjectionUncertainty& uncertainty, const NextViewOptions& options) {
-  const UncertaintyMap map = MapUncertainty(uncertainty, options.depth_m, kColumns, kRows);
+  const UncertaintyMap map = MapUncertainty(uncertainty, options.depth_m);
   return options.worst ? map.LargestPx() : map.MeanPx();
 }
 

@@ -100,7 +100,11 @@ std::optional<Eigen::Matrix2d> ProjectionUncertainty::CovariancePx(const Eigen::
   const auto ray = CameraModel(camera_).Unproject(px);
   if (!ray || ray->z() < 1e-3) return {};
   const bool infinite = !std::isfinite(depth_m);
-  const Eigen::Vector3d x_C = *ray / ray->z() * (infinite ? 1.0 : depth_m);
+  return CovarianceOfPoint(*ray / ray->z() * (infinite ? 1.0 : depth_m), infinite);
+}
+
+Eigen::Matrix2d ProjectionUncertainty::CovarianceOfPoint(const Eigen::Vector3d& x_C,
+                                                         bool infinite) const {
   const ProjectionDerivative d = DifferentiateProjection(camera_, x_C);
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2, covariance_.cols());
   J.leftCols(intrinsics_) = d.by_intrinsics;
@@ -190,14 +194,15 @@ UncertaintyMap MapUncertainty(const ProjectionUncertainty& uncertainty, double d
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const Eigen::Vector2d px(map.x_px[column], map.y_px[row]);
-      const auto covariance = uncertainty.CovariancePx(px, depth_m);
-      if (!covariance) continue;
-      map.sd_px(row, column) = WorstSd(*covariance);
+      const auto ray = model.Unproject(px);
+      if (!ray || ray->z() < 1e-3) continue;
+      const Eigen::Vector3d x_C = *ray / ray->z() * (finite ? depth_m : 1.0);
+      const Eigen::Matrix2d covariance = uncertainty.CovarianceOfPoint(x_C, !finite);
+      map.sd_px(row, column) = WorstSd(covariance);
       if (!finite) continue;
-      const Eigen::Vector3d ray = model.Unproject(px).value();
       const Eigen::Matrix2d across =
-          DifferentiateProjection(camera, ray / ray.z() * depth_m).by_point.leftCols<2>().inverse();
-      map.sd_mm(row, column) = 1e3 * WorstSd(across * *covariance * across.transpose());
+          DifferentiateProjection(camera, x_C).by_point.leftCols<2>().inverse();
+      map.sd_mm(row, column) = 1e3 * WorstSd(across * covariance * across.transpose());
     }
   }
   return map;

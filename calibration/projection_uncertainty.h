@@ -29,6 +29,9 @@ class ProjectionUncertainty {
   /// Empty where the lens model sees nothing there.
   std::optional<Eigen::Matrix2d> CovariancePx(const Eigen::Vector2d& px, double depth_m) const;
 
+  /// The same of the point `x_C` of the world (m); `infinite`: of its direction.
+  Eigen::Matrix2d CovarianceOfPoint(const Eigen::Vector3d& x_C, bool infinite) const;
+
   /// What it becomes with one more view: the board at T_CB with its corners `x_B`, each seen with
   /// the noise of the others.
   ProjectionUncertainty WithView(const Pose& T_CB, const std::vector<Eigen::Vector3d>& x_B) const;

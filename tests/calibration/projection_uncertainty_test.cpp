@@ -165,7 +165,7 @@ CameraSolution AddView(const StereoScene& scene, CameraSolution s, const Pose& T
 }
 
 double MeanPx(const CameraSolution& s) {
-  return MapUncertainty(ProjectionUncertainty::Of(s).value(), 0.1, 9, 7).MeanPx();
+  return MapUncertainty(ProjectionUncertainty::Of(s).value(), 0.1).MeanPx();
 }
 
 TEST(NextView, LowersTheUncertaintyAsPredictedAndMoreThanOthers) {
