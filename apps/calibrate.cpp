@@ -14,6 +14,8 @@ void AddCalibrate(CLI::App& app, AppContext& context) {
   AddCalibrateCamera(*command, context);
   AddCalibrateStiffness(*command, context);
   AddCalibrateStrain(*command, context);
+  AddCalibrateEm(*command, context);
+  AddCalibrateTip(*command, context);
 }
 
 }  // namespace flextip

@@ -11,5 +11,7 @@ namespace flextip {
 void AddCalibrateCamera(CLI::App& calibrate, AppContext& context);
 void AddCalibrateStiffness(CLI::App& calibrate, AppContext& context);
 void AddCalibrateStrain(CLI::App& calibrate, AppContext& context);
+void AddCalibrateEm(CLI::App& calibrate, AppContext& context);
+void AddCalibrateTip(CLI::App& calibrate, AppContext& context);
 
 }  // namespace flextip

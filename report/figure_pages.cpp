@@ -44,6 +44,8 @@ void AddNumbers(Report& report, const fs::path& file) {
   report.AddHtml("</div>\n");
 }
 
+}  // namespace
+
 void AddFigureFile(Report& report, const fs::path& file) {
   const auto figures = nlohmann::json::parse(ReadBytes(file), nullptr, false);
   if (!figures.is_array()) throw InputError::At(file.string(), 0, "is not a list of figures");
@@ -54,8 +56,6 @@ void AddFigureFile(Report& report, const fs::path& file) {
   }
   report.AddHtml("</div>\n");
 }
-
-}  // namespace
 
 void WriteReproduceReport(const fs::path& folder) {
   Report report = BeginPage(folder, "The thesis, done again");

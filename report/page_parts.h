@@ -19,6 +19,9 @@ Report BeginPage(const std::filesystem::path& folder, const std::string& title);
 void AddPictureFiles(Report& report, const std::string& heading,
                      const std::vector<std::filesystem::path>& files);
 
+/// Every figure of a figures.json.
+void AddFigureFile(Report& report, const std::filesystem::path& file);
+
 /// Seconds since the first time stamp of the table's first column (ns).
 std::vector<double> SecondsOf(const ResultTable& table);
 /// The column times `factor`; empty where the table has no such column.

@@ -137,6 +137,7 @@ void WriteWithPictures(const fs::path& folder, const std::string& title,
   auto pictures = PicturesIn(folder / "overlay", kPictures);
   const auto beside = PicturesIn(folder, kPictures);
   pictures.insert(pictures.end(), beside.begin(), beside.end());
+  if (fs::exists(folder / "figures.json")) AddFigureFile(report, folder / "figures.json");
   AddPictureFiles(report, heading, pictures);
   AddShortTable(report, folder / "shapes.csv", "Shapes");
   AddShortTable(report, folder / "residuals.csv", "Residuals");
