@@ -87,5 +87,37 @@ TEST(CalibrateLoads, CalibrationsThatDoNotFitAreRefused) {
                         {"/no/file"}));
 }
 
+TEST(CalibrateLoads, TheEmFieldIsTakenOut) {
+  TestFolder folder;
+  const testing::Bench bench;
+  const auto masses = testing::AllWays({-0.08, 0.0, 0.08}, {0.15});
+  Recording recording = RecordBench(bench, masses, Hang(bench, masses), 11);
+  // Everything seems 5 % further from (0.5, 0, 0) than it is.
+  const Eigen::Vector3d centre(0.5, 0, 0);
+  for (auto& sample : recording.em0->samples) {
+    sample.value.p_RS = centre + 1.05 * (sample.value.p_RS - centre);
+  }
+  std::filesystem::create_directories(folder / "bent");
+  WriteRecording(folder / "bent", recording);
+  // p - 0.05 / 1.05 (p - centre), with u = (p - centre) / 0.2.
+  const std::string c = std::to_string(-0.2 * 0.05 / 1.05);
+  const auto file = folder.Write(
+      "field.yaml",
+      "format: flextip-calibration\nversion: 1\nkind: em\nfound:\n  em0.field: [" + c +
+          ", 0, 0, 0, " + c + ", 0, 0, 0, " + c +
+          "]\n  em0.field_centre_m: [0.5, 0, 0]\n  em0.field_scale_m: [0.2, 0.2, 0.2]\n");
+  const auto chi2 = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"estimate", (folder / "bent").string(),
+                                          "-o",       (folder / "out").string(),
+                                          "--force",  "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto result = RunProgram(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return SummaryOf(folder / "out")["chi2_per_measurement"].get<double>();
+  };
+  EXPECT_GT(chi2({}), 5);
+  EXPECT_LT(chi2({"--calibration", file}), 1.5);
+}
+
 }  // namespace
 }  // namespace flextip
