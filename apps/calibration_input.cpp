@@ -6,7 +6,7 @@
 #include <fstream>
 #include <set>
 
-#include "calibration/em_field.h"
+#include "calibration/em/em_field.h"
 #include "core/error.h"
 
 namespace flextip {

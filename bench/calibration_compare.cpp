@@ -10,7 +10,7 @@
 #include "bench/calibration_corners.h"
 #include "bench/calibration_peer.h"
 #include "bench/tool.h"
-#include "calibration/projection_uncertainty.h"
+#include "calibration/uncertainty/projection_uncertainty.h"
 #include "core/error.h"
 
 namespace flextip {

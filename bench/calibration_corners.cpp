@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "calibration/chessboard.h"
+#include "calibration/boards/chessboard.h"
 #include "core/error.h"
 
 namespace flextip {

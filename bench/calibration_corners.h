@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/board.h"
+#include "calibration/boards/board.h"
 #include "core/camera.h"
 
 namespace flextip {

@@ -3,7 +3,7 @@
 #include <ctime>
 #include <opencv2/calib3d.hpp>
 
-#include "calibration/camera_calibration.h"
+#include "calibration/camera/camera_calibration.h"
 #include "core/error.h"
 #include "vision/camera_model.h"
 #include "vision/reprojection.h"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bench/calibration_corners.h"
-#include "calibration/camera_choice.h"
-#include "calibration/camera_solution.h"
+#include "calibration/camera/camera_choice.h"
+#include "calibration/camera/camera_solution.h"
 
 namespace flextip {
 

@@ -11,8 +11,8 @@
 #include "bench/calibration_corners.h"
 #include "bench/calibration_peer.h"
 #include "bench/tool.h"
-#include "calibration/chessboard.h"
-#include "calibration/projection_uncertainty.h"
+#include "calibration/boards/chessboard.h"
+#include "calibration/uncertainty/projection_uncertainty.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 

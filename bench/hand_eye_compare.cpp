@@ -15,7 +15,7 @@
 
 #include "bench/hand_eye_data.h"
 #include "bench/tool.h"
-#include "calibration/hand_eye_fit.h"
+#include "calibration/hand_eye/hand_eye_fit.h"
 #include "vision/camera_model.h"
 #include "vision/reprojection.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/hand_eye.h"
+#include "calibration/hand_eye/hand_eye.h"
 
 namespace flextip {
 

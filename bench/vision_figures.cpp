@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/median.h"
 #include "core/rotation.h"
 #include "vision/collar_pose.h"
 
@@ -23,13 +24,6 @@ double Apart2(const TagCorners& a, const TagCorners& b, bool any_order) {
     }
   }
   return least;
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/median.h"
+
 namespace flextip {
 namespace {
 
@@ -14,9 +16,7 @@ constexpr double kFar = 10.0;     // mean square of a sample's rows over the med
 constexpr double kFewFar = 0.01;  // of all samples
 
 double RobustVariance(std::vector<double> squares) {
-  const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return *middle / kMedianOfSquare;
+  return Median(std::move(squares)) / kMedianOfSquare;
 }
 
 /// Variance of second differences of an AR(1) process of unit variance.
@@ -77,10 +77,7 @@ std::vector<std::size_t> FarSamples(const Replay& replay) {
     mean_squares.push_back(squares / std::max(1, rows.Rows(k)));
   }
   if (mean_squares.empty()) return {};
-  std::vector<double> sorted = mean_squares;
-  const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double limit = kFar * std::max(1.0, *middle);
+  const double limit = kFar * std::max(1.0, Median(mean_squares));
   std::vector<std::size_t> far;
   for (std::size_t k = 0; k < mean_squares.size(); ++k)
     if (mean_squares[k] > limit) far.push_back(k);

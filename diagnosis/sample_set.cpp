@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/median.h"
 #include "core/rotation.h"
 #include "diagnosis/outliers.h"
 #include "diagnosis/sample_streams.h"
@@ -70,9 +71,7 @@ class Builder {
     }
     std::vector<double> periods;
     for (std::size_t k = 1; k < t_s.size(); ++k) periods.push_back(t_s[k] - t_s[k - 1]);
-    const auto middle = periods.begin() + std::ptrdiff_t(periods.size() / 2);
-    std::nth_element(periods.begin(), middle, periods.end());
-    set_.period_s = *middle;
+    set_.period_s = Median(periods);
     set_.resolved_in_time = set_.period_s * kMinResolvedRate_hz < 1.0;
     set_.noise.wrist_position_m = stream.position_noise_m;
     set_.noise.wrist_direction_rad = stream.orientation_noise_rad;

@@ -5,6 +5,7 @@
 #include <opencv2/videoio/registry.hpp>
 #include <system_error>
 
+#include "core/median.h"
 #include "recording/camera_yaml.h"
 #include "recording/image_head.h"
 #include "recording/sensor_head.h"
@@ -45,13 +46,11 @@ void CountGaps(const std::filesystem::path& file, const Series<T>& frames, ReadL
   for (std::size_t i = 1; i < frames.size(); ++i) {
     intervals.push_back(frames[i].t_ns - frames[i - 1].t_ns);
   }
-  auto sorted = intervals;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  const TimeNs period = Median(intervals);
   long dropped = 0;
   TimeNs first = 0;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
-    const double periods = static_cast<double>(intervals[i]) / static_cast<double>(*middle);
+    const double periods = static_cast<double>(intervals[i]) / static_cast<double>(period);
     if (periods <= 1.5) continue;
     if (dropped == 0) first = frames[i].t_ns;
     dropped += std::lround(periods) - 1;

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/median.h"
 #include "report/diagnose_words.h"
 
 namespace flextip {
@@ -155,9 +156,8 @@ std::vector<double> Autocorrelation(const std::vector<std::vector<double>>& comp
 double MedianStep(std::vector<double> t) {
   if (t.size() < 2) return 0.0;
   for (std::size_t i = t.size() - 1; i > 0; --i) t[i] -= t[i - 1];
-  const auto middle = t.begin() + 1 + std::ptrdiff_t((t.size() - 1) / 2);
-  std::nth_element(t.begin() + 1, middle, t.end());
-  return *middle;
+  t.erase(t.begin());
+  return Median(std::move(t));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "control/motion_error.h"
+#include "core/median.h"
 
 namespace flextip {
 namespace {
@@ -111,10 +112,8 @@ TypicalMetric MetricUnderGaussianNoise(FlexionForm form, const BeamState& truth,
     sum += metric;
     squares += metric * metric;
   }
-  std::nth_element(metrics.begin(), metrics.begin() + std::ptrdiff_t(metrics.size() / 2),
-                   metrics.end());
   const double count = static_cast<double>(metrics.size());
-  return {metrics[metrics.size() / 2], std::sqrt(squares / count), sum / count};
+  return {Median(metrics), std::sqrt(squares / count), sum / count};
 }
 
 }  // namespace flextip

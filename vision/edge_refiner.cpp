@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/median.h"
+
 namespace flextip {
 namespace {
 
@@ -161,9 +163,7 @@ double RobustScale(const std::vector<EdgePixel>& pixels, const Vector9& q) {
   std::vector<double> size;
   size.reserve(pixels.size());
   for (const EdgePixel& p : pixels) size.push_back(std::abs(Residual(p, q, nullptr)));
-  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-  std::nth_element(size.begin(), middle, size.end());
-  return std::max(3.0, 3.0 * *middle);
+  return std::max(3.0, 3.0 * Median(std::move(size)));
 }
 
 double HuberCost(const std::vector<EdgePixel>& pixels, const Vector9& q, double scale) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/median.h"
+
 namespace flextip {
 namespace {
 
@@ -19,13 +21,6 @@ constexpr int kSideAverage = 2, kEndAverage = 1;
 constexpr double kTukey = 4.685, kCounts = 0.2;
 constexpr int kReweightings = 6;
 constexpr double kScaleFreedom = 5.0;  // of the belief that the stated variances are right
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Among the peaks of the evidence the one near the line's middle; of two that are nearly as good
 // the inner one: beside a tube lies its shadow, and the shadow's own far edge.

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "calibration/camera_calibration.h"
+#include "calibration/camera/camera_calibration.h"
 #include "core/error.h"
 
 namespace flextip {

@@ -1,5 +1,5 @@
 // Boards found in pictures drawn from known cameras and poses: ids, frames, and how near.
-#include "calibration/board.h"
+#include "calibration/boards/board.h"
 
 #include <gtest/gtest.h>
 

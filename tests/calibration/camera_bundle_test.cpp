@@ -1,10 +1,10 @@
 // Bundle adjustment against known truth: what it finds, and how sure it says it is.
-#include "calibration/camera_bundle.h"
+#include "calibration/camera/camera_bundle.h"
 
 #include <gtest/gtest.h>
 
-#include "calibration/camera_board_shape.h"
-#include "calibration/camera_start.h"
+#include "calibration/camera/camera_board_shape.h"
+#include "calibration/camera/camera_start.h"
 #include "tests/calibration/camera_synthetic.h"
 
 namespace flextip {

@@ -1,5 +1,5 @@
 // Calibration of real cameras from real boards, and of a camera that is known exactly.
-#include "calibration/camera_calibration.h"
+#include "calibration/camera/camera_calibration.h"
 
 #include <gtest/gtest.h>
 

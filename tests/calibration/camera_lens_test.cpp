@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "calibration/lens_function.h"
+#include "calibration/camera/lens_function.h"
 #include "vision/camera_model.h"
 
 namespace flextip {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "calibration/camera_calibration.h"
+#include "calibration/camera/camera_calibration.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 

@@ -1,4 +1,4 @@
-#include "calibration/corners_file.h"
+#include "calibration/boards/corners_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

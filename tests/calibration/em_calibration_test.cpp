@@ -1,5 +1,5 @@
 // EM calibration against known registrations and fields, by Monte Carlo.
-#include "calibration/em_calibration.h"
+#include "calibration/em/em_calibration.h"
 
 #include <gmock/gmock.h>
 

@@ -1,11 +1,11 @@
 // The budget beside what the tip does when each input is truly disturbed.
-#include "calibration/error_budget.h"
+#include "calibration/uncertainty/error_budget.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "calibration/projection_derivative.h"
+#include "calibration/camera/projection_derivative.h"
 #include "core/rotation.h"
 #include "vision/collar_pose.h"
 #include "vision/reprojection.h"

@@ -4,7 +4,7 @@
 #include <functional>
 #include <random>
 
-#include "calibration/hand_eye.h"
+#include "calibration/hand_eye/hand_eye.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 

@@ -1,9 +1,9 @@
 // Hand-eye calibration of a robot that is known exactly.
-#include "calibration/hand_eye.h"
+#include "calibration/hand_eye/hand_eye.h"
 
 #include <gmock/gmock.h>
 
-#include "calibration/hand_eye_fit.h"
+#include "calibration/hand_eye/hand_eye_fit.h"
 #include "core/derivative_check.h"
 #include "core/error.h"
 #include "tests/calibration/hand_eye_scene.h"

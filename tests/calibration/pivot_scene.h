@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "calibration/pivot.h"
+#include "calibration/tip/pivot.h"
 #include "core/rotation.h"
 
 namespace flextip {

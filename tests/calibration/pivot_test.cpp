@@ -1,5 +1,5 @@
 // Pivot calibration against known tips, by Monte Carlo, and on a real tracked pointer.
-#include "calibration/pivot.h"
+#include "calibration/tip/pivot.h"
 
 #include <gmock/gmock.h>
 
@@ -7,8 +7,8 @@
 #include <fstream>
 #include <random>
 
-#include "calibration/tip_poses.h"
-#include "calibration/tip_statistics.h"
+#include "calibration/residual_statistics.h"
+#include "calibration/tip/tip_poses.h"
 #include "tests/calibration/pivot_scene.h"
 
 namespace flextip {

@@ -1,12 +1,12 @@
 // The uncertainty that is claimed beside the spread of calibrations from corners noised anew.
-#include "calibration/projection_uncertainty.h"
+#include "calibration/uncertainty/projection_uncertainty.h"
 
 #include <gtest/gtest.h>
 
-#include "calibration/camera_bundle.h"
-#include "calibration/next_view.h"
-#include "calibration/projection_derivative.h"
-#include "calibration/stereo_bundle.h"
+#include "calibration/camera/camera_bundle.h"
+#include "calibration/camera/projection_derivative.h"
+#include "calibration/stereo/stereo_bundle.h"
+#include "calibration/uncertainty/next_view.h"
 #include "core/derivative_check.h"
 #include "tests/calibration/stereo_scene.h"
 

@@ -3,11 +3,11 @@
 
 #include <random>
 
-#include "calibration/board.h"
-#include "calibration/camera_solution.h"
-#include "calibration/chessboard.h"
-#include "calibration/stereo_calibration.h"
-#include "calibration/stereo_solution.h"
+#include "calibration/boards/board.h"
+#include "calibration/boards/chessboard.h"
+#include "calibration/camera/camera_solution.h"
+#include "calibration/stereo/stereo_calibration.h"
+#include "calibration/stereo/stereo_solution.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
-#include "calibration/stereo_bundle.h"
-#include "calibration/stereo_calibration.h"
-#include "calibration/stereo_heldout.h"
-#include "calibration/stereo_rectification.h"
+#include "calibration/stereo/stereo_bundle.h"
+#include "calibration/stereo/stereo_calibration.h"
+#include "calibration/stereo/stereo_heldout.h"
+#include "calibration/stereo/stereo_rectification.h"
 #include "core/error.h"
 #include "tests/calibration/stereo_scene.h"
 #include "vision/reprojection.h"

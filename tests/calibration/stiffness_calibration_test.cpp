@@ -1,5 +1,5 @@
 // A stiffness that is known, on the plant, with noise: found again, and as well as it says.
-#include "calibration/stiffness_calibration.h"
+#include "calibration/shaft/stiffness_calibration.h"
 
 #include <gmock/gmock.h>
 

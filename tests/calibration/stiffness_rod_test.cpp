@@ -1,6 +1,6 @@
 // The rod with a taper: against the rod of kinematics/ where there is none, against the plant where
 // there is, and its derivatives against differences.
-#include "calibration/stiffness_rod.h"
+#include "calibration/shaft/stiffness_rod.h"
 
 #include <gtest/gtest.h>
 

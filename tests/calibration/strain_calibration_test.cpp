@@ -1,5 +1,5 @@
 // Gages that are known, on the plant, with noise: found again, and as well as they say.
-#include "calibration/strain_calibration.h"
+#include "calibration/shaft/strain_calibration.h"
 
 #include <gmock/gmock.h>
 

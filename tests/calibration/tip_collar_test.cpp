@@ -2,7 +2,7 @@
 // the pixels say by how much.
 #include <gtest/gtest.h>
 
-#include "calibration/tip_poses.h"
+#include "calibration/tip/tip_poses.h"
 #include "core/rotation.h"
 #include "tests/vision/scope_scene.h"
 

@@ -1,0 +1,24 @@
+// flextip calibrate: the parameters of sensors and instrument, one sub-command each.
+#include "apps/calibrate/calibrate.h"
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands.h"
+
+namespace flextip {
+
+void AddCalibrate(CLI::App& app, AppContext& context) {
+  auto* command = app.add_subcommand("calibrate", "Calibrate sensors and instrument");
+  command->require_subcommand(1);
+  command->footer("Example:\n  flextip calibrate camera --help\n");
+  AddCalibrateCamera(*command, context);
+  AddCalibrateStiffness(*command, context);
+  AddCalibrateBudget(*command, context);
+  AddCalibrateStereo(*command, context);
+  AddCalibrateStrain(*command, context);
+  AddCalibrateHandEye(*command, context);
+  AddCalibrateEm(*command, context);
+  AddCalibrateTip(*command, context);
+}
+
+}  // namespace flextip

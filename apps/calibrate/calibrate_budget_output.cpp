@@ -1,0 +1,188 @@
+#include "apps/calibrate/calibrate_budget_output.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "recording/text.h"
+#include "report/figure.h"
+#include "report/pages.h"
+
+namespace flextip {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kTotal = "total";
+
+// Root mean square over the frames.
+struct PartFigures {
+  std::string name;
+  double depth_mm = 0.0, across_mm = 0.0;
+  bool in_total = true;
+  double Length() const { return std::hypot(depth_mm, across_mm); }
+};
+
+std::vector<BudgetPart> WithTotal(const TipBudget& budget) {
+  std::vector<BudgetPart> parts = budget.parts;
+  parts.push_back({kTotal, budget.TotalCovariance(), true});
+  return parts;
+}
+
+// The largest first, the total last.
+std::vector<PartFigures> Figures(const std::vector<TimedBudget>& budgets) {
+  std::map<std::string, PartFigures> by_name;
+  std::map<std::string, int> frames;
+  for (const TimedBudget& b : budgets) {
+    for (const BudgetPart& part : WithTotal(b.value)) {
+      const DepthAndAcross sd = SplitByDepth(part.covariance_R, b.value.depth_R);
+      PartFigures& figures = by_name[part.name];
+      figures.name = part.name;
+      figures.in_total = part.in_total;
+      figures.depth_mm += 1e6 * sd.depth_m * sd.depth_m;
+      figures.across_mm += 1e6 * sd.across_m * sd.across_m;
+      ++frames[part.name];
+    }
+  }
+  std::vector<PartFigures> sorted;
+  for (auto& [name, figures] : by_name) {
+    figures.depth_mm = std::sqrt(figures.depth_mm / frames[name]);
+    figures.across_mm = std::sqrt(figures.across_mm / frames[name]);
+    sorted.push_back(figures);
+  }
+  std::sort(sorted.begin(), sorted.end(), [](const PartFigures& a, const PartFigures& b) {
+    if ((a.name == kTotal) != (b.name == kTotal)) return b.name == kTotal;
+    return a.Length() > b.Length();
+  });
+  return sorted;
+}
+
+std::string Table(const std::vector<TimedBudget>& budgets) {
+  std::vector<std::string> columns = {"p_RE_x [m]", "p_RE_y [m]", "p_RE_z [m]"};
+  std::vector<std::string> names;
+  for (const PartFigures& part : Figures(budgets)) names.push_back(part.name);
+  for (const std::string& name : names) {
+    std::string column = name;
+    std::replace(column.begin(), column.end(), ' ', '_');
+    columns.push_back(column + "_depth [m]");
+    columns.push_back(column + "_across [m]");
+  }
+  std::string text = fmt::format("#timestamp [ns],{}\n", fmt::join(columns, ","));
+  for (const TimedBudget& b : budgets) {
+    const Eigen::Vector3d& p = b.value.p_RE;
+    text +=
+        fmt::format("{},{},{},{}", b.t_ns, NumberText(p.x()), NumberText(p.y()), NumberText(p.z()));
+    const std::vector<BudgetPart> parts = WithTotal(b.value);
+    for (const std::string& name : names) {
+      const auto part = std::find_if(parts.begin(), parts.end(),
+                                     [&](const BudgetPart& one) { return one.name == name; });
+      if (part == parts.end()) {
+        text += ",,";
+        continue;
+      }
+      const DepthAndAcross sd = SplitByDepth(part->covariance_R, b.value.depth_R);
+      text += fmt::format(",{:.4g},{:.4g}", sd.depth_m, sd.across_m);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+Figure BarFigure(const std::vector<PartFigures>& parts) {
+  Figure figure;
+  figure.name = "budget";
+  figure.title = "What contributes to the tip's error";
+  figure.caption =
+      "Standard deviation, RMS over the frames: along the line of sight, and in the worst "
+      "direction across it. Stiffness is what would be left of the bending if it were corrected.";
+  figure.y_label = "standard deviation (mm)";
+  FigureTrace depth{.name = "depth", .kind = FigureTrace::Kind::kBars};
+  FigureTrace across{.name = "across", .kind = FigureTrace::Kind::kBars};
+  for (const PartFigures& part : parts) {
+    depth.labels.push_back(part.name);
+    across.labels.push_back(part.name);
+    depth.y.push_back(part.depth_mm);
+    across.y.push_back(part.across_mm);
+  }
+  figure.traces = {depth, across};
+  return figure;
+}
+
+Figure TimeFigure(const std::vector<TimedBudget>& budgets, const std::vector<PartFigures>& parts) {
+  Figure figure;
+  figure.name = "budget-over-time";
+  figure.title = "Along the line of sight, frame by frame";
+  figure.x_label = "time (s)";
+  figure.y_label = "standard deviation (mm)";
+  for (const PartFigures& shown : parts) {
+    FigureTrace line{.name = shown.name};
+    for (const TimedBudget& b : budgets) {
+      for (const BudgetPart& part : WithTotal(b.value)) {
+        if (part.name != shown.name) continue;
+        line.x.push_back(1e-9 * static_cast<double>(b.t_ns - budgets.front().t_ns));
+        line.y.push_back(1e3 * SplitByDepth(part.covariance_R, b.value.depth_R).depth_m);
+      }
+    }
+    figure.traces.push_back(line);
+  }
+  return figure;
+}
+
+// What to improve first: the largest part that is a calibration's.
+std::string Advice(const std::vector<PartFigures>& parts) {
+  static const std::map<std::string, std::string> kWhatToDo = {
+      {"pixels", "the pictures themselves: larger or more tags, nearer, sharper"},
+      {"lens", "the lens: calibrate the camera again with the views it asks for"},
+      {"hand-eye", "hand-eye: calibrate it again with the motion it asks for"},
+      {"tip offset", "the tip's place on the collar: calibrate the tip again, with wider turns"},
+      {"bending",
+       "the bending beyond the collar: nearer to the tip the collar sees it, or the "
+       "force has to be taken into account"}};
+  for (const PartFigures& part : parts) {
+    if (!part.in_total || part.name == kTotal) continue;
+    return "most is from " + kWhatToDo.at(part.name);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string BudgetText(const std::vector<TimedBudget>& budgets) {
+  std::string text;
+  for (const PartFigures& part : Figures(budgets)) {
+    text += fmt::format("{:<12} {:8.4f} mm along the line of sight, {:8.4f} mm across{}\n",
+                        part.name, part.depth_mm, part.across_mm,
+                        part.in_total ? "" : " (if the bending were corrected)");
+  }
+  return text;
+}
+
+void WriteBudgetResults(OutputFolder& output, const std::vector<TimedBudget>& budgets,
+                        const std::vector<NotKnown>& not_known, const json& calibrations) {
+  const std::vector<PartFigures> parts = Figures(budgets);
+  WriteTextFile(output.folder() / "budget.csv", Table(budgets));
+  WriteFigures(output.folder() / "figures.json", {BarFigure(parts), TimeFigure(budgets, parts)});
+  json list = json::array(), missing = json::array();
+  for (const PartFigures& part : parts) {
+    list.push_back({{"part", part.name},
+                    {"depth_mm", part.depth_mm},
+                    {"across_mm", part.across_mm},
+                    {"in_total", part.in_total}});
+  }
+  for (const NotKnown& one : not_known) {
+    missing.push_back({{"part", one.part}, {"reason", one.reason}});
+    output.Warn(fmt::format("{} is not in the budget: {}", one.part, one.reason));
+  }
+  output.WriteSummary({{"frames", budgets.size()},
+                       {"parts", list},
+                       {"not_known", missing},
+                       {"advice", Advice(parts)},
+                       {"calibrations", calibrations}});
+  WriteCalibrateReport(output.folder());
+  output.Commit();
+}
+
+}  // namespace flextip

@@ -1,0 +1,116 @@
+#include "calibration/uncertainty/error_budget.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/camera/projection_derivative.h"
+#include "core/rotation.h"
+#include "vision/collar_pose.h"
+
+namespace flextip {
+namespace {
+
+const CollarTag* TagOf(const TagCollar& collar, int id) {
+  const auto tag = std::find_if(collar.tags.begin(), collar.tags.end(),
+                                [id](const CollarTag& t) { return t.id == id; });
+  return tag == collar.tags.end() ? nullptr : &*tag;
+}
+
+// d(p_CE)/d(intrinsics) of the least-squares pose while the corners stay where they were seen.
+Eigen::MatrixXd PositionByLens(const CameraCalibration& camera, const TagCollar& collar,
+                               const std::vector<TagDetection>& tags, const Pose& T_CE) {
+  const auto n = static_cast<Eigen::Index>(4 + camera.distortion_coefficients.size());
+  Eigen::Matrix<double, 6, 6> by_pose = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::MatrixXd by_lens = Eigen::MatrixXd::Zero(6, n);
+  for (const TagDetection& seen : tags) {
+    const CollarTag* tag = TagOf(collar, seen.id);
+    if (!tag) continue;
+    for (const Eigen::Vector3d& x_E : CornersInE(*tag)) {
+      const Eigen::Vector3d turned = T_CE.R * x_E;
+      const ProjectionDerivative d = DifferentiateProjection(camera, turned + T_CE.p);
+      Eigen::Matrix<double, 2, 6> J;
+      J << -d.by_point * Skew(turned), d.by_point;
+      by_pose += J.transpose() * J;
+      by_lens += J.transpose() * d.by_intrinsics;
+    }
+  }
+  return -by_pose.ldlt().solve(by_lens).bottomRows<3>();
+}
+
+// From the tip back to the collar, along the shaft.
+double CollarDistance(const TagCollar& collar, const std::vector<TagDetection>& tags) {
+  double sum = 0.0;
+  int count = 0;
+  for (const TagDetection& seen : tags) {
+    const CollarTag* tag = TagOf(collar, seen.id);
+    if (!tag) continue;
+    sum -= tag->T_EG.p.x();
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+void AddBending(const TipBending& bending, const Pose& T_RE, double distance_m, TipBudget& budget) {
+  if (!(bending.stiffness_Nm2 > 0)) return;
+  budget.bend_R = BendBeyondCollar(bending.f_R, T_RE.R.col(0), distance_m, bending.stiffness_Nm2);
+  const Eigen::Matrix3d square = budget.bend_R * budget.bend_R.transpose();
+  budget.parts.push_back({"bending", square, true});
+  if (!(bending.stiffness_sd_Nm2 > 0)) return;
+  const double relative = bending.stiffness_sd_Nm2 / bending.stiffness_Nm2;
+  budget.parts.push_back({"stiffness", relative * relative * square, false});
+}
+
+}  // namespace
+
+Eigen::Matrix3d TipBudget::TotalCovariance() const {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const BudgetPart& part : parts) {
+    if (part.in_total) sum += part.covariance_R;
+  }
+  return sum;
+}
+
+DepthAndAcross SplitByDepth(const Eigen::Matrix3d& covariance_R, const Eigen::Vector3d& depth_R) {
+  const Eigen::Matrix<double, 3, 2> across = NormalBasis(depth_R);
+  const Eigen::Matrix2d plane = across.transpose() * covariance_R * across;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(plane, Eigen::EigenvaluesOnly);
+  return {.depth_m = std::sqrt(std::max(0.0, depth_R.dot(covariance_R * depth_R))),
+          .across_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]))};
+}
+
+std::optional<TipBudget> BudgetOfTip(const CameraCalibration& camera, const TagCollar& collar,
+                                     const std::vector<TagDetection>& tags,
+                                     const ChainCovariance& chain,
+                                     const std::optional<TipBending>& bending) {
+  const CollarPose pose = EstimateCollarPose(CameraModel(camera), collar, tags);
+  if (!pose.IsUsable()) return {};
+  const Pose T_RE = camera.T_RC * pose.T_CE;
+  const Eigen::Matrix3d& R_RC = camera.T_RC.R;
+  TipBudget budget;
+  budget.p_RE = T_RE.p;
+  budget.depth_R = (T_RE.p - camera.T_RC.p).normalized();
+  budget.parts.push_back(
+      {"pixels", R_RC * pose.covariance.bottomRightCorner<3, 3>() * R_RC.transpose(), true});
+  if (chain.lens.size() > 0) {
+    const Eigen::MatrixXd J = R_RC * PositionByLens(camera, collar, tags, pose.T_CE);
+    budget.parts.push_back({"lens", J * chain.lens * J.transpose(), true});
+  }
+  if (chain.hand_eye.size() > 0) {
+    Eigen::Matrix<double, 3, 6> J;
+    J << -Skew(T_RE.p - camera.T_RC.p), Eigen::Matrix3d::Identity();
+    budget.parts.push_back({"hand-eye", J * chain.hand_eye * J.transpose(), true});
+  }
+  if (chain.tip_offset.size() > 0) {
+    budget.parts.push_back({"tip offset", T_RE.R * chain.tip_offset * T_RE.R.transpose(), true});
+  }
+  if (bending) AddBending(*bending, T_RE, CollarDistance(collar, tags), budget);
+  return budget;
+}
+
+Eigen::Vector3d BendBeyondCollar(const Eigen::Vector3d& force_N, const Eigen::Vector3d& axis,
+                                 double distance_m, double stiffness_Nm2) {
+  const Eigen::Vector3d across = force_N - axis * axis.dot(force_N);
+  return across * (std::pow(distance_m, 3) / (3.0 * stiffness_Nm2));
+}
+
+}  // namespace flextip
