@@ -27,7 +27,7 @@ struct CalibrateCameraOptions {
   std::string distortion = "auto";
   int terms = 5;
   std::string warp = "auto";
-  double board_sd_m = 0.0;
+  std::optional<double> board_sd_m;
   fs::path corners;
   bool force = false;
   fs::path out;
@@ -169,8 +169,9 @@ void AddCalibrateCamera(CLI::App& calibrate, AppContext& context) {
       ->capture_default_str();
   command
       ->add_option("--board-error", options->board_sd_m,
-                   "How well each corner's place on the board is known; above 0 they are "
-                   "estimated too (a print or a sheet that is not true)")
+                   "How well each corner's place on the board is known: above 0 they are estimated "
+                   "too (a print or a sheet that is not true), 0: as described. Left out, "
+                   "held-out views decide")
       ->check(CLI::Range(0.0, 0.1))
       ->type_name("METRES");
   command

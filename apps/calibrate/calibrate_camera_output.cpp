@@ -11,6 +11,7 @@
 
 #include "apps/calibrate/calibrate_camera_pictures.h"
 #include "apps/calibrate/calibrate_uncertainty.h"
+#include "calibration/camera/camera_board_shape.h"
 #include "calibration/camera/camera_choice.h"
 #include "calibration/camera/camera_split.h"
 #include "core/error.h"
@@ -90,6 +91,18 @@ json WarpJson(const CameraCalibrationResult& r) {
   return warp;
 }
 
+json ShapeJson(const CameraCalibrationResult& r) {
+  const BoardShape& board = r.solution.shape;
+  json shape = {{"estimated", board.sd_m > 0}, {"reason", r.shape_reason}};
+  if (!(board.sd_m > 0)) return shape;
+  const auto [rms_m, longest_m] = SizeOf(board);
+  shape.update({{"rms_m", rms_m}, {"longest_m", longest_m}, {"prior_sd_m", board.sd_m}});
+  for (const auto& [id, offset] : board.offset_B) {
+    shape["offsets_m"].push_back({id, offset.x(), offset.y(), offset.z()});
+  }
+  return shape;
+}
+
 json Summary(const CameraCalibrationResult& r) {
   const CameraCalibration& c = r.solution.camera;
   json summary = {
@@ -106,10 +119,7 @@ json Summary(const CameraCalibrationResult& r) {
       {"lens_candidates", CandidatesJson(r)},
       {"board_warp", WarpJson(r)},
       {"views", ViewsJson(r)}};
-  if (!r.shape.empty()) {
-    const auto [rms_m, longest_m] = SizeOf(r.shape);
-    summary["board_shape"] = {{"rms_m", rms_m}, {"longest_m", longest_m}};
-  }
+  summary["board_shape"] = ShapeJson(r);
   if (const auto split = SplitViews(r.solution)) {
     summary["split_views_rms_px"] = split->rms_px;
     summary["split_views_max_px"] = split->max_px;
@@ -166,8 +176,8 @@ void WriteCameraResults(OutputFolder& output, const CornersFile& corners,
   const std::string folds = FoldsInPicture(result.solution.camera);
   if (!folds.empty())
     output.Warn(fmt::format("the lens holds only where boards were seen: {}", folds));
-  if (!result.shape.empty()) {
-    output.Warn("the covariance takes the estimated shape of the board as known: it is optimistic");
+  if (result.solution.shape.sd_m > 0 && !result.candidates.empty()) {
+    output.Warn("board: " + result.shape_reason);
   }
   DrawCameraPictures(folder, corners, result);
   json summary = Summary(result);

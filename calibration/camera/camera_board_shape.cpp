@@ -4,80 +4,48 @@
 #include <cmath>
 
 #include "calibration/camera/camera_bundle.h"
-#include "vision/camera_model.h"
+#include "core/median.h"
 
 namespace flextip {
 namespace {
 
-constexpr int kRounds = 60;
-constexpr double kStill_m = 1e-7;
+constexpr int kRounds = 40;
+constexpr double kSettled = 0.02;  // of noise and scatter, from one round to the next
 
-struct Normal {
-  Eigen::Matrix3d JtJ = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d Jtr = Eigen::Vector3d::Zero();
-};
-
-// Of every corner's offset, over all views that use it; residuals are as seen less predicted.
-std::map<int, Normal> NormalEquations(const CameraSolution& s) {
-  const CameraModel camera(s.camera);
-  std::map<int, Normal> normals;
+// What the noise is on the board, over the views: where the scatter starts.
+double NoiseOnBoard(const CameraSolution& s) {
+  std::vector<double> m_per_px;
   for (const SolvedView& view : s.views) {
-    for (std::size_t i = 0; i < view.px.size(); ++i) {
-      Eigen::Matrix<double, 2, 3> J_C;
-      const auto px = camera.Project(view.T_CB * s.warp.Bent(view.x_B[i]), &J_C);
-      if (!px || !view.IsUsed(i)) continue;
-      const Eigen::Matrix<double, 2, 3> J = J_C * view.T_CB.R;
-      Normal& n = normals[view.ids[i]];
-      n.JtJ += J.transpose() * J;
-      n.Jtr += J.transpose() * (view.px[i] - *px);
-    }
+    m_per_px.push_back(view.T_CB.p.norm() / s.camera.fu_px);
   }
-  return normals;
+  return s.noise_px * Median(m_per_px);
 }
 
 }  // namespace
 
-void MoveCorners(const BoardShape& shape, SolvedView& view) {
-  for (std::size_t i = 0; i < view.ids.size(); ++i) {
-    const auto at = shape.find(view.ids[i]);
-    if (at != shape.end()) view.x_B[i] += at->second;
-  }
-}
-
 std::pair<double, double> SizeOf(const BoardShape& shape) {
   double squares = 0.0, longest = 0.0;
-  for (const auto& [id, offset] : shape) {
+  for (const auto& [id, offset] : shape.offset_B) {
     squares += offset.squaredNorm();
     longest = std::max(longest, offset.norm());
   }
-  return {shape.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(shape.size())), longest};
+  const auto count = static_cast<double>(std::max<std::size_t>(1, shape.offset_B.size()));
+  return {std::sqrt(squares / count), longest};
 }
 
-std::optional<BoardShape> AdjustBoardShape(CameraSolution& solution, double sd_m) {
+bool EstimateBoardShape(CameraSolution& solution, std::optional<double> sd_m) {
   CameraSolution s = solution;
-  const BundleOptions options{.estimate_warp = solution.warp_estimated, .max_iterations = 10};
-  BoardShape shape;
+  s.shape.sd_m = sd_m.value_or(NoiseOnBoard(s));
+  const BundleOptions options{.estimate_warp = s.warp_estimated, .estimate_shape = true};
   for (int round = 0; round < kRounds; ++round) {
-    const double information = s.noise_px * s.noise_px / (sd_m * sd_m);  // in px^2 / m^2
-    BoardShape step;
-    double longest = 0.0;
-    for (const auto& [id, n] : NormalEquations(s)) {
-      const Eigen::Matrix3d A = n.JtJ + information * Eigen::Matrix3d::Identity();
-      Eigen::Vector3d& offset = shape.try_emplace(id, Eigen::Vector3d::Zero()).first->second;
-      const Eigen::Vector3d by = A.ldlt().solve(n.Jtr - information * offset);
-      offset += by;
-      step[id] = by;
-      longest = std::max(longest, by.norm());
-    }
-    for (SolvedView& view : s.views) MoveCorners(step, view);
-    if (!AdjustBundle(s, options)) return {};
-    if (longest < kStill_m) break;
+    const double noise_px = s.noise_px, before_m = s.shape.sd_m;
+    if (!AdjustBundle(s, options)) return false;
+    if (!sd_m) s.shape.sd_m = s.shape.scatter_m;
+    const auto near = [](double a, double b) { return std::abs(a - b) <= kSettled * b; };
+    if (near(s.noise_px, noise_px) && near(s.shape.sd_m, before_m)) break;
   }
-  const double before = 2.0 * s.CornersUsed() - s.Size(),
-               after = std::max(1.0, before - 3.0 * static_cast<double>(shape.size()));
-  s.noise_px *= std::sqrt(std::max(1.0, before) / after);
   solution = std::move(s);
-  return shape;
+  return true;
 }
 
 }  // namespace flextip

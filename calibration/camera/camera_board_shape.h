@@ -1,25 +1,19 @@
 // Where a board's corners truly are: prints are scaled and sheets are bent.
 #pragma once
 
-#include <map>
 #include <optional>
+#include <utility>
 
 #include "calibration/camera/camera_solution.h"
 
 namespace flextip {
 
-/// By corner id, how far the true corner is from where the board's description has it, in B (m).
-using BoardShape = std::map<int, Eigen::Vector3d>;
-
-/// Adjusts lens, poses and warp with every corner's place on the board in turn, each place held to
-/// the description by a standard deviation of `sd_m` (which also keeps the board's size), until
-/// neither moves (Strobl and Hirzinger 2008 free the corners in the same way). The views' `x_B` are
-/// moved with it. `solution.noise_px` then counts the corners' coordinates among the parameters;
-/// `solution.normal_matrix` holds the shape as known. Empty where an adjustment fails.
-std::optional<BoardShape> AdjustBoardShape(CameraSolution& solution, double sd_m);
-
-/// Moves the corners of a view that has not been moved yet.
-void MoveCorners(const BoardShape& shape, SolvedView& view);
+/// Adjusts lens, warp and poses together with every corner's place on the board (Strobl and
+/// Hirzinger, ICCV Workshops 2008, free the corners in the same way), each coordinate held to the
+/// description by `sd_m`, which also keeps the board's size. Without `sd_m` it is the scatter that
+/// the views themselves show (empirical Bayes, by expectation and maximisation). Starts from
+/// `solution.shape`. False where an adjustment fails; `solution` is then as it was.
+bool EstimateBoardShape(CameraSolution& solution, std::optional<double> sd_m = {});
 
 /// The root of the mean squared length of the offsets (m), and the longest.
 std::pair<double, double> SizeOf(const BoardShape& shape);

@@ -11,6 +11,9 @@ struct BundleOptions {
   bool fix_intrinsics = false;  ///< only poses (and the warp) move
   std::vector<int> fixed = {};  ///< places in fu, fv, cu, cv, coefficients... that are held
   bool estimate_warp = false;
+  /// The corners' places on the board move too, by `solution.shape.sd_m` (above 0) and
+  /// `solution.noise_px`, as it is at the start, against each other. Otherwise the shape is held.
+  bool estimate_shape = false;
   /// Corners count by Cauchy's loss of this scale; 0: least squares.
   double cauchy_px = 0.0;
   int max_iterations = 60;

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "calibration/camera/camera_board_shape.h"
 #include "calibration/camera/camera_bundle.h"
 #include "calibration/camera/camera_start.h"
 #include "core/error.h"
@@ -22,6 +23,7 @@ struct Setup {
   int width_px, height_px;
   BoardWarp warp;
   CameraCalibrationOptions options;
+  BoardShape shape = {};  // once it is known to differ from the description
 };
 
 // One lens fitted, with the views that it rejects.
@@ -110,6 +112,7 @@ std::optional<LensFit> FitLens(const Setup& setup, const LensModel& lens, bool w
   if (!start) return {};
   LensFit fit{WithLens(*start, lens), {}};
   fit.solution.warp = setup.warp;
+  fit.solution.shape = setup.shape;
   OutlierRule rule = setup.options.outliers;
   rule.estimate_warp = warp;
   if (!RejectOutliers(fit.solution, rule, fit.rejected)) return {};
@@ -194,6 +197,46 @@ bool DecideWarp(const Setup& setup, const CameraSolution& warped, std::string& r
   return helps;
 }
 
+// The lens that was asked for or the best of all, with its outliers, over a board that is bent or
+// not.
+std::optional<LensFit> ChooseAndFit(const Setup& setup, Starts& starts,
+                                    CameraCalibrationResult& result) {
+  std::optional<LensModel> lens = setup.options.lens;
+  if (!lens) {
+    result.candidates = TryLenses(setup, starts);
+    if (const auto chosen = ChooseLens(result.candidates)) lens = result.candidates[*chosen].model;
+  }
+  auto fit = lens ? FitLens(setup, *lens, MayWarp(setup), starts) : std::nullopt;
+  if (fit && MayWarp(setup) && !DecideWarp(setup, fit->solution, result.warp_reason)) {
+    fit = FitLens(setup, *lens, false, starts);
+  }
+  return fit;
+}
+
+// The board's own shape where it is to be estimated: asked for, or seen by views left out.
+std::optional<BoardShape> DecideShape(const Setup& setup, const CameraSolution& described,
+                                      std::string& reason) {
+  const auto& sd_m = setup.options.board_sd_m;
+  reason = "as asked for";
+  if (sd_m && *sd_m <= 0) return {};
+  CameraSolution shaped = described;
+  const bool found = EstimateBoardShape(shaped, sd_m);
+  if (sd_m) {
+    if (!found) reason = "the views do not determine the board's shape";
+    return found ? std::optional(shaped.shape) : std::nullopt;
+  }
+  reason = "held-out views are predicted no better with corners in places of their own";
+  if (!found) return {};
+  const auto with = LeaveViewsOut(shaped, setup.options.folds);
+  const auto without = LeaveViewsOut(described, setup.options.folds);
+  if (!with || !without || !ShapeHelps(*without, *with)) return {};
+  reason = fmt::format(
+      "held-out views are predicted better with corners in places of their own: {:.3f} instead of "
+      "{:.3f} px",
+      with->rms_px, without->rms_px);
+  return shaped.shape;
+}
+
 // What is wrong with the result as a whole; empty where it can be used.
 std::string NotDetermined(const CameraCalibrationResult& r) {
   const CameraCalibration& c = r.solution.camera;
@@ -257,7 +300,7 @@ CameraCalibrationResult CalibrateCamera(const std::vector<BoardView>& views, int
                                         const CameraCalibrationOptions& options) {
   CheckOptions(width_px, height_px, options);
   CameraCalibrationResult result;
-  const Setup setup{UsableViews(views, result), width_px, height_px, FlatBoard(board), options};
+  Setup setup{UsableViews(views, result), width_px, height_px, FlatBoard(board), options};
   CountViews(result);
   const int needed = options.outliers.min_views;
   if (result.views_used < needed) {
@@ -266,29 +309,20 @@ CameraCalibrationResult CalibrateCamera(const std::vector<BoardView>& views, int
         fmt::format("{} usable views, at least {} are needed", result.views_used, needed));
   }
   Starts starts(setup);
-  std::optional<LensModel> lens = options.lens;
-  if (!lens) {
-    result.candidates = TryLenses(setup, starts);
-    if (const auto chosen = ChooseLens(result.candidates)) lens = result.candidates[*chosen].model;
-  }
-  auto fit = lens ? FitLens(setup, *lens, MayWarp(setup), starts) : std::nullopt;
-  if (fit && MayWarp(setup) && !DecideWarp(setup, fit->solution, result.warp_reason)) {
-    fit = FitLens(setup, *lens, false, starts);
+  auto fit = ChooseAndFit(setup, starts, result);
+  if (fit) {
+    if (const auto shape = DecideShape(setup, fit->solution, result.shape_reason)) {
+      setup.shape = *shape;  // lens and outliers anew: both may have stood in for it
+      fit = ChooseAndFit(setup, starts, result);
+      if (fit && !EstimateBoardShape(fit->solution, shape->sd_m)) fit.reset();
+    }
   }
   if (!fit) {
     return Failed(result, CameraCalibrationStatus::kNotDetermined,
                   "the views do not determine the camera (are they all alike?)");
   }
-  const auto heldout = LeaveViewsOut(fit->solution, options.folds, options.board_sd_m);
+  const auto heldout = LeaveViewsOut(fit->solution, options.folds);
   result.heldout_rms_px = heldout ? heldout->rms_px : 0.0;
-  if (options.board_sd_m > 0) {
-    const auto shape = AdjustBoardShape(fit->solution, options.board_sd_m);
-    if (!shape) {
-      return Failed(result, CameraCalibrationStatus::kNotDetermined,
-                    "the views do not determine the board's shape");
-    }
-    result.shape = *shape;
-  }
   MarkViews(*fit, result);
   result.solution = std::move(fit->solution);
   result.covariance = result.solution.Covariance();

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "calibration/boards/board.h"
-#include "calibration/camera/camera_board_shape.h"
 #include "calibration/camera/camera_choice.h"
 #include "calibration/camera/camera_outliers.h"
 #include "calibration/camera/camera_solution.h"
@@ -18,8 +17,9 @@ struct CameraCalibrationOptions {
   std::optional<LensModel> lens;  ///< empty: all are tried, and held-out views choose
   /// Whether the board may be bent; empty: held-out views decide.
   std::optional<bool> warp;
-  /// How well each corner's place on the board is known; above 0 the places are estimated too.
-  double board_sd_m = 0.0;
+  /// How well each coordinate of a corner's place on the board is known; above 0 the places are
+  /// estimated too. Empty: held-out views decide whether they are, and the views how well.
+  std::optional<double> board_sd_m;
   int folds = 6;
   OutlierRule outliers;
 };
@@ -39,8 +39,8 @@ struct CameraCalibrationResult {
   Eigen::MatrixXd covariance;             ///< solution.Covariance()
   double heldout_rms_px = 0.0;            ///< of the views used, each left out once
   std::vector<LensCandidate> candidates;  ///< where the lens was chosen
-  BoardShape shape;                       ///< with `board_sd_m`: the corners' offsets
   std::string warp_reason;                ///< why the board was, or was not, taken for flat
+  std::string shape_reason;               ///< why its corners were, or were not, as described
   std::vector<CalibrationView> views;     ///< all that were given
   int views_used = 0, views_rejected = 0;
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/camera/camera_board_shape.h"
 #include "calibration/camera/camera_bundle.h"
 #include "vision/camera_model.h"
 
@@ -34,6 +33,7 @@ std::optional<double> SquaresOfView(const CameraSolution& lens, const SolvedView
   CameraSolution alone;
   alone.camera = lens.camera;
   alone.warp = lens.warp;
+  alone.shape = lens.shape;
   alone.views = {view};
   if (!AdjustBundle(alone, {.fix_intrinsics = true, .tolerance = kTolerance})) return {};
   return std::pow(alone.RmsPx(), 2) * alone.CornersUsed();
@@ -74,8 +74,7 @@ const std::vector<LensModel>& AllLensModels() {
   return models;
 }
 
-std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int folds,
-                                          double board_sd_m) {
+std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int folds) {
   HeldOutError error;
   error.squared_px2.assign(solution.views.size(), 0.0);
   double squares = 0.0, count = 0.0;
@@ -90,18 +89,12 @@ std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int fo
         rest.views.push_back(solution.views[v]);
       }
     }
-    if (!AdjustBundle(rest, {.estimate_warp = solution.warp_estimated, .tolerance = kTolerance}))
-      return {};
-    BoardShape shape;
-    if (board_sd_m > 0) {
-      const auto found = AdjustBoardShape(rest, board_sd_m);
-      if (!found) return {};
-      shape = *found;
-    }
+    const BundleOptions options{.estimate_warp = solution.warp_estimated,
+                                .estimate_shape = solution.shape.sd_m > 0,
+                                .tolerance = kTolerance};
+    if (!AdjustBundle(rest, options)) return {};
     for (const std::size_t v : left_out) {
-      SolvedView view = solution.views[v];
-      MoveCorners(shape, view);
-      const auto sum = SquaresOfView(rest, view);
+      const auto sum = SquaresOfView(rest, solution.views[v]);
       if (!sum) return {};
       const double free = std::max(1.0, solution.views[v].CountUsed() - 3.0);  // 6 / 2 for the pose
       error.squared_px2[v] = *sum / free;
@@ -142,6 +135,10 @@ std::optional<std::size_t> ChooseLens(std::vector<LensCandidate>& candidates) {
 
 bool WarpHelps(const HeldOutError& flat, const HeldOutError& warped) {
   return DifferenceInErrors(flat, warped) > 1.0;
+}
+
+bool ShapeHelps(const HeldOutError& as_described, const HeldOutError& shaped) {
+  return DifferenceInErrors(as_described, shaped) > 2.0;
 }
 
 std::string FoldsInPicture(const CameraCalibration& camera) {

@@ -28,11 +28,9 @@ struct HeldOutError {
   std::vector<double> squared_px2;  ///< of each view: the mean squared distance, likewise
 };
 
-/// Only corners that `solution` uses count. With `board_sd_m` above 0 the board's shape
-/// (camera_board_shape.h) is found anew in each fold, `solution` being one over the board as
-/// described. Empty where a fold cannot be solved.
-std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int folds,
-                                          double board_sd_m = 0.0);
+/// Only corners that `solution` uses count. Where its board has a shape of its own (`shape.sd_m`
+/// above 0), that is found anew in each fold. Empty where a fold cannot be solved.
+std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int folds);
 
 /// One model's part in the choice.
 struct LensCandidate {
@@ -52,6 +50,9 @@ std::optional<std::size_t> ChooseLens(std::vector<LensCandidate>& candidates);
 
 /// Whether the board's warp makes the held-out error smaller by more than its standard error.
 bool WarpHelps(const HeldOutError& flat, const HeldOutError& warped);
+
+/// Whether the board's own shape does, by more than two: it is a parameter for every corner.
+bool ShapeHelps(const HeldOutError& as_described, const HeldOutError& shaped);
 
 /// Why `camera` cannot be used over its whole picture: beyond where the boards were seen its
 /// distortion turns back on itself. Empty where it can.

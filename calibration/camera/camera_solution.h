@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,20 @@ struct BoardWarp {
   /// Where a corner of the flat board truly is, in B.
   Eigen::Vector3d Bent(const Eigen::Vector3d& x_B) const {
     return x_B + Eigen::Vector3d(0, 0, bulge_m.dot(Shape(x_B)));
+  }
+};
+
+/// Where a board's corners truly are: prints are scaled and sheets have dents. Beside the warp.
+struct BoardShape {
+  std::map<int, Eigen::Vector3d> offset_B;  ///< by corner id, from where the warped board has it, m
+  double sd_m = 0.0;  ///< prior standard deviation of each coordinate; 0: the board as described
+  /// The root of the mean squared coordinate that the offsets and their own uncertainty speak for:
+  /// the `sd_m` that the views themselves would have chosen is the one that equals it.
+  double scatter_m = 0.0;
+
+  Eigen::Vector3d Of(int id) const {
+    const auto at = offset_B.find(id);
+    return at == offset_B.end() ? Eigen::Vector3d::Zero() : at->second;
   }
 };
 
@@ -58,13 +73,16 @@ struct CameraSolution {
   CameraCalibration camera;
   BoardWarp warp;
   bool warp_estimated = false;
+  BoardShape shape;
   std::vector<SolvedView> views;  ///< those that are used
 
   /// Standard deviation of a corner's coordinate, from the residuals of the corners used:
-  /// sqrt(sum of squares / (coordinates - parameters)).
+  /// sqrt(sum of squares / (coordinates - parameters)); an estimated shape counts as as many
+  /// parameters as the views, not its prior, determined of it.
   double noise_px = 0.0;
   /// Sum over the corners used of J^T J, J being the derivative of the pixel by the coordinates
-  /// above (that is, for a noise of 1 px). Symmetric.
+  /// above (that is, for a noise of 1 px). Symmetric. Where the shape was estimated it is
+  /// eliminated: the inverse is the covariance with the shape unknown, not fixed.
   Eigen::MatrixXd normal_matrix;
 
   int IntrinsicsCount() const {
@@ -75,6 +93,10 @@ struct CameraSolution {
     return IntrinsicsCount() + WarpCount() + 6 * static_cast<int>(view);
   }
   int Size() const { return ViewStart(views.size()); }
+  /// Where a corner of the board is, in B.
+  Eigen::Vector3d CornerOf(const SolvedView& view, std::size_t i) const {
+    return warp.Bent(view.x_B[i]) + shape.Of(view.ids[i]);
+  }
   int CornersUsed() const;
   int Outliers() const;
   /// Over all corners used, or over those of all `views`, as OpenCV gives it: per distance.

@@ -20,7 +20,10 @@ std::optional<CameraSolution> Half(const CameraSolution& solution, std::size_t f
   for (std::size_t v = first; v < solution.views.size(); v += 2) {
     half.views.push_back(solution.views[v]);
   }
-  if (!AdjustBundle(half, {.estimate_warp = solution.warp_estimated})) return {};
+  if (!AdjustBundle(half, {.estimate_warp = solution.warp_estimated,
+                           .estimate_shape = solution.shape.sd_m > 0})) {
+    return {};
+  }
   return half;
 }
 

@@ -3,32 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/camera/camera_board_shape.h"
 #include "calibration/camera/camera_start.h"
 #include "tests/calibration/camera_synthetic.h"
 
 namespace flextip {
 namespace {
-
-// The solution that `views` were made with; `poses` are where a search without noise ends.
-CameraSolution AtTruth(const Synthetic& truth, const std::vector<BoardView>& views,
-                       const std::vector<SolvedView>& poses) {
-  const auto [low, high] = BoardExtent(ParseBoardSpec("chessboard:9x6:0.025"));
-  CameraSolution s;
-  s.camera = truth.camera;
-  s.warp = {truth.bulge_m, 0.5 * (low + high), 0.5 * (high - low)};
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    SolvedView view;
-    view.index = v;
-    view.ids = views[v].sighting.ids;
-    view.x_B = views[v].sighting.x_B;
-    view.px = views[v].sighting.px;
-    view.reason.resize(view.px.size());
-    if (!poses.empty()) view.T_CB = poses[v].T_CB;
-    s.views.push_back(view);
-  }
-  return s;
-}
 
 // Two pixels to each corner's side, as a pose step moves it, by finite differences of the whole.
 TEST(CameraBundle, NormalMatrixIsThatOfFiniteDifferences) {
@@ -130,33 +109,6 @@ TEST(CameraBundle, VanishingPointsGiveTheFocalLength) {
   const auto focal = FocalOfVanishingPoints(views, {319.5, 239.5});
   ASSERT_TRUE(focal);
   EXPECT_NEAR(*focal, 520, 5);
-}
-
-// Corners off by a tenth of a millimetre: found from views with noise, and the lens with them.
-TEST(CameraBundle, TheBoardsOwnShapeIsFound) {
-  constexpr double kOff_m = 1e-4;
-  const Synthetic truth{.noise_px = 0.02, .views = 12};
-  auto views = Seen(truth, 21);
-  const auto start = StartSolution(AtTruth(truth, views, {}).views, 640, 480, false);
-  ASSERT_TRUE(start);
-  CameraSolution s = AtTruth(truth, views, start->views);
-  std::mt19937 random(5);
-  std::normal_distribution<double> off(0, kOff_m);
-  BoardShape known;
-  for (int id = 0; id < 54; ++id) known[id] = {off(random), off(random), off(random)};
-  for (SolvedView& view : s.views) {  // described wrongly by that much
-    for (std::size_t i = 0; i < view.x_B.size(); ++i) view.x_B[i] -= known[view.ids[i]];
-  }
-  ASSERT_TRUE(AdjustBundle(s));
-  const double wrong_px = s.noise_px;
-  const auto shape = AdjustBoardShape(s, kOff_m);
-  ASSERT_TRUE(shape);
-  EXPECT_GT(wrong_px, 5 * truth.noise_px);
-  EXPECT_NEAR(s.noise_px, truth.noise_px, 0.05 * truth.noise_px);
-  double squares = 0.0;
-  for (const auto& [id, offset] : *shape) squares += (offset - known[id]).squaredNorm() / 54;
-  EXPECT_LT(std::sqrt(squares), 0.35 * std::sqrt(3.0) * kOff_m);
-  EXPECT_LT(std::abs(s.camera.fu_px - truth.camera.fu_px), 1.0);
 }
 
 }  // namespace

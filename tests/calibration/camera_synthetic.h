@@ -60,6 +60,26 @@ inline std::vector<BoardView> Seen(const Synthetic& s, unsigned seed) {
   return views;
 }
 
+// The solution that `views` were made with; `poses` are where a search without noise ends.
+inline CameraSolution AtTruth(const Synthetic& truth, const std::vector<BoardView>& views,
+                              const std::vector<SolvedView>& poses) {
+  const auto [low, high] = BoardExtent(ParseBoardSpec("chessboard:9x6:0.025"));
+  CameraSolution s;
+  s.camera = truth.camera;
+  s.warp = {truth.bulge_m, 0.5 * (low + high), 0.5 * (high - low)};
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    SolvedView view;
+    view.index = v;
+    view.ids = views[v].sighting.ids;
+    view.x_B = views[v].sighting.x_B;
+    view.px = views[v].sighting.px;
+    view.reason.resize(view.px.size());
+    if (!poses.empty()) view.T_CB = poses[v].T_CB;
+    s.views.push_back(view);
+  }
+  return s;
+}
+
 inline Eigen::VectorXd Intrinsics(const CameraCalibration& c) {
   Eigen::VectorXd v(4 + static_cast<int>(c.distortion_coefficients.size()));
   v << c.fu_px, c.fv_px, c.cu_px, c.cv_px,
