@@ -9,9 +9,6 @@
 namespace flextip {
 namespace {
 
-constexpr int kRounds = 40;
-constexpr double kSettled = 0.02;  // of noise and scatter, from one round to the next
-
 // What the noise is on the board, over the views: where the scatter starts.
 double NoiseOnBoard(const CameraSolution& s) {
   std::vector<double> m_per_px;
@@ -34,18 +31,9 @@ std::pair<double, double> SizeOf(const BoardShape& shape) {
 }
 
 bool EstimateBoardShape(CameraSolution& solution, std::optional<double> sd_m) {
-  CameraSolution s = solution;
-  s.shape.sd_m = sd_m.value_or(NoiseOnBoard(s));
-  const BundleOptions options{.estimate_warp = s.warp_estimated, .estimate_shape = true};
-  for (int round = 0; round < kRounds; ++round) {
-    const double noise_px = s.noise_px, before_m = s.shape.sd_m;
-    if (!AdjustBundle(s, options)) return false;
-    if (!sd_m) s.shape.sd_m = s.shape.scatter_m;
-    const auto near = [](double a, double b) { return std::abs(a - b) <= kSettled * b; };
-    if (near(s.noise_px, noise_px) && near(s.shape.sd_m, before_m)) break;
-  }
-  solution = std::move(s);
-  return true;
+  const BundleOptions options{.estimate_warp = solution.warp_estimated, .estimate_shape = true};
+  return SettleBoardShape(solution, sd_m, NoiseOnBoard(solution),
+                          [&](CameraSolution& s) { return AdjustBundle(s, options); });
 }
 
 }  // namespace flextip

@@ -12,50 +12,36 @@
 
 #include "calibration/camera/camera_corner_error.h"
 #include "calibration/camera/camera_normal.h"
+#include "calibration/camera/projection_derivative.h"
+#include "calibration/camera/shape_elimination.h"
 #include "core/rotation.h"
 
 namespace flextip {
 namespace {
 
-std::vector<double> IntrinsicsOf(const CameraCalibration& c) {
-  std::vector<double> v = {c.fu_px, c.fv_px, c.cu_px, c.cv_px};
-  v.insert(v.end(), c.distortion_coefficients.begin(), c.distortion_coefficients.end());
-  return v;
-}
-
-void SetIntrinsics(const std::vector<double>& v, CameraCalibration& c) {
-  c.fu_px = v[0];
-  c.fv_px = v[1];
-  c.cu_px = v[2];
-  c.cv_px = v[3];
-  c.distortion_coefficients.assign(v.begin() + 4, v.end());
-}
-
 using PoseStep = Eigen::Matrix<double, kPoseSize, 1>;
 
 // What Ceres moves.
 struct Parameters {
-  std::vector<double> intrinsics;
+  Eigen::VectorXd intrinsics;
   Eigen::Vector2d warp_m;
   std::vector<PoseStep> steps;
   std::map<int, Eigen::Vector3d> places;  // of the corners used, where the shape is estimated
 
   explicit Parameters(const CameraSolution& s)
-      : intrinsics(IntrinsicsOf(s.camera)),
+      : intrinsics(IntrinsicsVector(s.camera)),
         warp_m(s.warp.bulge_m),
         steps(s.views.size(), PoseStep::Zero()) {}
 
   bool Finite() const {
-    const auto finite = [](double v) { return std::isfinite(v); };
-    return std::all_of(intrinsics.begin(), intrinsics.end(), finite) && intrinsics[0] > 0 &&
-           intrinsics[1] > 0 && warp_m.allFinite() &&
+    return intrinsics.allFinite() && intrinsics[0] > 0 && intrinsics[1] > 0 && warp_m.allFinite() &&
            std::all_of(steps.begin(), steps.end(), [](const auto& p) { return p.allFinite(); }) &&
            std::all_of(places.begin(), places.end(),
                        [](const auto& p) { return p.second.allFinite(); });
   }
 
   void MoveInto(CameraSolution& s) const {
-    SetIntrinsics(intrinsics, s.camera);
+    s.camera = WithIntrinsics(s.camera, intrinsics);
     s.warp.bulge_m = warp_m;
     for (std::size_t v = 0; v < s.views.size(); ++v) {
       Pose& T_CB = s.views[v].T_CB;
@@ -84,7 +70,7 @@ void AddCorners(const CameraSolution& s, const BundleOptions& options, Parameter
       problem.AddResidualBlock(error.release(), loss, blocks);
     }
   }
-  const double weight = options.estimate_shape ? ShapeWeight(s) : 0.0;
+  const double weight = options.estimate_shape ? ShapeWeight(s.noise_px, s.shape) : 0.0;
   for (auto& [id, place] : at.places) {
     problem.AddResidualBlock(
         new ceres::NormalPrior(weight * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()),

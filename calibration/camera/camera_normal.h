@@ -7,9 +7,6 @@
 
 namespace flextip {
 
-/// What a metre off the described place costs, in px: noise over the shape's deviation.
-double ShapeWeight(const CameraSolution& solution);
-
 /// Fills in residuals of all corners, `normal_matrix`, `noise_px` and, with `estimate_shape`,
 /// `shape.scatter_m`. False where a corner cannot be seen or a number is not finite.
 bool EvaluateSolution(const BundleOptions& options, CameraSolution& solution);

@@ -51,16 +51,20 @@ double CameraSolution::RmsPx(bool with_outliers) const {
 }
 
 Eigen::MatrixXd CameraSolution::Covariance() const {
+  return noise_px * noise_px * InverseOf(normal_matrix);
+}
+
+Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& normal_matrix) {
   const Eigen::VectorXd diagonal = normal_matrix.diagonal();
   if (diagonal.size() == 0 || diagonal.minCoeff() <= 0) return {};
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd unit = scale.asDiagonal() * normal_matrix * scale.asDiagonal();
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(unit);
   if (ldlt.info() != Eigen::Success || ldlt.vectorD().minCoeff() < kSmallestPivot) return {};
-  const Eigen::MatrixXd inverse = ldlt.solve(Eigen::MatrixXd::Identity(unit.rows(), unit.cols()));
-  const Eigen::MatrixXd covariance =
-      noise_px * noise_px * (scale.asDiagonal() * inverse * scale.asDiagonal());
-  return 0.5 * (covariance + covariance.transpose());
+  const Eigen::MatrixXd inverse = scale.asDiagonal() *
+                                  ldlt.solve(Eigen::MatrixXd::Identity(unit.rows(), unit.cols())) *
+                                  scale.asDiagonal();
+  return 0.5 * (inverse + inverse.transpose());
 }
 
 }  // namespace flextip

@@ -93,18 +93,18 @@ struct CameraSolution {
     return IntrinsicsCount() + WarpCount() + 6 * static_cast<int>(view);
   }
   int Size() const { return ViewStart(views.size()); }
-  /// Where a corner of the board is, in B.
-  Eigen::Vector3d CornerOf(const SolvedView& view, std::size_t i) const {
-    return warp.Bent(view.x_B[i]) + shape.Of(view.ids[i]);
-  }
   int CornersUsed() const;
   int Outliers() const;
   /// Over all corners used, or over those of all `views`, as OpenCV gives it: per distance.
   double RmsPx(bool with_outliers = false) const;
 
-  /// noise_px^2 times the inverse of `normal_matrix` (scaled to unit diagonal first). Empty where
-  /// the views do not determine all of it.
+  /// noise_px^2 times the inverse of `normal_matrix`. Empty where the views do not determine all of
+  /// it.
   Eigen::MatrixXd Covariance() const;
 };
+
+/// The inverse of a normal matrix, scaled to unit diagonal first; symmetric. Empty where it is
+/// singular.
+Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& normal_matrix);
 
 }  // namespace flextip

@@ -1,19 +1,22 @@
 #include "calibration/stereo/stereo_bundle.h"
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 
 #include "calibration/camera/projection_derivative.h"
+#include "calibration/camera/shape_elimination.h"
 #include "core/rotation.h"
 
 namespace flextip {
 namespace {
 
-constexpr int kPose = 6, kWarp = 2;
+constexpr int kPose = 6, kWarp = 2, kPlace = 3;
 using Vector6d = Eigen::Matrix<double, kPose, 1>;
 
 // d exp(w) = [LeftJacobian(w) dw]x exp(w).
@@ -29,21 +32,26 @@ Pose Moved(const Pose& T, const Vector6d& step) {
   return {ExpRotation(step.head<3>()) * T.R, T.p + step.tail<3>()};
 }
 
-// One corner in one eye. Parameters: the eye's intrinsics, the warp, the step of T_C0B and, for
-// eye 1, the step of T_C0C1.
+// One corner in one eye. Parameters: the eye's intrinsics, the warp, the step of T_C0B, for eye 1
+// the step of T_C0C1 and, with `by_place`, the corner's offset; without, it is the solution's.
 class CornerError : public ceres::CostFunction {
  public:
-  CornerError(const StereoSolution& s, const StereoView& view, int eye, std::size_t corner)
+  CornerError(const StereoSolution& s, const StereoView& view, int eye, std::size_t corner,
+              bool by_place)
       : camera_(s.cameras[eye]),
         warp_(s.warp),
         T_C0B_(view.T_C0B),
         x_B_(view.eyes[eye].x_B[corner]),
+        offset_B_(s.shape.Of(view.eyes[eye].ids[corner])),
+        by_place_(by_place),
         px_(view.eyes[eye].px[corner]) {
     set_num_residuals(2);
     *mutable_parameter_block_sizes() = {s.IntrinsicsCount(eye), kWarp, kPose};
-    if (eye == 0) return;
-    T_C0C1_ = s.T_C0C1;
-    mutable_parameter_block_sizes()->push_back(kPose);
+    if (eye == 1) {
+      T_C0C1_ = s.T_C0C1;
+      mutable_parameter_block_sizes()->push_back(kPose);
+    }
+    if (by_place) mutable_parameter_block_sizes()->push_back(kPlace);
   }
 
   bool Evaluate(double const* const* at, double* error, double** jacobians) const override {
@@ -56,7 +64,10 @@ class CornerError : public ceres::CostFunction {
     if (T_C0C1_) pair_step = Eigen::Map<const Vector6d>(at[3]);
     const Pose T_C0B = Moved(T_C0B_, view_step);
     const Pose T_CC0 = T_C0C1_ ? Moved(*T_C0C1_, pair_step).Inverse() : Pose();
-    const Eigen::Vector3d x_C0 = T_C0B * warp.Bent(x_B_), x_C = T_CC0 * x_C0;
+    const int place = T_C0C1_ ? 4 : 3;
+    const Eigen::Vector3d offset_B =
+        by_place_ ? Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(at[place])) : offset_B_;
+    const Eigen::Vector3d x_C0 = T_C0B * (warp.Bent(x_B_) + offset_B), x_C = T_CC0 * x_C0;
     if (!(x_C.z() > 0)) return false;
     const ProjectionDerivative d = DifferentiateProjection(camera, x_C);
     error[0] = d.px.x() - px_.x();
@@ -75,6 +86,7 @@ class CornerError : public ceres::CostFunction {
     Eigen::Matrix<double, 2, kPose> J;
     J << -by_C0 * Skew(x_C0 - T_C0B.p) * LeftJacobian(view_step.head<3>()), by_C0;
     put(2, J);
+    if (by_place_) put(place, by_C0 * T_C0B.R);
     if (!T_C0C1_) return true;
     const Eigen::Vector3d y = x_C0 - T_C0C1_->p - pair_step.tail<3>();
     J << by_C0 * Skew(y) * LeftJacobian(pair_step.head<3>()), -by_C0;
@@ -86,7 +98,8 @@ class CornerError : public ceres::CostFunction {
   CameraCalibration camera_;
   BoardWarp warp_;
   Pose T_C0B_;
-  Eigen::Vector3d x_B_;
+  Eigen::Vector3d x_B_, offset_B_;
+  bool by_place_;
   Eigen::Vector2d px_;
   std::optional<Pose> T_C0C1_;
 };
@@ -97,6 +110,7 @@ struct Parameters {
   Eigen::Vector2d warp_m;
   Vector6d pair = Vector6d::Zero();
   std::vector<Vector6d> views;
+  std::map<int, Eigen::Vector3d> places;  // of the corners used, where the shape is estimated
 
   explicit Parameters(const StereoSolution& s)
       : intrinsics{IntrinsicsVector(s.cameras[0]), IntrinsicsVector(s.cameras[1])},
@@ -113,7 +127,9 @@ struct Parameters {
     return intrinsics[0].allFinite() && intrinsics[1].allFinite() && warp_m.allFinite() &&
            pair.allFinite() &&
            std::min(intrinsics[0].head<2>().minCoeff(), intrinsics[1].head<2>().minCoeff()) > 0 &&
-           std::all_of(views.begin(), views.end(), [](const auto& v) { return v.allFinite(); });
+           std::all_of(views.begin(), views.end(), [](const auto& v) { return v.allFinite(); }) &&
+           std::all_of(places.begin(), places.end(),
+                       [](const auto& p) { return p.second.allFinite(); });
   }
 
   void MoveInto(StereoSolution& s) const {
@@ -121,6 +137,7 @@ struct Parameters {
       s.cameras[eye] = WithIntrinsics(s.cameras[eye], intrinsics[eye]);
     }
     s.warp.bulge_m = warp_m;
+    if (!places.empty()) s.shape.offset_B = places;
     const auto move = [](Pose& T, const Vector6d& step) {
       T = Moved(T, step);
       T.R = Eigen::Quaterniond(T.R).normalized().toRotationMatrix();
@@ -133,18 +150,36 @@ struct Parameters {
   }
 };
 
-bool Minimise(const StereoSolution& s, const StereoBundleOptions& options, Parameters& at) {
-  ceres::Problem problem;
+void AddCorners(const StereoSolution& s, const StereoBundleOptions& options, Parameters& at,
+                ceres::Problem& problem) {
+  const bool by_place = options.estimate_shape;
   ceres::LossFunction* loss =
       options.cauchy_px > 0 ? new ceres::CauchyLoss(options.cauchy_px) : nullptr;
   for (std::size_t v = 0; v < s.views.size(); ++v) {
     for (int eye = 0; eye < 2; ++eye) {
-      for (std::size_t i = 0; i < s.views[v].eyes[eye].px.size(); ++i) {
-        if (!s.views[v].eyes[eye].IsUsed(i)) continue;
-        problem.AddResidualBlock(new CornerError(s, s.views[v], eye, i), loss, at.Blocks(v, eye));
+      const SolvedView& seen = s.views[v].eyes[eye];
+      for (std::size_t i = 0; i < seen.px.size(); ++i) {
+        if (!seen.IsUsed(i)) continue;
+        std::vector<double*> blocks = at.Blocks(v, eye);
+        if (by_place) {
+          const int id = seen.ids[i];
+          blocks.push_back(at.places.try_emplace(id, s.shape.Of(id)).first->second.data());
+        }
+        problem.AddResidualBlock(new CornerError(s, s.views[v], eye, i, by_place), loss, blocks);
       }
     }
   }
+  const double weight = by_place ? ShapeWeight(s.noise_px, s.shape) : 0.0;
+  for (auto& [id, place] : at.places) {
+    problem.AddResidualBlock(
+        new ceres::NormalPrior(weight * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()),
+        nullptr, place.data());
+  }
+}
+
+bool Minimise(const StereoSolution& s, const StereoBundleOptions& options, Parameters& at) {
+  ceres::Problem problem;
+  AddCorners(s, options, at, problem);
   if (problem.NumResidualBlocks() == 0) return false;
   ceres::Solver::Options solver;
   solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
@@ -156,9 +191,13 @@ bool Minimise(const StereoSolution& s, const StereoBundleOptions& options, Param
       problem.SetParameterBlockConstant(common);
     }
   }
+  // Eliminated first: the many small blocks that do not touch each other.
+  for (auto& [id, place] : at.places) {
+    solver.linear_solver_ordering->AddElementToGroup(place.data(), 0);
+  }
   for (Vector6d& view : at.views) {
     if (!problem.HasParameterBlock(view.data())) continue;
-    solver.linear_solver_ordering->AddElementToGroup(view.data(), 0);
+    solver.linear_solver_ordering->AddElementToGroup(view.data(), at.places.empty() ? 0 : 1);
   }
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.max_num_iterations = options.max_iterations;
@@ -182,36 +221,62 @@ void AddNormal(const std::vector<Eigen::MatrixXd>& J, const std::vector<int>& st
   }
 }
 
-// Residuals, normal matrix and noise where the solution is.
-bool Evaluate(const StereoBundleOptions& options, StereoSolution& s) {
+struct Sums {
+  ShapeElimination shape;
+  double squares_px2 = 0.0;
+};
+
+bool AddEye(std::size_t v, int eye, bool by_place, StereoSolution& s, Sums& sums) {
   using Rows = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>;
   Parameters at(s);
-  s.normal_matrix.setZero(s.Size(), s.Size());
-  double squares_px2 = 0.0;
-  for (std::size_t v = 0; v < s.views.size(); ++v) {
-    for (int eye = 0; eye < 2; ++eye) {
-      SolvedView& seen = s.views[v].eyes[eye];
-      seen.residual_px.assign(seen.px.size(), Eigen::Vector2d::Zero());
-      std::vector<Rows> J = {Rows(2, s.IntrinsicsCount(eye)), Rows(2, kWarp), Rows(2, kPose),
-                             Rows(2, kPose)};
-      double* jacobians[] = {J[0].data(), J[1].data(), J[2].data(), J[3].data()};
-      const std::vector<double*> blocks = at.Blocks(v, eye);
-      for (std::size_t i = 0; i < seen.px.size(); ++i) {
-        const CornerError error(s, s.views[v], eye, i);
-        if (!error.Evaluate(blocks.data(), seen.residual_px[i].data(), jacobians)) return false;
-        if (!seen.IsUsed(i)) continue;
-        squares_px2 += seen.residual_px[i].squaredNorm();
-        std::vector<Eigen::MatrixXd> used = {J[0], J[1].leftCols(s.WarpCount()), J[2]};
-        if (eye == 1) used.emplace_back(J[3]);
-        AddNormal(
-            used,
-            {eye == 0 ? 0 : s.IntrinsicsCount(0), s.PairStart() + 6, s.ViewStart(v), s.PairStart()},
-            s.normal_matrix);
-      }
+  SolvedView& seen = s.views[v].eyes[eye];
+  seen.residual_px.assign(seen.px.size(), Eigen::Vector2d::Zero());
+  std::vector<Rows> J = {Rows(2, s.IntrinsicsCount(eye)), Rows(2, kWarp), Rows(2, kPose)};
+  std::vector<int> starts = {eye == 0 ? 0 : s.IntrinsicsCount(0), s.PairStart() + 6,
+                             s.ViewStart(v)};
+  if (eye == 1) {
+    J.emplace_back(2, kPose);
+    starts.push_back(s.PairStart());
+  }
+  Eigen::Matrix<double, 2, kPlace, Eigen::RowMajor> J_place;
+  std::vector<double*> jacobians;
+  for (Rows& block : J) jacobians.push_back(block.data());
+  jacobians.push_back(J_place.data());
+  for (std::size_t i = 0; i < seen.px.size(); ++i) {
+    Eigen::Vector3d place = s.shape.Of(seen.ids[i]);
+    std::vector<double*> blocks = at.Blocks(v, eye);
+    blocks.push_back(place.data());
+    const CornerError error(s, s.views[v], eye, i, by_place);
+    if (!error.Evaluate(blocks.data(), seen.residual_px[i].data(), jacobians.data())) return false;
+    if (!seen.IsUsed(i)) continue;
+    sums.squares_px2 += seen.residual_px[i].squaredNorm();
+    std::vector<Eigen::MatrixXd> used(J.begin(), J.end());
+    used[1] = J[1].leftCols(s.WarpCount());
+    AddNormal(used, starts, s.normal_matrix);
+    if (!by_place) continue;
+    sums.shape.Add(seen.ids[i], J_place);
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      sums.shape.Add(seen.ids[i], J_place, used[k], starts[k], s.Size());
     }
   }
-  const int fixed = options.fix_cameras ? s.ViewStart(0) : 0;
-  s.noise_px = std::sqrt(squares_px2 / std::max(1, 2 * s.CornersUsed() - (s.Size() - fixed)));
+  return true;
+}
+
+// Residuals, normal matrix and noise where the solution is.
+bool Evaluate(const StereoBundleOptions& options, StereoSolution& s) {
+  Sums sums;
+  s.normal_matrix.setZero(s.Size(), s.Size());
+  for (std::size_t v = 0; v < s.views.size(); ++v) {
+    for (int eye = 0; eye < 2; ++eye) {
+      if (!AddEye(v, eye, options.estimate_shape, s, sums)) return false;
+    }
+  }
+  double parameters = s.Size() - (options.fix_cameras ? s.ViewStart(0) : 0);
+  if (options.estimate_shape) {
+    sums.shape.Eliminate(ShapeWeight(s.noise_px, s.shape), s.normal_matrix);
+    parameters += sums.shape.Scatter(InverseOf(s.normal_matrix), s.noise_px, s.shape);
+  }
+  s.noise_px = std::sqrt(sums.squares_px2 / std::max(1.0, 2.0 * s.CornersUsed() - parameters));
   return std::isfinite(s.noise_px) && s.normal_matrix.allFinite();
 }
 

@@ -8,7 +8,8 @@ namespace flextip {
 struct StereoBundleOptions {
   bool fix_cameras = false;  ///< only the board's poses move: lenses, T_C0C1 and warp stay
   bool estimate_warp = false;
-  double cauchy_px = 0.0;  ///< corners count by Cauchy's loss of this scale; 0: least squares
+  bool estimate_shape = false;  ///< as in BundleOptions
+  double cauchy_px = 0.0;       ///< corners count by Cauchy's loss of this scale; 0: least squares
   int max_iterations = 60;
 };
 

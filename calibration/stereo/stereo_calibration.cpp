@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "calibration/camera/camera_board_shape.h"
+#include "calibration/camera/camera_choice.h"
 #include "calibration/stereo/stereo_bundle.h"
 #include "calibration/stereo/stereo_heldout.h"
 #include "core/median.h"
@@ -146,18 +148,59 @@ bool MarkCorners(double ratio, StereoSolution& s) {
   return changed;
 }
 
-bool Solve(const StereoOptions& options, StereoResult& result) {
-  StereoSolution& s = result.solution;
-  const bool warp = s.warp_estimated;
-  if (!AdjustStereo(s, {.estimate_warp = warp, .cauchy_px = 1.0})) return false;
-  while (TakeApart(result.alone, options.pair_ratio, s, result)) {
-    if (!AdjustStereo(s, {.estimate_warp = warp, .cauchy_px = 1.0})) return false;
-  }
+// Corners whose outliers are found anew, over a board that is held as it is.
+bool AdjustWithOutliers(const StereoOptions& options, StereoSolution& s) {
+  const StereoBundleOptions bundle{.estimate_warp = s.warp_estimated};
   for (int round = 0; round < kRounds; ++round) {
-    if (!AdjustStereo(s, {.estimate_warp = warp})) return false;
+    if (!AdjustStereo(s, bundle)) return false;
     if (!MarkCorners(options.camera.outliers.corner_ratio, s)) return true;
   }
-  return AdjustStereo(s, {.estimate_warp = warp});
+  return AdjustStereo(s, bundle);
+}
+
+bool Solve(const StereoOptions& options, StereoResult& result) {
+  StereoSolution& s = result.solution;
+  const StereoBundleOptions robust{.estimate_warp = s.warp_estimated, .cauchy_px = 1.0};
+  if (!AdjustStereo(s, robust)) return false;
+  while (TakeApart(result.alone, options.pair_ratio, s, result)) {
+    if (!AdjustStereo(s, robust)) return false;
+  }
+  return AdjustWithOutliers(options, s);
+}
+
+bool EstimateShape(std::optional<double> sd_m, double start_sd_m, StereoSolution& s) {
+  const StereoBundleOptions bundle{.estimate_warp = s.warp_estimated, .estimate_shape = true};
+  return SettleBoardShape(s, sd_m, start_sd_m,
+                          [&](StereoSolution& moved) { return AdjustStereo(moved, bundle); });
+}
+
+// The board's own shape where it was asked for, or where pairs left out see it.
+void AddShape(const StereoOptions& options, int folds, StereoResult& result) {
+  const auto& sd_m = options.camera.board_sd_m;
+  result.shape_reason = "as asked for";
+  if (sd_m && *sd_m <= 0) return;
+  const double of_eyes_m =
+      std::max(result.alone[0].solution.shape.sd_m, result.alone[1].solution.shape.sd_m);
+  result.shape_reason =
+      "pairs left out are predicted no better with corners in places of their own";
+  if (!sd_m && of_eyes_m <= 0) return;  // neither eye saw any
+  StereoSolution shaped = result.solution;
+  shaped.shape = {};
+  if (!EstimateShape(sd_m, of_eyes_m, shaped) || !AdjustWithOutliers(options, shaped) ||
+      !EstimateShape(shaped.shape.sd_m, 0.0, shaped)) {
+    return;
+  }
+  const auto with = LeavePairsOut(shaped, folds), without = LeavePairsOut(result.solution, folds);
+  const bool helps =
+      with && without &&
+      ShapeHelps({.squared_px2 = without->squared_px2}, {.squared_px2 = with->squared_px2});
+  if (!sd_m && !helps) return;
+  result.shape_reason = sd_m ? "as asked for"
+                             : fmt::format(
+                                   "pairs left out are predicted better with corners in places of "
+                                   "their own: {:.3f} instead of {:.3f} px",
+                                   with->rms_px, without->rms_px);
+  result.solution = std::move(shaped);
 }
 
 void Describe(const std::vector<StereoPair>& pairs, StereoResult& result) {
@@ -199,6 +242,9 @@ StereoResult CalibrateStereo(const std::vector<StereoPair>& pairs,
     return Failed(result, StereoStatus::kNotDetermined,
                   "the two cameras' views do not fit together");
   }
+  const auto both = std::count_if(result.solution.views.begin(), result.solution.views.end(),
+                                  [](const StereoView& view) { return view.InBoth(); });
+  AddShape(options, std::min(options.folds, static_cast<int>(both)), result);
   for (const StereoView& view : result.solution.views) {
     ++(view.InBoth() ? result.pairs_used : result.single_views_used);
   }

@@ -34,10 +34,11 @@ enum class StereoStatus { kOk, kEyeFailed, kTooFewPairs, kNotDetermined };
 
 /// Errors of pairs that were left out: lenses and T_C0C1 are from the other pairs.
 struct StereoHeldOut {
-  double rms_px = 0.0;           ///< per corner, the board's pose from the pair's own corners
-  double epipolar_rms_px = 0.0;  ///< difference of rows after rectification
-  double length_rms_m = 0.0;     ///< of distances between neighbouring corners, triangulated
-  double length_mean_m = 0.0;    ///< the mean of that error: a scale that is wrong
+  double rms_px = 0.0;              ///< per corner, the board's pose from the pair's own corners
+  double epipolar_rms_px = 0.0;     ///< difference of rows after rectification
+  double length_rms_m = 0.0;        ///< of distances between neighbouring corners, triangulated
+  double length_mean_m = 0.0;       ///< the mean of that error: a scale that is wrong
+  std::vector<double> squared_px2;  ///< of each pair, fold by fold: the mean squared distance
 };
 
 struct StereoResult {
@@ -49,6 +50,7 @@ struct StereoResult {
   Baseline baseline;
   double epipolar_rms_px = 0.0;  ///< of the pairs that were calibrated from
   std::optional<StereoHeldOut> heldout;
+  std::string shape_reason;             ///< why the board's corners were, or were not, as described
   std::vector<StereoPairResult> pairs;  ///< all that were given
   int pairs_used = 0, single_views_used = 0;
 

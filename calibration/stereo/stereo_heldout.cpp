@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "calibration/stereo/stereo_bundle.h"
 #include "calibration/stereo/stereo_rectification.h"
@@ -16,7 +18,8 @@ struct Sums {
 };
 
 struct Seen {
-  Eigen::Vector3d x_B;
+  double row_m;                       // as described
+  Eigen::Vector3d x_B;                // as it is
   Eigen::Vector2d left_px, right_px;  // rectified
 };
 
@@ -32,7 +35,9 @@ std::map<int, Seen> SeenByBoth(const StereoSolution& s, const StereoView& view,
     if (other == right.end() || !view.eyes[0].IsUsed(i)) continue;
     const auto a = RectifiedPixel(rectification, 0, s.cameras[0], view.eyes[0].px[i]);
     const auto b = RectifiedPixel(rectification, 1, s.cameras[1], view.eyes[1].px[other->second]);
-    if (a && b) seen[other->first] = {view.eyes[0].x_B[i], *a, *b};
+    if (a && b) {
+      seen[other->first] = {view.eyes[0].x_B[i].y(), s.CornerOf(view.eyes[0], i), *a, *b};
+    }
   }
   return seen;
 }
@@ -52,7 +57,7 @@ void Add(const StereoSolution& s, const StereoView& view, const Rectification& r
   for (const auto& [id, corner] : seen) {
     sums.rows_px2 += std::pow(corner.left_px.y() - corner.right_px.y(), 2);
     ++sums.corners;
-    if (before && id == id_before + 1 && before->x_B.y() == corner.x_B.y()) {
+    if (before && id == id_before + 1 && before->row_m == corner.row_m) {
       const double error = (Triangulate(Q, corner) - Triangulate(Q, *before)).norm() -
                            (corner.x_B - before->x_B).norm();
       sums.lengths_m2 += error * error;
@@ -69,6 +74,7 @@ void Add(const StereoSolution& s, const StereoView& view, const Rectification& r
 std::optional<StereoHeldOut> LeavePairsOut(const StereoSolution& solution, int folds) {
   Sums sums;
   double squares_px2 = 0.0, count = 0.0;
+  std::vector<double> of_pairs_px2;
   for (int fold = 0; fold < folds; ++fold) {
     StereoSolution rest = solution;
     rest.views.clear();
@@ -78,14 +84,20 @@ std::optional<StereoHeldOut> LeavePairsOut(const StereoSolution& solution, int f
       const bool out = view.InBoth() && both++ % folds == fold;
       (out ? left_out : rest.views).push_back(view);
     }
-    if (!AdjustStereo(rest, {.estimate_warp = solution.warp_estimated})) return {};
+    if (!AdjustStereo(rest, {.estimate_warp = solution.warp_estimated,
+                             .estimate_shape = solution.shape.sd_m > 0})) {
+      return {};
+    }
     const Rectification rectification = Rectify(rest.cameras, rest.T_C0C1);
     for (const StereoView& view : left_out) {
       StereoSolution alone = rest;
       alone.views = {view};
       if (!AdjustStereo(alone, {.fix_cameras = true})) return {};
-      squares_px2 += std::pow(alone.RmsPx(), 2) * alone.CornersUsed();
-      count += std::max(1.0, alone.CornersUsed() - 3.0);  // 6 / 2 for the pose
+      const double squares = std::pow(alone.RmsPx(), 2) * alone.CornersUsed(),
+                   free = std::max(1.0, alone.CornersUsed() - 3.0);  // 6 / 2 for the pose
+      of_pairs_px2.push_back(squares / free);
+      squares_px2 += squares;
+      count += free;
       Add(alone, view, rectification, sums);
     }
   }
@@ -93,7 +105,8 @@ std::optional<StereoHeldOut> LeavePairsOut(const StereoSolution& solution, int f
   return StereoHeldOut{.rms_px = std::sqrt(squares_px2 / count),
                        .epipolar_rms_px = std::sqrt(sums.rows_px2 / sums.corners),
                        .length_rms_m = std::sqrt(sums.lengths_m2 / sums.lengths),
-                       .length_mean_m = sums.lengths_m / sums.lengths};
+                       .length_mean_m = sums.lengths_m / sums.lengths,
+                       .squared_px2 = std::move(of_pairs_px2)};
 }
 
 double EpipolarRmsPx(const StereoSolution& solution) {

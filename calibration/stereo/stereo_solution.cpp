@@ -26,10 +26,7 @@ double StereoSolution::RmsPx(int eye) const {
 }
 
 Eigen::MatrixXd StereoSolution::Covariance() const {
-  CameraSolution same;  // inverts, and knows when it cannot
-  same.noise_px = noise_px;
-  same.normal_matrix = normal_matrix;
-  return same.Covariance();
+  return noise_px * noise_px * InverseOf(normal_matrix);
 }
 
 Baseline BaselineOf(const Pose& T_C0C1, const Eigen::Matrix3d& covariance_p) {

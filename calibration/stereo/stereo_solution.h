@@ -29,10 +29,11 @@ struct StereoSolution {
   Pose T_C0C1;
   BoardWarp warp;
   bool warp_estimated = false;
+  BoardShape shape;
   std::vector<StereoView> views;
 
   double noise_px = 0.0;          ///< as in CameraSolution, of both cameras together
-  Eigen::MatrixXd normal_matrix;  ///< for a noise of 1 px
+  Eigen::MatrixXd normal_matrix;  ///< likewise: for a noise of 1 px, an estimated shape eliminated
 
   int IntrinsicsCount(int eye) const {
     return 4 + static_cast<int>(cameras[eye].distortion_coefficients.size());
@@ -46,6 +47,10 @@ struct StereoSolution {
   int CornersUsed() const;
   /// Root of the mean squared distance of the corners used, of both eyes (-1) or of one.
   double RmsPx(int eye = -1) const;
+  /// Where a corner of the board is, in B.
+  Eigen::Vector3d CornerOf(const SolvedView& eye, std::size_t i) const {
+    return warp.Bent(eye.x_B[i]) + shape.Of(eye.ids[i]);
+  }
   Pose T_CB(const StereoView& view, int eye) const {
     return eye == 0 ? view.T_C0B : T_C0C1.Inverse() * view.T_C0B;
   }
