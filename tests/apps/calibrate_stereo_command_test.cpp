@@ -140,8 +140,8 @@ TEST_F(CalibrateStereoCommand, RefusesWhatItCannotPair) {
 }
 
 TEST_F(CalibrateStereoCommand, WhereTheBoardIsNotSeenItSaysWhy) {
-  left_.resize(4);
-  right_.resize(4);
+  left_.resize(1);
+  right_.resize(1);
   const auto run = Run({"--board", "chessboard:9x8:0.006"});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, testing::HasSubstr("left camera"));
