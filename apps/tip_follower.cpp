@@ -1,7 +1,5 @@
 #include "apps/tip_follower.h"
 
-#include <algorithm>
-
 #include "core/error.h"
 #include "recording/resample.h"
 
@@ -16,14 +14,8 @@ std::vector<CameraCalibration> Cameras(const Recording& recording) {
 
 // What of the shaft sticks out of the collar, which is rigid as far as its tags reach.
 FreeEnd BeyondCollar(const Recording& recording) {
-  double reach_m = -HUGE_VAL;  // along E's x axis
-  for (const CollarTag& tag : recording.tags0->tags) {
-    for (const Eigen::Vector3d& corner_E : CornersInE(tag)) {
-      reach_m = std::max(reach_m, corner_E.x());
-    }
-  }
   const Instrument& shaft = recording.instrument;
-  return {std::max(0.0, -reach_m), shaft.bending_stiffness_Nm2,
+  return {FreeLength(*recording.tags0), shaft.bending_stiffness_Nm2,
           shaft.mass_per_length_kg_m * recording.gravity_m_s2};
 }
 

@@ -1,10 +1,21 @@
 #include "kinematics/tip_bending.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/rotation.h"
 
 namespace flextip {
+
+double FreeLength(const TagCollar& collar) {
+  double reach_m = -HUGE_VAL;  // along E's x axis
+  for (const CollarTag& tag : collar.tags) {
+    const double half_m = 0.5 * tag.size_m * tag.T_EG.R.row(0).head<2>().lpNorm<1>();
+    reach_m = std::max(reach_m, tag.T_EG.p.x() + half_m);
+  }
+  return std::max(0.0, -reach_m);
+}
 
 Pose BendFreeEnd(const FreeEnd& end, const Eigen::Vector3d& f_tip_N, const Pose& T_RE) {
   assert(end.length_m >= 0 && end.bending_stiffness_Nm2 > 0);

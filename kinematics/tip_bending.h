@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include "core/pose.h"
+#include "core/tag_collar.h"
 
 namespace flextip {
 
@@ -13,6 +14,10 @@ struct FreeEnd {
   double bending_stiffness_Nm2 = 1.0;
   Eigen::Vector3d weight_N_m = Eigen::Vector3d::Zero();  ///< per length, in R
 };
+
+/// How far the tip sticks out beyond a collar's tags, along E's x axis (m); the collar is rigid as
+/// far as they reach.
+double FreeLength(const TagCollar& collar);
 
 /// The tip's pose where the collar, taken for rigid up to the tip, has it at `T_RE`: the cantilever
 /// to first order in its slope (Euler and Bernoulli; 0.4 % of the deflection at 0.1 rad). `f_tip_N`

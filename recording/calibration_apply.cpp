@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/rotation.h"
+#include "recording/camera_yaml.h"
 
 namespace flextip {
 namespace {
@@ -35,12 +36,16 @@ class Application {
   const std::vector<double>& Numbers(const std::string& name, std::size_t count) const;
   double Positive(const std::string& name) const;
   bool Finds(const std::string& name) const {
-    return found_.poses.contains(name) || found_.numbers.contains(name);
+    return found_.poses.contains(name) || found_.numbers.contains(name) ||
+           found_.texts.contains(name);
   }
 
   void ApplyPose(const std::string& name, const Pose& pose);
   void ApplyNumbers(const std::string& name);
-  void PlaceCamera(const std::string& name, const Pose& T_RC);
+  void ApplyText(const std::string& name);
+  void PlaceCamera(const std::string& camera, const Pose& T_RC);
+  void PlaceCameras(const std::string& name, const Pose& T_RC);
+  void PlaceSecondCamera(const Pose& T_C0C1);
   void SetIntrinsics(const std::string& name);
   void SetDistortion(const std::string& name);
   void ShiftFrames(const std::string& name);
@@ -119,16 +124,32 @@ void MoveTips(const Pose& T_NO, VisionStream& vision) {
   }
 }
 
-void Application::PlaceCamera(const std::string& name, const Pose& T_RC) {
-  CameraStream& camera = Camera(name);
-  const Pose T_NO = T_RC * camera.calibration.T_RC.Inverse();
-  camera.calibration.T_RC = T_RC;
-  if (name == "cam0.T_RC" && recording_.cam1 && !Finds("cam1.T_RC")) {
-    recording_.cam1->calibration.T_RC = T_NO * recording_.cam1->calibration.T_RC;
-  }
-  if (!SeenBy(name)) return;
+void Application::PlaceCamera(const std::string& camera, const Pose& T_RC) {
+  Pose& T_RC_now = Camera(camera + ".").calibration.T_RC;
+  const Pose T_NO = T_RC * T_RC_now.Inverse();
+  T_RC_now = T_RC;
+  if (!SeenBy(camera + ".")) return;
   MoveTips(T_NO, *recording_.vision0);
   StateRegistrationNoise(found_, *recording_.vision0);
+}
+
+/// Both are fixed to each other: cam1 goes with cam0 where it is not placed itself.
+void Application::PlaceCameras(const std::string& name, const Pose& T_RC) {
+  const Pose T_C0R = Camera(name).calibration.T_RC.Inverse();
+  PlaceCamera(name.substr(0, 4), T_RC);
+  if (name == "cam0.T_RC" && recording_.cam1 && !Finds("cam1.T_RC")) {
+    PlaceCamera("cam1", T_RC * T_C0R * recording_.cam1->calibration.T_RC);
+  }
+}
+
+/// Comes after cam0.T_RC, by the order of their names.
+void Application::PlaceSecondCamera(const Pose& T_C0C1) {
+  const char* name = "cam1.T_C0C1";
+  Camera(name);  // refused where the recording has none
+  if (!recording_.cam0) Refuse(name, "the recording has no cam0");
+  if (Finds("cam1.T_RC")) Refuse(name, "the file has cam1.T_RC too, expected one of them");
+  PlaceCamera("cam1", recording_.cam0->calibration.T_RC * T_C0C1);
+  WarnOfTips(name);
 }
 
 void Application::SetIntrinsics(const std::string& name) {
@@ -145,10 +166,14 @@ void Application::SetDistortion(const std::string& name) {
   CameraCalibration& camera = Camera(name).calibration;
   const auto& terms = found_.numbers.at(name);
   const std::size_t n = terms.size();
-  if (n != 4 && n != 5 && n != 8 && n != 12) {
+  const auto model = found_.texts.find(name.substr(0, 5) + "distortion_model");
+  if (model != found_.texts.end()) {
+    const NamedDistortion named = DistortionOf(model->second, n);
+    if (!named.distortion) Refuse(name.substr(0, 5) + named.wrong_key, named.expected);
+    camera.distortion = *named.distortion;
+  } else if (n != 4 && n != 5 && n != 8 && n != 12) {
     Refuse(name, fmt::format("found {} numbers, expected 4, 5, 8 or 12", n));
-  }
-  if (n != 4) {
+  } else if (n != 4) {
     camera.distortion = Distortion::kOpenCv;
   } else if (camera.distortion == Distortion::kOpenCv) {
     camera.distortion = Distortion::kRadialTangential;  // four terms may also be a fisheye's: then
@@ -259,12 +284,14 @@ void Application::SetStiffness(const std::string& name) {
 }
 
 void Application::ApplyPose(const std::string& name, const Pose& pose) {
-  if (name.starts_with("board.")) {
+  if (name.starts_with("board.") || name == "tags0.T_WE") {
     applied_.not_used.push_back(name);
     return;
   }
   if (name == "cam0.T_RC" || name == "cam1.T_RC") {
-    PlaceCamera(name, pose);
+    PlaceCameras(name, pose);
+  } else if (name == "cam1.T_C0C1") {
+    PlaceSecondCamera(pose);
   } else if (name == "em0.T_RF") {
     RegisterEm(pose);
   } else if (name.ends_with(".T_WC")) {
@@ -279,7 +306,7 @@ void Application::ApplyPose(const std::string& name, const Pose& pose) {
 void Application::ApplyNumbers(const std::string& name) {
   const std::string eye =
       name.starts_with("cam0.") || name.starts_with("cam1.") ? name.substr(5) : "";
-  if (name == "pivot.p_R") {
+  if (name == "pivot.p_R" || name == "tip.p_SE") {
     applied_.not_used.push_back(name);
     return;
   }
@@ -312,9 +339,19 @@ void Application::ApplyNumbers(const std::string& name) {
   applied_.used.push_back(name);
 }
 
+/// Its coefficients have taken it already.
+void Application::ApplyText(const std::string& name) {
+  const bool is_model = name == "cam0.distortion_model" || name == "cam1.distortion_model";
+  if (!is_model) Refuse(name, "unknown name");
+  if (!Finds(name.substr(0, 5) + "distortion_coefficients"))
+    Refuse(name, "there are no distortion_coefficients with it");
+  applied_.used.push_back(name);
+}
+
 AppliedCalibration Application::Run() {
   for (const auto& [name, pose] : found_.poses) ApplyPose(name, pose);
   for (const auto& entry : found_.numbers) ApplyNumbers(entry.first);
+  for (const auto& entry : found_.texts) ApplyText(entry.first);
   return std::move(applied_);
 }
 

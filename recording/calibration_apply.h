@@ -19,10 +19,10 @@ struct AppliedCalibration {
 };
 
 /// Streams that speak of what was calibrated go along: vision0 with `cam0.T_RC` and
-/// `cam0.time_offset_s`, cam1 with cam0 where it has no values of its own. `file` is for messages.
-/// Throws InputError naming file and name for a name that is not known, for one of a sensor that
-/// the recording has not, for values that make no sense, and for a camera on the wrist (`T_WC`).
-/// The recording is then as good as lost.
+/// `cam0.time_offset_s`, cam1 with cam0 where it has no values of its own; `cam1.T_C0C1` places
+/// cam1 by cam0 as it then is. `file` is for messages. Throws InputError naming file and name for a
+/// name that is not known, for one of a sensor that the recording has not, for values that make no
+/// sense, and for a camera on the wrist (`T_WC`). The recording is then as good as lost.
 AppliedCalibration ApplyCalibration(const std::filesystem::path& file,
                                     const Calibration& calibration, Recording& recording);
 

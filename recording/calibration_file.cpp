@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "recording/camera_yaml.h"
 #include "recording/text.h"
 #include "recording/yaml_map.h"
 
@@ -94,6 +95,12 @@ Eigen::MatrixXd Calibration::CovarianceOf(const std::string& name) const {
   return covariance.block(range.first, range.first, range.count, range.count);
 }
 
+void AddLens(const std::string& camera, const CameraCalibration& lens, Calibration& c) {
+  c.numbers[camera + ".intrinsics"] = {lens.fu_px, lens.fv_px, lens.cu_px, lens.cv_px};
+  c.texts[camera + ".distortion_model"] = DistortionName(lens.distortion);
+  c.numbers[camera + ".distortion_coefficients"] = lens.distortion_coefficients;
+}
+
 Calibration ReadCalibration(const std::filesystem::path& file) {
   const auto yaml = YamlMap::Load(file);
   if (yaml.Text("format") != kFormat) {
@@ -110,6 +117,8 @@ Calibration ReadCalibration(const std::filesystem::path& file) {
   for (const std::string& name : found.Keys()) {
     if (name.find(".T_") != std::string::npos) {
       calibration.poses[name] = found.Transform(name);
+    } else if (name.ends_with("_model")) {
+      calibration.texts[name] = found.Text(name);
     } else if (found.IsList(name)) {
       calibration.numbers[name] = found.Numbers(name);
     } else {
@@ -134,13 +143,16 @@ Calibration ReadCalibration(const std::filesystem::path& file) {
 void WriteCalibration(const std::filesystem::path& file, const Calibration& c) {
   std::string text =
       fmt::format("format: {}\nversion: {}\nkind: {}\n", kFormat, kVersion, YamlText(c.kind));
-  text += c.poses.empty() && c.numbers.empty() ? "found: {}\n" : "found:\n";
+  text += c.poses.empty() && c.numbers.empty() && c.texts.empty() ? "found: {}\n" : "found:\n";
   for (const auto& [name, pose] : c.poses) {
     text += fmt::format("  {}: {}\n", name, YamlTransform(pose));
   }
   for (const auto& [name, values] : c.numbers) {
     text += fmt::format("  {}: {}\n", name,
                         values.size() == 1 ? YamlNumber(values[0]) : YamlNumbers(values));
+  }
+  for (const auto& [name, value] : c.texts) {
+    text += fmt::format("  {}: {}\n", name, YamlText(value));
   }
   text += CovarianceText(c);
   if (!c.unobservable.empty()) text += "unobservable:\n";

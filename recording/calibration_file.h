@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/camera.h"
 #include "core/pose.h"
 
 namespace flextip {
@@ -17,6 +18,7 @@ struct Calibration {
   std::string kind;                                    ///< "hand-eye", "tip", "em", ...
   std::map<std::string, Pose> poses;                   ///< by name
   std::map<std::string, std::vector<double>> numbers;  ///< by name, one or more
+  std::map<std::string, std::string> texts;            ///< `cam0.distortion_model` and its like
 
   /// Of all that was found, in the order of CoordinateNames(): a pose counts as (dw, dp), the true
   /// one being (exp([dw]x) R, p + dp). Empty where it is not known.
@@ -40,6 +42,9 @@ struct Calibration {
   /// That entry's block of `covariance`; empty where that is.
   Eigen::MatrixXd CovarianceOf(const std::string& name) const;
 };
+
+/// Puts a lens under `camera` ("cam0"): its intrinsics, model and coefficients.
+void AddLens(const std::string& camera, const CameraCalibration& lens, Calibration& calibration);
 
 /// Throws InputError with file and line for unknown keys, numbers that are not finite, a covariance
 /// of another size, order or sign.

@@ -53,25 +53,40 @@ void ReadIntrinsics(const YamlMap& yaml, CameraCalibration& camera) {
 
 void ReadDistortion(const YamlMap& yaml, CameraCalibration& camera) {
   const std::string name = yaml.Text("distortion_model");
+  camera.distortion_coefficients = yaml.Numbers("distortion_coefficients");
+  const auto model = DistortionOf(name, camera.distortion_coefficients.size());
+  if (!model.distortion) throw yaml.Error(model.wrong_key, model.expected);
+  camera.distortion = *model.distortion;
+}
+
+}  // namespace
+
+NamedDistortion DistortionOf(const std::string& name, std::size_t coefficients) {
   const auto model = std::find_if(kModels.begin(), kModels.end(), [&](const ModelName& candidate) {
     return name == candidate.name;
   });
   if (model == kModels.end()) {
-    throw yaml.Error(
+    return {
+        {},
         "distortion_model",
-        fmt::format("found {}, expected radial-tangential, opencv or equidistant", Quoted(name)));
+        fmt::format("found {}, expected radial-tangential, opencv or equidistant", Quoted(name))};
   }
-  camera.distortion = model->distortion;
-  camera.distortion_coefficients = yaml.Numbers("distortion_coefficients");
-  const auto count = camera.distortion_coefficients.size();
-  if (std::find(model->counts.begin(), model->counts.end(), count) == model->counts.end()) {
-    throw yaml.Error("distortion_coefficients",
-                     fmt::format("found {} coefficients, expected {} for the model {}", count,
-                                 model->expected, name));
+  if (std::find(model->counts.begin(), model->counts.end(), coefficients) == model->counts.end()) {
+    return {{},
+            "distortion_coefficients",
+            fmt::format("found {} coefficients, expected {} for the model {}", coefficients,
+                        model->expected, name)};
   }
+  return {model->distortion, "", ""};
 }
 
-}  // namespace
+std::string DistortionName(Distortion distortion) {
+  const auto model = std::find_if(kModels.begin(), kModels.end(), [&](const ModelName& candidate) {
+    return candidate.distortion == distortion;
+  });
+  assert(model != kModels.end());
+  return model->name;
+}
 
 CameraCalibration ReadCalibrationKeys(const YamlMap& yaml) {
   CameraCalibration camera;
@@ -98,15 +113,11 @@ CameraCalibration ReadCameraCalibration(const std::filesystem::path& file, ReadL
 }
 
 std::string LensText(const CameraCalibration& camera) {
-  const auto model = std::find_if(kModels.begin(), kModels.end(), [&](const ModelName& candidate) {
-    return candidate.distortion == camera.distortion;
-  });
-  assert(model != kModels.end());
   std::string text = fmt::format("resolution: [{}, {}]\n", camera.width_px, camera.height_px);
   text += "camera_model: pinhole\n";
   text += fmt::format("intrinsics: {}\n",
                       YamlNumbers({camera.fu_px, camera.fv_px, camera.cu_px, camera.cv_px}));
-  text += fmt::format("distortion_model: {}\n", model->name);
+  text += fmt::format("distortion_model: {}\n", DistortionName(camera.distortion));
   text += fmt::format("distortion_coefficients: {}\n", YamlNumbers(camera.distortion_coefficients));
   if (camera.gamma) text += fmt::format("gamma: {}\n", YamlNumber(*camera.gamma));
   return text;

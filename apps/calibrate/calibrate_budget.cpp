@@ -79,23 +79,28 @@ Chain ChainOf(const std::vector<UsedCalibration>& used) {
 
 std::optional<TipBending> BendingAt(const CalibrateBudgetOptions& options,
                                     const Recording& recording, const Chain& chain, TimeNs t_ns) {
+  const Instrument& shaft = recording.instrument;
   TipBending bending{.f_R = options.force_N,
-                     .stiffness_Nm2 = recording.instrument.bending_stiffness_Nm2,
+                     .weight_N_m = shaft.mass_per_length_kg_m * recording.gravity_m_s2,
+                     .stiffness_Nm2 = shaft.bending_stiffness_Nm2,
                      .stiffness_sd_Nm2 = chain.stiffness_sd_Nm2};
   if (options.force_given) return bending;
-  if (!recording.load0) return {};
-  const auto load = LoadAt(*recording.load0, t_ns);
+  const auto load = recording.load0 ? LoadAt(*recording.load0, t_ns) : std::nullopt;
   if (!load) return {};
   bending.f_R = *load;
+  bending.corrected = true;  // by the tracker, which reads the same load
+  bending.force_noise_N = recording.load0->force_noise_N;
   return bending;
 }
 
 // The tracker's own covariance, where it found the tip in that frame: it knows more than corners.
+// The load's part is in it.
 void UseTrackedCovariance(const Recording& recording, TimeNs t_ns, TipBudget& budget) {
   const auto tip = recording.vision0 ? TipAt(*recording.vision0, t_ns) : std::nullopt;
   if (!tip || tip->value.status != TipStatus::kOk) return;
   for (BudgetPart& part : budget.parts) {
     if (part.name == "pixels") part.covariance_R = tip->value.covariance_m2;
+    if (part.name == "load") part.in_total = false;
   }
 }
 

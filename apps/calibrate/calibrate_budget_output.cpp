@@ -70,6 +70,9 @@ std::string Table(const std::vector<TimedBudget>& budgets) {
     columns.push_back(column + "_depth [m]");
     columns.push_back(column + "_across [m]");
   }
+  for (const char* column : {"xx", "xy", "xz", "yy", "yz", "zz"}) {
+    columns.push_back(fmt::format("total_cov_{} [m2]", column));
+  }
   std::string text = fmt::format("#timestamp [ns],{}\n", fmt::join(columns, ","));
   for (const TimedBudget& b : budgets) {
     const Eigen::Vector3d& p = b.value.p_RE;
@@ -86,7 +89,9 @@ std::string Table(const std::vector<TimedBudget>& budgets) {
       const DepthAndAcross sd = SplitByDepth(part->covariance_R, b.value.depth_R);
       text += fmt::format(",{:.4g},{:.4g}", sd.depth_m, sd.across_m);
     }
-    text += '\n';
+    const Eigen::Matrix3d C = b.value.TotalCovariance();
+    text += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", C(0, 0), C(0, 1), C(0, 2),
+                        C(1, 1), C(1, 2), C(2, 2));
   }
   return text;
 }
@@ -97,7 +102,8 @@ Figure BarFigure(const std::vector<PartFigures>& parts) {
   figure.title = "What contributes to the tip's error";
   figure.caption =
       "Standard deviation, RMS over the frames: along the line of sight, and in the worst "
-      "direction across it. Stiffness is what would be left of the bending if it were corrected.";
+      "direction across it. Where the force was measured the tracker corrects the bending: then "
+      "it is not in the total, and load and stiffness are; else the other way round.";
   figure.y_label = "standard deviation (mm)";
   FigureTrace depth{.name = "depth", .kind = FigureTrace::Kind::kBars};
   FigureTrace across{.name = "across", .kind = FigureTrace::Kind::kBars};
@@ -140,7 +146,9 @@ std::string Advice(const std::vector<PartFigures>& parts) {
       {"tip offset", "the tip's place on the collar: calibrate the tip again, with wider turns"},
       {"bending",
        "the bending beyond the collar: nearer to the tip the collar sees it, or the "
-       "force has to be taken into account"}};
+       "force has to be taken into account"},
+      {"load", "the force on the tip: measure it better"},
+      {"stiffness", "the shaft's stiffness: calibrate it again with the load it asks for"}};
   for (const PartFigures& part : parts) {
     if (!part.in_total || part.name == kTotal) continue;
     return "most is from " + kWhatToDo.at(part.name);
@@ -153,9 +161,9 @@ std::string Advice(const std::vector<PartFigures>& parts) {
 std::string BudgetText(const std::vector<TimedBudget>& budgets) {
   std::string text;
   for (const PartFigures& part : Figures(budgets)) {
-    text += fmt::format("{:<12} {:8.4f} mm along the line of sight, {:8.4f} mm across{}\n",
-                        part.name, part.depth_mm, part.across_mm,
-                        part.in_total ? "" : " (if the bending were corrected)");
+    text +=
+        fmt::format("{:<12} {:8.4f} mm along the line of sight, {:8.4f} mm across{}\n", part.name,
+                    part.depth_mm, part.across_mm, part.in_total ? "" : " (not in the total)");
   }
   return text;
 }

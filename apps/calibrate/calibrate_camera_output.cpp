@@ -129,11 +129,9 @@ json Summary(const CameraCalibrationResult& r) {
 
 // Intrinsics and coefficients with their covariance, in the order of Calibration::CoordinateNames.
 Calibration ToCalibration(const CameraCalibrationResult& r) {
-  const CameraCalibration& c = r.solution.camera;
   Calibration calibration;
   calibration.kind = "camera";
-  calibration.numbers["cam0.intrinsics"] = {c.fu_px, c.fv_px, c.cu_px, c.cv_px};
-  calibration.numbers["cam0.distortion_coefficients"] = c.distortion_coefficients;
+  AddLens("cam0", r.solution.camera, calibration);
   const int n = r.solution.IntrinsicsCount(), terms = n - 4;
   calibration.covariance.resize(n, n);
   calibration.covariance << r.covariance.block(4, 4, terms, terms),

@@ -40,10 +40,7 @@ Calibration ToCalibration(const StereoResult& r) {
   calibration.kind = "stereo";
   calibration.poses["cam1.T_C0C1"] = r.solution.T_C0C1;
   for (int eye = 0; eye < 2; ++eye) {
-    const CameraCalibration& c = r.solution.cameras[eye];
-    const std::string name = fmt::format("cam{}.", eye);
-    calibration.numbers[name + "intrinsics"] = {c.fu_px, c.fv_px, c.cu_px, c.cv_px};
-    calibration.numbers[name + "distortion_coefficients"] = c.distortion_coefficients;
+    AddLens(fmt::format("cam{}", eye), r.solution.cameras[eye], calibration);
   }
   const std::vector<int> places = PlacesByName(r.solution);
   calibration.covariance = r.covariance(places, places);

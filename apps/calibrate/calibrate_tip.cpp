@@ -54,6 +54,7 @@ TipBody CollarBody(const CalibrateTipOptions& options, OutputFolder& output, boo
   SilenceVideoCodecs();
   TrackInputOptions source;
   source.source = options.input.recording;
+  source.calibrations = options.input.calibrations;
   TrackInput input = OpenTrackInput(source);
   output.Warn(input.warnings);
   TipFollower follower(input.recording, {}, false);

@@ -5,6 +5,7 @@
 
 #include "calibration/camera/projection_derivative.h"
 #include "core/rotation.h"
+#include "kinematics/tip_bending.h"
 #include "vision/collar_pose.h"
 
 namespace flextip {
@@ -37,27 +38,22 @@ Eigen::MatrixXd PositionByLens(const CameraCalibration& camera, const TagCollar&
   return -by_pose.ldlt().solve(by_lens).bottomRows<3>();
 }
 
-// From the tip back to the collar, along the shaft.
-double CollarDistance(const TagCollar& collar, const std::vector<TagDetection>& tags) {
-  double sum = 0.0;
-  int count = 0;
-  for (const TagDetection& seen : tags) {
-    const CollarTag* tag = TagOf(collar, seen.id);
-    if (!tag) continue;
-    sum -= tag->T_EG.p.x();
-    ++count;
-  }
-  return count > 0 ? sum / count : 0.0;
-}
-
-void AddBending(const TipBending& bending, const Pose& T_RE, double distance_m, TipBudget& budget) {
+void AddBending(const TipBending& bending, const Pose& T_RE, double free_length_m,
+                TipBudget& budget) {
   if (!(bending.stiffness_Nm2 > 0)) return;
-  budget.bend_R = BendBeyondCollar(bending.f_R, T_RE.R.col(0), distance_m, bending.stiffness_Nm2);
+  const FreeEnd end{free_length_m, bending.stiffness_Nm2, bending.weight_N_m};
+  budget.bend_R = BendFreeEnd(end, bending.f_R, T_RE).p - T_RE.p;
   const Eigen::Matrix3d square = budget.bend_R * budget.bend_R.transpose();
-  budget.parts.push_back({"bending", square, true});
+  budget.parts.push_back({"bending", square, !bending.corrected});
+  if (bending.corrected) {
+    const Eigen::Vector3d d = T_RE.R.col(0);
+    const double sd_m = FreeEndCompliance(end) * bending.force_noise_N;
+    budget.parts.push_back(
+        {"load", sd_m * sd_m * (Eigen::Matrix3d::Identity() - d * d.transpose()), true});
+  }
   if (!(bending.stiffness_sd_Nm2 > 0)) return;
   const double relative = bending.stiffness_sd_Nm2 / bending.stiffness_Nm2;
-  budget.parts.push_back({"stiffness", relative * relative * square, false});
+  budget.parts.push_back({"stiffness", relative * relative * square, bending.corrected});
 }
 
 }  // namespace
@@ -103,14 +99,8 @@ std::optional<TipBudget> BudgetOfTip(const CameraCalibration& camera, const TagC
   if (chain.tip_offset.size() > 0) {
     budget.parts.push_back({"tip offset", T_RE.R * chain.tip_offset * T_RE.R.transpose(), true});
   }
-  if (bending) AddBending(*bending, T_RE, CollarDistance(collar, tags), budget);
+  if (bending) AddBending(*bending, T_RE, FreeLength(collar), budget);
   return budget;
-}
-
-Eigen::Vector3d BendBeyondCollar(const Eigen::Vector3d& force_N, const Eigen::Vector3d& axis,
-                                 double distance_m, double stiffness_Nm2) {
-  const Eigen::Vector3d across = force_N - axis * axis.dot(force_N);
-  return across * (std::pow(distance_m, 3) / (3.0 * stiffness_Nm2));
 }
 
 }  // namespace flextip

@@ -19,17 +19,23 @@ struct ChainCovariance {
   Eigen::MatrixXd tip_offset;  ///< 3x3, of the tip in E (m)
 };
 
-/// The shaft between collar and tip, which the tracker takes for rigid.
+/// What bends the shaft between collar and tip. With the force measured (`load0`) the tracker
+/// corrects the bend, and what is left is how well force and stiffness are known; else it takes the
+/// shaft for rigid, and is off by all of it.
 struct TipBending {
-  Eigen::Vector3d f_R = Eigen::Vector3d::Zero();  ///< force on the tip (N)
+  Eigen::Vector3d f_R = Eigen::Vector3d::Zero();         ///< force on the tip (N)
+  Eigen::Vector3d weight_N_m = Eigen::Vector3d::Zero();  ///< of the shaft per length, in R
   double stiffness_Nm2 = 0.0;
   double stiffness_sd_Nm2 = 0.0;  ///< 0: not known
+  bool corrected = false;
+  double force_noise_N = 0.0;  ///< standard deviation per axis
 };
 
 /// One source's part. `covariance_R` of the tip in R (m^2); a bend that is not corrected counts
-/// with its square.
+/// with its square. Not in the total: a stiffness that would matter if the bend were corrected, a
+/// bend that is.
 struct BudgetPart {
-  std::string name;  ///< pixels, lens, hand-eye, tip offset, bending, stiffness
+  std::string name;  ///< pixels, lens, hand-eye, tip offset, bending, load, stiffness
   Eigen::Matrix3d covariance_R = Eigen::Matrix3d::Zero();
   bool in_total = true;
 };
@@ -55,10 +61,5 @@ std::optional<TipBudget> BudgetOfTip(const CameraCalibration& camera, const TagC
                                      const std::vector<TagDetection>& tags,
                                      const ChainCovariance& chain,
                                      const std::optional<TipBending>& bending = {});
-
-/// How far a force on the tip bends it away from the straight line of a collar `distance_m` behind:
-/// f L^3 / (3 E I) across the shaft, of which `axis` is the direction.
-Eigen::Vector3d BendBeyondCollar(const Eigen::Vector3d& force_N, const Eigen::Vector3d& axis,
-                                 double distance_m, double stiffness_Nm2);
 
 }  // namespace flextip

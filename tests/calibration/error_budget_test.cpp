@@ -7,6 +7,7 @@
 
 #include "calibration/camera/projection_derivative.h"
 #include "core/rotation.h"
+#include "kinematics/tip_bending.h"
 #include "vision/collar_pose.h"
 #include "vision/reprojection.h"
 
@@ -187,9 +188,10 @@ TEST_F(ErrorBudget, BendingIsWhatTheRodBends) {
   const Eigen::Vector3d f = bending.f_R - axis * axis.dot(bending.f_R);
   Eigen::Vector3d bend = Eigen::Vector3d::Zero(), slope = Eigen::Vector3d::Zero();
   constexpr int kSteps = 3000;
-  const double h = 0.03 / kSteps;
+  const double length_m = 0.0275;  // the tags' near edge to the tip
+  const double h = length_m / kSteps;
   for (int i = 0; i < kSteps; ++i) {
-    const Eigen::Vector3d curvature = f * (0.03 - (i + 0.5) * h) / 0.3;
+    const Eigen::Vector3d curvature = f * (length_m - (i + 0.5) * h) / 0.3;
     bend += h * (slope + 0.5 * h * curvature);
     slope += h * curvature;
   }
@@ -199,6 +201,38 @@ TEST_F(ErrorBudget, BendingIsWhatTheRodBends) {
   EXPECT_FALSE(Part(*bent, "stiffness").in_total);
   const double added = bent->TotalCovariance().trace() - budget.TotalCovariance().trace();
   EXPECT_NEAR(added, bend.squaredNorm(), 1e-4 * bend.squaredNorm());
+}
+
+// The tip as the tracker has it once it corrected the bend by a measured force and a stiffness.
+TEST_F(ErrorBudget, ACorrectedBendLeavesWhatForceAndStiffnessAreOff) {
+  const TipBending bending{.f_R = {1.2, -0.8, 2.0},
+                           .stiffness_Nm2 = 0.02,
+                           .stiffness_sd_Nm2 = 0.0008,
+                           .corrected = true,
+                           .force_noise_N = 0.06};
+  const auto claimed = BudgetOfTip(camera, collar, tags, {}, bending);
+  ASSERT_TRUE(claimed);
+  EXPECT_FALSE(Part(*claimed, "bending").in_total);
+  const Pose T_RE = camera.T_RC * kT_CE;
+  const FreeEnd end{0.0275, bending.stiffness_Nm2, {}};
+  const Eigen::Vector3d truth = BendFreeEnd(end, bending.f_R, T_RE).p;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  constexpr int kDraws = 400;
+  for (int i = 0; i < kDraws; ++i) {
+    FreeEnd drawn = end;
+    drawn.bending_stiffness_Nm2 += bending.stiffness_sd_Nm2 * normal(random);
+    const Eigen::Vector3d f =
+        bending.f_R + bending.force_noise_N * Draw(Eigen::Matrix3d::Identity());
+    const Eigen::Vector3d error = BendFreeEnd(drawn, f, T_RE).p - truth;
+    spread += error * error.transpose() / kDraws;
+  }
+  ExpectSpread(spread,
+               Part(*claimed, "load").covariance_R + Part(*claimed, "stiffness").covariance_R,
+               budget.depth_R);
+  const Eigen::Matrix3d rest = claimed->TotalCovariance() - Part(*claimed, "pixels").covariance_R;
+  EXPECT_LT((rest - Part(*claimed, "load").covariance_R - Part(*claimed, "stiffness").covariance_R)
+                .norm(),
+            1e-12 * rest.norm());
 }
 
 }  // namespace

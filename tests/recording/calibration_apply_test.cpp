@@ -91,6 +91,110 @@ TEST(CalibrationApply, FourTermsStayThoseOfAFisheye) {
   EXPECT_EQ(r.cam1->calibration.distortion, Distortion::kRadialTangential);
 }
 
+TEST(CalibrationApply, TheModelNamedIsTheModel) {
+  for (const Distortion before :
+       {Distortion::kRadialTangential, Distortion::kEquidistant, Distortion::kOpenCv}) {
+    Recording r = Plain();
+    r.cam0->calibration.distortion = r.cam1->calibration.distortion = before;
+    Calibration c = WithNumbers("cam0.distortion_coefficients", {1, 2, 3, 4});
+    c.texts["cam0.distortion_model"] = "equidistant";
+    c.numbers["cam1.distortion_coefficients"] = {1, 2, 3, 4};
+    c.texts["cam1.distortion_model"] = "radial-tangential";
+    const auto applied = Apply(c, r);
+    EXPECT_EQ(r.cam0->calibration.distortion, Distortion::kEquidistant);
+    EXPECT_EQ(r.cam1->calibration.distortion, Distortion::kRadialTangential);
+    EXPECT_THAT(applied.used, ::testing::Contains("cam0.distortion_model"));
+  }
+  const Recording r = Plain();
+  Calibration c = WithNumbers("cam0.distortion_coefficients", {1, 2, 3, 4, 5});
+  c.texts["cam0.distortion_model"] = "equidistant";
+  EXPECT_THAT(ErrorOf(c, r), HasSubstr("cam0.distortion_coefficients: found 5 coefficients, "
+                                       "expected 4 (k1, k2, k3, k4)"));
+  c.texts["cam0.distortion_model"] = "fish";
+  EXPECT_THAT(ErrorOf(c, r), HasSubstr("cam0.distortion_model: found \"fish\""));
+  c.numbers.clear();
+  EXPECT_THAT(ErrorOf(c, r), HasSubstr("no distortion_coefficients"));
+  c.texts = {{"em0.field_model", "cubic"}};
+  EXPECT_THAT(ErrorOf(c, r), HasSubstr("em0.field_model: unknown name"));
+}
+
+// Written from one camera, read and put into a recording that has another lens.
+TEST(CalibrationApply, EveryLensComesThroughAFile) {
+  const testing::TemporaryFolder folder;
+  const std::vector<std::pair<Distortion, int>> lenses = {{Distortion::kRadialTangential, 4},
+                                                          {Distortion::kEquidistant, 4},
+                                                          {Distortion::kOpenCv, 5},
+                                                          {Distortion::kOpenCv, 8},
+                                                          {Distortion::kOpenCv, 12}};
+  for (const auto& [from, terms] : lenses) {
+    CameraCalibration lens;
+    lens.fu_px = 1000.0 / 3;
+    lens.fv_px = 333;
+    lens.cu_px = 17.1;
+    lens.cv_px = 11;
+    lens.distortion = from;
+    lens.distortion_coefficients.clear();
+    for (int i = 0; i < terms; ++i) lens.distortion_coefficients.push_back(std::sin(1.0 + i));
+    Calibration written;
+    AddLens("cam1", lens, written);
+    WriteCalibration(folder / "c.yaml", written);
+    for (const auto& other : lenses) {
+      Recording r = Plain();
+      r.cam1->calibration.distortion = other.first;
+      r.cam1->calibration.distortion_coefficients.assign(other.second, 0.5);
+      Apply(ReadCalibration(folder / "c.yaml"), r);
+      const CameraCalibration& read = r.cam1->calibration;
+      EXPECT_EQ(read.distortion, from);
+      EXPECT_EQ(read.distortion_coefficients, lens.distortion_coefficients);
+      EXPECT_EQ(read.fu_px, lens.fu_px);
+      EXPECT_EQ(read.cu_px, lens.cu_px);
+    }
+  }
+}
+
+TEST(CalibrationApply, TheSecondCameraIsPlacedByTheFirst) {
+  const Pose T_C0C1{ExpRotation({0.01, -0.02, 0.03}), {0.005, 0.0001, -0.0002}};
+  Calibration stereo, hand_eye, both;
+  stereo.poses["cam1.T_C0C1"] = both.poses["cam1.T_C0C1"] = T_C0C1;
+  hand_eye.poses["cam0.T_RC"] = both.poses["cam0.T_RC"] = kPose;
+  const Recording before = Plain();
+  Recording alone = before;
+  const auto applied = Apply(stereo, alone);
+  EXPECT_THAT(applied.used, ElementsAre("cam1.T_C0C1"));
+  EXPECT_THAT(applied.warnings, ::testing::Contains(HasSubstr("vision0 were found without it")));
+  EXPECT_TRUE(alone.cam1->calibration.T_RC.Matrix().isApprox(
+      (before.cam0->calibration.T_RC * T_C0C1).Matrix()));
+  EXPECT_EQ(alone.cam0->calibration.T_RC.Matrix(), before.cam0->calibration.T_RC.Matrix());
+
+  const Eigen::Matrix4d expected = (kPose * T_C0C1).Matrix();
+  Recording first = before, last = before, together = before;
+  Apply(stereo, first);
+  Apply(hand_eye, first);
+  Apply(hand_eye, last);
+  Apply(stereo, last);
+  Apply(both, together);
+  for (const Recording* r : {&first, &last, &together}) {
+    EXPECT_TRUE(r->cam0->calibration.T_RC.Matrix().isApprox(kPose.Matrix()));
+    EXPECT_TRUE(r->cam1->calibration.T_RC.Matrix().isApprox(expected));
+  }
+}
+
+TEST(CalibrationApply, TipsSeenByTheSecondCameraGoWithIt) {
+  Recording before = Plain();
+  before.vision0->camera = "cam1";
+  for (const bool by_stereo : {true, false}) {
+    Recording r = before;
+    Calibration c;
+    c.poses[by_stereo ? "cam1.T_C0C1" : "cam0.T_RC"] = kPose;
+    Apply(c, r);
+    for (std::size_t i = 0; i < r.vision0->tips.size(); ++i) {
+      EXPECT_TRUE((r.cam1->calibration.T_RC.Inverse() * r.vision0->tips[i].value.p_RE)
+                      .isApprox(before.cam1->calibration.T_RC.Inverse() *
+                                before.vision0->tips[i].value.p_RE));
+    }
+  }
+}
+
 TEST(CalibrationApply, ACameraTakesItsTipsAndTheOtherEyeAlong) {
   const Recording before = Plain();
   Recording r = before;
@@ -252,9 +356,12 @@ TEST(CalibrationApply, TheSetUpIsNoPartOfTheRecording) {
   Calibration c = WithNumbers("pivot.p_R", {1, 2, 3});
   c.poses["board.T_WB"] = kPose;
   c.poses["board.T_RB"] = kPose;
+  c.poses["tags0.T_WE"] = kPose;
+  c.numbers["tip.p_SE"] = {0.1, 0, 0};
   const auto applied = Apply(c, r);
   EXPECT_TRUE(applied.used.empty());
-  EXPECT_THAT(applied.not_used, ElementsAre("board.T_RB", "board.T_WB", "pivot.p_R"));
+  EXPECT_THAT(applied.not_used,
+              ElementsAre("board.T_RB", "board.T_WB", "tags0.T_WE", "pivot.p_R", "tip.p_SE"));
 }
 
 TEST(CalibrationApply, RefusesWhatItDoesNotKnowAndWhatIsNotThere) {
@@ -268,6 +375,18 @@ TEST(CalibrationApply, RefusesWhatItDoesNotKnowAndWhatIsNotThere) {
   other.poses["cam0.T_XY"] = kPose;
   EXPECT_THAT(ErrorOf(other, r), HasSubstr("unknown name"));
   EXPECT_THAT(ErrorOf(WithNumbers("cam0.intrinsics", {1, 2}), r), HasSubstr("found 2 numbers"));
+
+  Calibration stereo;
+  stereo.poses["cam1.T_C0C1"] = kPose;
+  stereo.poses["cam1.T_RC"] = kPose;
+  EXPECT_THAT(ErrorOf(stereo, r), HasSubstr("cam1.T_C0C1: the file has cam1.T_RC too"));
+  stereo.poses.erase("cam1.T_RC");
+  Recording mono = r;
+  mono.cam1.reset();
+  EXPECT_THAT(ErrorOf(stereo, mono), HasSubstr("cam1.T_C0C1: the recording has no cam1"));
+  mono.cam1 = r.cam1;
+  mono.cam0.reset();
+  EXPECT_THAT(ErrorOf(stereo, mono), HasSubstr("cam1.T_C0C1: the recording has no cam0"));
 
   const Recording empty;
   for (const char* name : {"cam1.intrinsics", "cam0.time_offset_s", "tags0.p_E",

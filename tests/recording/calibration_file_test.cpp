@@ -19,6 +19,7 @@ Calibration Sample() {
   c.poses["cam0.T_RC"] = {ExpRotation({0.3, -1.2, 0.4}), {0.1, -0.05, 0.2}};
   c.poses["board.T_WB"] = {ExpRotation({0.1, 0.1, 2.0}), {0.001, 0.002, 1.0 / 3}};
   c.numbers["cam0.time_offset_s"] = {0.0123};
+  c.texts["cam0.distortion_model"] = "equidistant";
   c.numbers["strain0.offset_Nm"] = {0.1, 0.2, -0.3, 1e-17};
   const int n = static_cast<int>(c.CoordinateNames().size());
   Eigen::MatrixXd root(n, n);
@@ -61,6 +62,7 @@ TEST_F(CalibrationFile, IsTheSameWhenReadAgain) {
   const Calibration read = ReadCalibration(file_);
   EXPECT_EQ(read.kind, c.kind);
   EXPECT_EQ(read.numbers, c.numbers);
+  EXPECT_EQ(read.texts, c.texts);
   EXPECT_EQ(read.covariance, c.covariance);
   ASSERT_EQ(read.poses.size(), 2u);
   for (const auto& [name, pose] : c.poses) {
@@ -99,6 +101,8 @@ TEST_F(CalibrationFile, RefusesWhatIsBroken) {
   EXPECT_NE(ErrorWith("flextip-calibration", "flextip-model").find(name + ":1: "),
             std::string::npos);
   EXPECT_NE(ErrorWith("kind:", "knid:"), "");
+  EXPECT_NE(ErrorWith("\"equidistant\"", "[1, 2]").find("cam0.distortion_model"),
+            std::string::npos);
   EXPECT_NE(ErrorWith("0.0123", ".nan").find("cam0.time_offset_s"), std::string::npos);
   EXPECT_NE(ErrorWith("\"cam0.time_offset_s\"", "\"cam0.gamma\"").find("parameters"),
             std::string::npos);
