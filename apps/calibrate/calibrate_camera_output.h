@@ -3,6 +3,7 @@
 
 #include "apps/output.h"
 #include "calibration/boards/corners_file.h"
+#include "calibration/camera/camera_calibration.h"
 
 namespace flextip {
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "calibration/boards/corners_file.h"
+#include "calibration/camera/camera_calibration.h"
 
 namespace flextip {
 
