@@ -212,14 +212,20 @@ void WriteHandEyeTables(const std::filesystem::path& folder, const HandEyeResult
 }
 
 void DrawHandEyeView(Image& image, const HandEyeViewResult& view) {
-  DrawPoints(image, view.px_seen);
   cv::Mat canvas(image.height_px, image.width_px, CV_8UC3, image.data.data());
-  for (const Eigen::Vector2d& p : view.px_chain) {
+  const int wide = std::max(1, image.width_px / 640);  // still seen where the picture is small
+  const auto at = [](const Eigen::Vector2d& p) {
+    return cv::Point(static_cast<int>(std::lround(16 * p.x())),
+                     static_cast<int>(std::lround(16 * p.y())));
+  };
+  const cv::Scalar seen(60, 200, 60), chain(60, 60, 240);
+  for (std::size_t i = 0; i < view.px_seen.size(); ++i) {
+    cv::circle(canvas, at(view.px_seen[i]), 2 * wide << 4, seen, cv::FILLED, cv::LINE_AA, 4);
+  }
+  for (std::size_t i = 0; i < view.px_chain.size(); ++i) {
+    const Eigen::Vector2d& p = view.px_chain[i];
     if (p.cwiseAbs().maxCoeff() > 1e5) continue;
-    cv::circle(
-        canvas,
-        {static_cast<int>(std::lround(16 * p.x())), static_cast<int>(std::lround(16 * p.y()))},
-        5 << 4, {60, 60, 240}, 1, cv::LINE_AA, 4);
+    cv::circle(canvas, at(p), 4 * wide << 4, chain, wide, cv::LINE_AA, 4);
   }
   DrawLabel(image, std::isfinite(view.px)
                        ? fmt::format("{}: {:.2f} px, {:.2f} mm{}", view.name, view.px, view.mm,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "apps/calibrate/calibrate_hand_eye_output.h"
 
@@ -21,11 +22,22 @@ std::string TurnSd(const Eigen::MatrixXd& C) {
   return fmt::format("{:.3f}°", kDegrees * std::sqrt(C.topLeftCorner(3, 3).trace()));
 }
 
+std::string InWords(const std::string& name) {
+  static const std::map<std::string, std::string> words = {{"cam0.T_RC", "camera in R"},
+                                                           {"cam0.T_WC", "camera on the wrist"},
+                                                           {"board.T_WB", "board on the wrist"},
+                                                           {"board.T_RB", "board in R"},
+                                                           {"tags0.T_WE", "collar on the wrist"}};
+  const auto it = words.find(name);
+  return it == words.end() ? name : it->second + ", " + name;
+}
+
 void AddValues(const HandEyeResult& r, const Calibration& calibration,
                CalibrationVerdict& verdict) {
   for (const auto& [name, pose] : calibration.poses) {
     const Eigen::MatrixXd C = calibration.CovarianceOf(name);
-    verdict.Add(name, PlaceText(pose.p), fmt::format("{} and {}", PositionSd(C), TurnSd(C)));
+    verdict.Add(InWords(name), PlaceText(pose.p),
+                fmt::format("{} and {}", PositionSd(C), TurnSd(C)));
   }
   if (r.has_time_offset) {
     verdict.Add("camera behind the robot", fmt::format("{:.1f} ms", -1e3 * r.time_offset_s),
@@ -47,7 +59,7 @@ void AddReasons(const HandEyeResult& r, CalibrationVerdict& verdict) {
                     [](const HandEyeViewResult& v) { return v.seen && !v.used; }));
   if (disagree > 0) {
     const std::string text =
-        Counted(disagree, "view") + " did not agree with the others and are left out, see below";
+        Counted(disagree, "view") + " did not agree with the others, see the warnings";
     if (static_cast<double>(disagree) > kManyRejected * static_cast<double>(r.views.size())) {
       verdict.Beware(text);
     } else {
