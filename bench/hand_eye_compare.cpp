@@ -24,9 +24,9 @@ namespace {
 
 struct Arguments {
   std::filesystem::path scope, write;
-  std::string board = "chessboard:13x8:0.003";
+  std::string board = "chessboard:13x8:0.003", inset;
   double orientation_noise_rad = 0.002, position_noise_m = 0.00025;
-  bool refine_intrinsics = false;
+  bool refine_intrinsics = false, fit_camera = false;
 };
 
 struct Frames {
@@ -261,8 +261,12 @@ void CompareOn(const HandEyeInput& input, const HandEyeResult& ours) {
 }
 
 void CompareScope(const Arguments& a) {
-  const HandEyeInput input = ReadTrackedScope(a.scope, ParseBoardSpec(a.board),
-                                              a.orientation_noise_rad, a.position_noise_m);
+  const BoardSpec board = ParseBoardSpec(a.board);
+  std::optional<BoardSpec> inset;
+  if (!a.inset.empty()) inset = ParseBoardSpec(a.inset);
+  HandEyeInput input =
+      ReadTrackedScope(a.scope, board, inset, a.orientation_noise_rad, a.position_noise_m);
+  if (a.fit_camera) FitScopeCamera(board, input);
   const auto start = std::chrono::steady_clock::now();
   const auto r = CalibrateHandEye(input, {.refine_intrinsics = a.refine_intrinsics});
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -304,6 +308,8 @@ int main(int argc, char** argv) {
         app.add_option("--scope", a.scope,
                        "The tracked laparoscope's folder; without it made-up boards");
         app.add_option("--board", a.board, "As calibrate takes it");
+        app.add_option("--inset", a.inset, "A second board in the middle of it, a quarter turned");
+        app.add_flag("--fit-camera", a.fit_camera, "The lens by the same pictures");
         app.add_option("--write", a.write, "Write the scope as a recording there");
         app.add_option("--orientation-noise", a.orientation_noise_rad, "Of the tracker (rad)");
         app.add_option("--position-noise", a.position_noise_m, "Of the tracker (m)");

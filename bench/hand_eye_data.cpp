@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
+#include "calibration/camera/camera_calibration.h"
 #include "core/error.h"
 #include "core/rotation.h"
 #include "recording/recording_writer.h"
@@ -85,19 +86,51 @@ int CountViews(const fs::path& folder) {
   return views;
 }
 
+// Adds the inset's corners to the board's.
+void Join(const BoardSpec& board, const BoardSpec& inset, const BoardSighting& from,
+          BoardSighting& to) {
+  constexpr int kFirstId = 10000;
+  const auto middle = [](const BoardSpec& spec) -> Eigen::Vector2d {
+    const auto [low, high] = BoardExtent(spec);
+    return 0.5 * (low + high);
+  };
+  const Eigen::Vector2d to_middle = middle(board), from_middle = middle(inset);
+  for (std::size_t i = 0; i < from.px.size(); ++i) {
+    const Eigen::Vector2d x = from.x_B[i].head<2>() - from_middle;
+    to.ids.push_back(kFirstId + from.ids[i]);
+    to.x_B.emplace_back(to_middle.x() + x.y(), to_middle.y() - x.x(), 0.0);
+    to.px.push_back(from.px[i]);
+  }
+}
+
 }  // namespace
 
 HandEyeInput ReadTrackedScope(const fs::path& folder, const BoardSpec& board,
-                              double orientation_noise_rad, double position_noise_m) {
+                              const std::optional<BoardSpec>& inset, double orientation_noise_rad,
+                              double position_noise_m) {
   HandEyeInput input;
   const int views = CountViews(folder);
   input.wrist = ScopeWrist(folder, views, orientation_noise_rad, position_noise_m);
   for (int i = 0; i < views; ++i) {
     const Image image = ReadGrey(folder / PictureName(i));
     if (i == 0) input.camera = ScopeCamera(folder, image.width_px, image.height_px);
-    input.views.push_back({std::to_string(i), i * kBetweenViews_ns, DetectBoard(image, board)});
+    BoardSighting seen = DetectBoard(image, board);
+    if (inset) Join(board, *inset, DetectBoard(image, *inset), seen);
+    input.views.push_back({std::to_string(i), i * kBetweenViews_ns, seen});
   }
   return input;
+}
+
+void FitScopeCamera(const BoardSpec& board, HandEyeInput& input) {
+  std::vector<BoardView> views;
+  for (const HandEyeView& view : input.views) views.push_back({view.name, view.sighting});
+  CameraCalibrationOptions options;
+  options.lens = LensModel{Distortion::kOpenCv, 5};
+  options.warp = false;
+  const auto found =
+      CalibrateCamera(views, input.camera.width_px, input.camera.height_px, board, options);
+  if (!found.IsUsable()) throw WorkError(found.message);
+  input.camera = found.solution.camera;
 }
 
 void WriteTrackedScope(const fs::path& folder, const fs::path& recording,

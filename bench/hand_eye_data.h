@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,14 @@
 namespace flextip {
 
 /// The tracked laparoscope of scikit-surgerycalibration (text files in mm): R is the marker on the
-/// scope, W the one on the board, so the camera stands still in R.
+/// scope, W the one on the board, so the camera stands still in R. `inset`: a second board in the
+/// middle of the first one, a quarter turned, whose corners count as the first one's.
 HandEyeInput ReadTrackedScope(const std::filesystem::path& folder, const BoardSpec& board,
-                              double orientation_noise_rad, double position_noise_m);
+                              const std::optional<BoardSpec>& inset, double orientation_noise_rad,
+                              double position_noise_m);
+
+/// The lens of `input.camera` fitted to the same pictures (five coefficients, board held flat).
+void FitScopeCamera(const BoardSpec& board, HandEyeInput& input);
 
 /// The same as a recording with cam0 (pictures copied) and wrist0.
 void WriteTrackedScope(const std::filesystem::path& folder, const std::filesystem::path& recording,

@@ -10,11 +10,14 @@
 #include <utility>
 
 #include "core/error.h"
+#include "report/diagnose_parts.h"
 
 namespace flextip {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kOpenRows = 15;  // a longer table is folded
 
 Json ReadSummary(const std::filesystem::path& folder) {
   const auto path = folder / "summary.json";
@@ -54,19 +57,48 @@ std::vector<std::string> ColumnKeys(const Json& items) {
   return keys;
 }
 
+// JSON's keys are in the alphabet's order: what a row is about goes first, words last.
+void PutNameFirst(std::vector<std::string>& keys) {
+  const auto rank = [](const std::string& key) {
+    static const std::vector<std::string> names = {"view",  "image", "left",   "right",
+                                                   "part",  "lens",  "motion", "parameter",
+                                                   "field", "hold",  "pose",   "seconds"};
+    static const std::vector<std::string> words = {"reason", "left_reason", "right_reason"};
+    if (std::find(names.begin(), names.end(), key) != names.end()) return 0;
+    return std::find(words.begin(), words.end(), key) != words.end() ? 2 : 1;
+  };
+  std::stable_sort(keys.begin(), keys.end(),
+                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+}
+
+// Without its unit, which is in every cell, unless another column is called the same.
+std::string ColumnTitle(const std::string& key, const std::vector<std::string>& keys) {
+  const std::string title = SpokenName(key);
+  const auto alike = std::count_if(keys.begin(), keys.end(), [&](const std::string& other) {
+    return SpokenName(other) == title;
+  });
+  if (alike < 2) return title;
+  std::string full = key;
+  std::replace(full.begin(), full.end(), '_', ' ');
+  return full;
+}
+
 void AddJsonTable(Report& report, const std::string& name, const Json& items) {
-  const auto keys = ColumnKeys(items);
+  auto keys = ColumnKeys(items);
+  PutNameFirst(keys);
   Table table;
   table.title = SpokenName(name);
   if (items.is_object()) table.header.emplace_back("");
-  for (const auto& key : keys) table.header.push_back(SpokenName(key));
+  for (const auto& key : keys) table.header.push_back(ColumnTitle(key, keys));
   for (const auto& [label, item] : items.items()) {
     std::vector<std::string> row;
     if (items.is_object()) row.push_back(label);
     for (const auto& key : keys) row.push_back(item.contains(key) ? Shown(key, item[key]) : "–");
     table.rows.push_back(std::move(row));
   }
-  report.AddTable(table);
+  if (table.rows.size() <= kOpenRows) return report.AddTable(table);
+  report.AddHtml(FoldedTableHtml(fmt::format("{} ({})", table.title, table.rows.size()),
+                                 table.header, table.rows));
 }
 
 /// A column's name taken apart: "p_RE_x [m]" is the part "x" of "p_RE", shown in mm.
@@ -118,28 +150,43 @@ bool HasNumbers(const std::vector<double>& column) {
 
 }  // namespace
 
-Report BeginPage(const std::filesystem::path& folder, const std::string& title) {
+Report TitledPage(const std::filesystem::path& folder,
+                  const std::function<std::string(const std::string& command)>& title) {
   const Json summary = ReadSummary(folder);
   const auto text = [&](const char* key) {
     return summary.contains(key) ? Shown(key, summary[key]) : std::string();
   };
-  Report report(title, fmt::format("{}   (flextip {})", text("command"), text("version")));
+  return Report(title(text("command")),
+                fmt::format("{}   (flextip {})", text("command"), text("version")));
+}
+
+void AddSummaryFigures(Report& report, const std::filesystem::path& folder) {
   std::vector<std::pair<std::string, std::string>> figures;
+  const Json summary = ReadSummary(folder);
   for (const auto& [key, value] : summary.items()) {
     if (IsScalar(value)) figures.emplace_back(SpokenName(key), Shown(key, value));
   }
   report.AddFigures(figures);
-  std::vector<std::string> warnings;
-  if (summary.contains("warnings")) {
-    for (const auto& w : summary["warnings"]) warnings.push_back(Shown("", w));
-  }
-  report.AddWarnings(warnings);
-  bool headed = false;
+}
+
+void AddSummaryTables(Report& report, const std::filesystem::path& folder) {
+  const Json summary = ReadSummary(folder);
   for (const auto& [key, value] : summary.items()) {
-    if (key == "warnings" || !IsTable(value)) continue;
-    if (!std::exchange(headed, true)) report.AddHeading("Results");
-    AddJsonTable(report, key, value);
+    if (key != "warnings" && IsTable(value)) AddJsonTable(report, key, value);
   }
+}
+
+Report BeginPage(const std::filesystem::path& folder, const std::string& title) {
+  Report report = TitledPage(folder, [&](const std::string&) { return title; });
+  AddSummaryFigures(report, folder);
+  const Json summary = ReadSummary(folder);
+  std::vector<std::string> warnings;
+  for (const auto& w : summary.value("warnings", Json::array())) warnings.push_back(Shown("", w));
+  report.AddWarnings(warnings);
+  const bool has_tables = std::any_of(summary.items().begin(), summary.items().end(),
+                                      [](const auto& item) { return IsTable(item.value()); });
+  if (has_tables) report.AddHeading("Results");
+  AddSummaryTables(report, folder);
   return report;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,14 @@ namespace flextip {
 /// A page with the head that every command's page has: what was run, the figures of summary.json,
 /// its warnings, and a table for each list or map of alike things in it (controllers, views, ...).
 Report BeginPage(const std::filesystem::path& folder, const std::string& title);
+
+/// Its parts. Only the title and what was run; `title` makes the title of the command.
+Report TitledPage(const std::filesystem::path& folder,
+                  const std::function<std::string(const std::string& command)>& title);
+/// Every number of summary.json as a large figure.
+void AddSummaryFigures(Report& report, const std::filesystem::path& folder);
+/// A table for each list or map of alike things in summary.json.
+void AddSummaryTables(Report& report, const std::filesystem::path& folder);
 
 /// Reads `files` into one row of pictures under a heading; the caption is the file's name.
 void AddPictureFiles(Report& report, const std::string& heading,

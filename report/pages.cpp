@@ -137,10 +137,8 @@ void WriteWithPictures(const fs::path& folder, const std::string& title,
   auto pictures = PicturesIn(folder / "overlay", kPictures);
   const auto beside = PicturesIn(folder, kPictures);
   pictures.insert(pictures.end(), beside.begin(), beside.end());
-  if (fs::exists(folder / "figures.json")) AddFigureFile(report, folder / "figures.json");
   AddPictureFiles(report, heading, pictures);
   AddShortTable(report, folder / "shapes.csv", "Shapes");
-  AddShortTable(report, folder / "residuals.csv", "Residuals");
   report.Write(folder / "report.html");
 }
 
@@ -181,10 +179,6 @@ void WriteShapeReport(const fs::path& folder) {
 
 void WriteDetectReport(const fs::path& folder) {
   WriteWithPictures(folder, "Tags found in pictures", "What was found");
-}
-
-void WriteCalibrateReport(const fs::path& folder) {
-  WriteWithPictures(folder, "Calibration", "Views");
 }
 
 }  // namespace flextip

@@ -21,7 +21,8 @@ void WriteEstimateReport(const std::filesystem::path& folder);
 void WriteShapeReport(const std::filesystem::path& folder);
 /// Overlays of the detected tags.
 void WriteDetectReport(const std::filesystem::path& folder);
-/// Figures, pictures and residuals.csv of a calibration.
+/// The verdict with what was found, what was not and what to do next; figures, pictures and
+/// residuals.csv of a calibration.
 void WriteCalibrateReport(const std::filesystem::path& folder);
 /// The verdict, its evidence and the gain, from diagnosis.json (which must be there) and
 /// residuals.csv.

@@ -14,6 +14,8 @@
 namespace flextip {
 namespace {
 
+constexpr std::size_t kWords = 40;  // a longer cell of a table is a sentence: its lines break
+
 /// JSON has no word for a number that is not finite; Plotly draws null as a gap.
 nlohmann::json Numbers(const std::vector<double>& values) {
   auto list = nlohmann::json::array();
@@ -78,7 +80,11 @@ std::string Title(const std::string& text) {
 
 std::string Row(const std::vector<std::string>& cells, std::string_view element) {
   std::string html = "<tr>";
-  for (const auto& cell : cells) html += fmt::format("<{0}>{1}</{0}>", element, EscapeHtml(cell));
+  for (const auto& cell : cells) {
+    const bool words = element == "td" && cell.size() > kWords;
+    html += fmt::format("<{0}{1}>{2}</{0}>", element, words ? " class=\"words\"" : "",
+                        EscapeHtml(cell));
+  }
   return html + "</tr>\n";
 }
 

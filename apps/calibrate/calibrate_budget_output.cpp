@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "apps/calibrate/calibrate_verdict.h"
 #include "recording/text.h"
 #include "report/figure.h"
 #include "report/pages.h"
@@ -156,6 +157,28 @@ std::string Advice(const std::vector<PartFigures>& parts) {
   return {};
 }
 
+CalibrationVerdict Verdict(const std::vector<PartFigures>& parts,
+                           const std::vector<NotKnown>& not_known, std::size_t frames) {
+  CalibrationVerdict verdict;
+  verdict.next = Advice(parts);
+  for (const PartFigures& part : parts) {
+    verdict.Add(part.in_total ? part.name : part.name + " (if bending were corrected)",
+                fmt::format("{:.3g} mm in depth", part.depth_mm),
+                fmt::format("{:.3g} mm across", part.across_mm));
+  }
+  verdict.Add("frames", std::to_string(frames));
+  for (const NotKnown& one : not_known) verdict.not_found.push_back({one.part, one.reason});
+  const PartFigures& total = parts.back();
+  verdict.says =
+      fmt::format("The tip is known to {:.2g} mm along the line of sight and {:.2g} mm across it.",
+                  total.depth_mm, total.across_mm);
+  if (!not_known.empty()) {
+    verdict.Beware(Counted(not_known.size(), "part") +
+                   " of the chain had no calibration: the truth is worse than this total");
+  }
+  return verdict;
+}
+
 }  // namespace
 
 std::string BudgetText(const std::vector<TimedBudget>& budgets) {
@@ -187,6 +210,7 @@ void WriteBudgetResults(OutputFolder& output, const std::vector<TimedBudget>& bu
   output.WriteSummary({{"frames", budgets.size()},
                        {"parts", list},
                        {"not_known", missing},
+                       {"verdict", VerdictJson(Verdict(parts, not_known, budgets.size()))},
                        {"advice", Advice(parts)},
                        {"calibrations", calibrations}});
   WriteCalibrateReport(output.folder());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/calibrate/calibrate_camera_pictures.h"
+#include "apps/calibrate/calibrate_camera_verdict.h"
 #include "apps/calibrate/calibrate_uncertainty.h"
 #include "calibration/camera/camera_board_shape.h"
 #include "calibration/camera/camera_choice.h"
@@ -180,6 +181,7 @@ void WriteCameraResults(OutputFolder& output, const CornersFile& corners,
   DrawCameraPictures(folder, corners, result);
   json summary = Summary(result);
   AddUncertainty(folder, result.solution, BoardCorners(ParseBoardSpec(corners.board)), summary);
+  summary["verdict"] = VerdictJson(CameraVerdict(result, summary));
   output.WriteSummary(summary);
   WriteCalibrateReport(folder);
   output.Commit();

@@ -82,6 +82,7 @@ void RunCalibrateEm(const CalibrateEmOptions& options, bool quiet) {
     WriteFigures(output.folder() / "figures.json", EmFigures(found.pairs, result));
   }
   auto summary = EmSummary(found.pairs, result);
+  summary["verdict"] = VerdictJson(EmVerdict(result));
   summary["reference"] = options.reference;
   summary["samples_without_reference"] = found.left_out;
   output.WriteSummary(summary);

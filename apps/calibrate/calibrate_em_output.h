@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/calibrate/calibrate_verdict.h"
 #include "calibration/em/em_calibration.h"
 #include "recording/calibration_file.h"
 #include "report/figure.h"
@@ -14,6 +15,8 @@ namespace flextip {
 Calibration EmFileOf(const EmResult& result);
 
 nlohmann::json EmSummary(const std::vector<EmPair>& pairs, const EmResult& result);
+
+CalibrationVerdict EmVerdict(const EmResult& result);
 
 /// A row a sample, in mm.
 std::string EmResidualTable(const std::vector<EmPair>& pairs, const EmResult& result);

@@ -91,6 +91,7 @@ void WriteResults(const HandEyeCommand& options, const Recording& recording,
   }
   nlohmann::json summary = HandEyeSummary(result, calibration);
   summary["target"] = target == "board" ? options.board : "tags0";
+  summary["verdict"] = VerdictJson(HandEyeVerdict(result, calibration));
   summary["mount"] = options.eye_in_hand ? "eye-in-hand" : "eye-to-hand";
   output.WriteSummary(summary);
   WriteCalibrateReport(output.folder());

@@ -64,50 +64,90 @@ json Motions(const HandEyeResult& result) {
   return motions;
 }
 
-// One bar a view: by frames found with it, and without it; not used ones apart.
-Figure BarsOf(const HandEyeResult& result, double HandEyeViewResult::*with,
-              double HandEyeViewResult::*without) {
+// What the views' names do not have in common, at both ends.
+std::vector<std::string> ShortNames(const HandEyeResult& result) {
+  std::vector<std::string> names;
+  for (const HandEyeViewResult& v : result.views) names.push_back(v.name);
+  if (names.size() < 2) return names;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t front = 0, back = 0, shortest = names[0].size();
+  for (const auto& name : names) shortest = std::min(shortest, name.size());
+  const auto common = [&](auto letter) {
+    return std::all_of(names.begin(), names.end(),
+                       [&](const auto& name) { return letter(name) == letter(names[0]); });
+  };
+  while (front < shortest && common([&](const auto& n) { return n[front]; }) &&
+         !is_digit(names[0][front])) {
+    ++front;
+  }
+  while (front + back < shortest && common([&](const auto& n) { return n[n.size() - 1 - back]; }) &&
+         !is_digit(names[0][names[0].size() - 1 - back])) {
+    ++back;
+  }
+  for (auto& name : names) {
+    if (name.size() > front + back) name = name.substr(front, name.size() - front - back);
+  }
+  return names;
+}
+
+// A point a view: by frames found with it, and without it; those not used apart.
+Figure PointsOf(const HandEyeResult& result, double HandEyeViewResult::*with,
+                double HandEyeViewResult::*without) {
   Figure figure;
   figure.x_label = "view";
-  FigureTrace in{.name = "used", .kind = FigureTrace::Kind::kBars};
-  FigureTrace held{.name = "the same, held out", .kind = FigureTrace::Kind::kBars};
-  FigureTrace out{.name = "not used", .kind = FigureTrace::Kind::kBars, .color = "#d55e00"};
-  for (const HandEyeViewResult& v : result.views) {
-    if (!v.seen || !std::isfinite(v.*with)) continue;
-    for (auto* trace : v.used ? std::vector{&in, &held} : std::vector{&out}) {
-      trace->labels.push_back(v.name);
-      trace->y.push_back(v.*(trace == &held ? without : with));
+  using enum FigureTrace::Kind;
+  FigureTrace in{.name = "used", .kind = kPoints, .color = "#0072b2"};
+  FigureTrace held{
+      .name = "held out", .kind = kPoints, .color = "#009e73", .symbol = "circle-open"};
+  FigureTrace out{.name = "not used", .kind = kPoints, .color = "#d55e00", .symbol = "x"};
+  const std::vector<std::string> names = ShortNames(result);
+  std::vector<double> used;
+  for (std::size_t i = 0; i < result.views.size(); ++i) {
+    const HandEyeViewResult& v = result.views[i];
+    const bool shown = v.seen && std::isfinite(v.*with);
+    for (auto* trace : {&in, &held, &out}) {
+      const bool mine = shown && v.used == (trace != &out);
+      trace->labels.push_back(names[i]);
+      trace->y.push_back(mine ? v.*(trace == &held ? without : with) : std::nan(""));
     }
+    if (shown) (v.used ? used : out.x).push_back(v.*with);
   }
+  // One that is far off must not flatten the others.
+  const double most = out.x.empty() ? 0.0 : *std::max_element(out.x.begin(), out.x.end());
+  figure.log_y = !used.empty() && most > 5 * *std::max_element(used.begin(), used.end());
+  out.x.clear();
   figure.traces = {in, held, out};
-  std::erase_if(figure.traces, [](const FigureTrace& t) { return t.y.empty(); });
+  std::erase_if(figure.traces, [](const FigureTrace& t) {
+    return std::none_of(t.y.begin(), t.y.end(), [](double y) { return std::isfinite(y); });
+  });
   return figure;
 }
 
 FigureTrace WristSteps(const HandEyeResult& result, bool orientation) {
   FigureTrace trace{.name = orientation ? "orientation (deg)" : "position (mm)",
-                    .kind = FigureTrace::Kind::kBars};
+                    .kind = FigureTrace::Kind::kPoints,
+                    .color = orientation ? "#b0578d" : "#0072b2",
+                    .symbol = orientation ? "diamond-open" : "circle"};
+  trace.labels = ShortNames(result);
   for (const HandEyeViewResult& v : result.views) {
-    if (!v.used) continue;
-    trace.labels.push_back(v.name);
-    trace.y.push_back(orientation ? kDegrees * v.wrist_step.head<3>().norm()
-                                  : 1e3 * v.wrist_step.tail<3>().norm());
+    const double step = orientation ? kDegrees * v.wrist_step.head<3>().norm()
+                                    : 1e3 * v.wrist_step.tail<3>().norm();
+    trace.y.push_back(v.used ? step : std::nan(""));
   }
   return trace;
 }
 
 std::vector<Figure> Figures(const HandEyeResult& result) {
-  Figure px = BarsOf(result, &HandEyeViewResult::px, &HandEyeViewResult::held_out_px);
+  Figure px = PointsOf(result, &HandEyeViewResult::px, &HandEyeViewResult::held_out_px);
   px.name = "px";
-  px.title = "Corners in the picture";
+  px.title = "Corners in the picture, view by view";
   px.caption =
       "RMS distance of the corners from where wrist and calibration put them, the wrist as "
-      "measured. "
-      "Held out: by a calibration without this view.";
+      "measured. Held out: by a calibration without this view.";
   px.y_label = "distance (px)";
-  Figure mm = BarsOf(result, &HandEyeViewResult::mm, &HandEyeViewResult::held_out_mm);
+  Figure mm = PointsOf(result, &HandEyeViewResult::mm, &HandEyeViewResult::held_out_mm);
   mm.name = "mm";
-  mm.title = "Corners in space";
+  mm.title = "Corners in space, view by view";
   mm.caption =
       "RMS distance between the corners of the board as its picture alone has it and as wrist and "
       "calibration have it.";
@@ -118,7 +158,7 @@ std::vector<Figure> Figures(const HandEyeResult& result) {
                    "From each measured wrist pose to the one that fits the picture best "
                    "within the wrist's noise.",
                .x_label = "view",
-               .y_label = "correction",
+               .y_label = "correction (mm, deg)",
                .traces = {WristSteps(result, false), WristSteps(result, true)}};
   return {px, mm, wrist};
 }
@@ -172,14 +212,20 @@ void WriteHandEyeTables(const std::filesystem::path& folder, const HandEyeResult
 }
 
 void DrawHandEyeView(Image& image, const HandEyeViewResult& view) {
-  DrawPoints(image, view.px_seen);
   cv::Mat canvas(image.height_px, image.width_px, CV_8UC3, image.data.data());
-  for (const Eigen::Vector2d& p : view.px_chain) {
+  const int wide = std::max(1, image.width_px / 640);  // still seen where the picture is small
+  const auto at = [](const Eigen::Vector2d& p) {
+    return cv::Point(static_cast<int>(std::lround(16 * p.x())),
+                     static_cast<int>(std::lround(16 * p.y())));
+  };
+  const cv::Scalar seen(60, 200, 60), chain(60, 60, 240);
+  for (std::size_t i = 0; i < view.px_seen.size(); ++i) {
+    cv::circle(canvas, at(view.px_seen[i]), 2 * wide << 4, seen, cv::FILLED, cv::LINE_AA, 4);
+  }
+  for (std::size_t i = 0; i < view.px_chain.size(); ++i) {
+    const Eigen::Vector2d& p = view.px_chain[i];
     if (p.cwiseAbs().maxCoeff() > 1e5) continue;
-    cv::circle(
-        canvas,
-        {static_cast<int>(std::lround(16 * p.x())), static_cast<int>(std::lround(16 * p.y()))},
-        5 << 4, {60, 60, 240}, 1, cv::LINE_AA, 4);
+    cv::circle(canvas, at(p), 4 * wide << 4, chain, wide, cv::LINE_AA, 4);
   }
   DrawLabel(image, std::isfinite(view.px)
                        ? fmt::format("{}: {:.2f} px, {:.2f} mm{}", view.name, view.px, view.mm,

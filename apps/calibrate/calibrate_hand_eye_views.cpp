@@ -34,6 +34,26 @@ BoardSighting SightingOfCollar(TagDetector& detector, const TagCollar& collar, c
   return seen;
 }
 
+// Pictures that did not tell a charuco board's layout, once another has.
+void DetectAgain(const std::filesystem::path& folder, const CameraStream& camera, BoardSpec board,
+                 const std::vector<std::size_t>& frames, std::vector<HandEyeView>& views) {
+  const auto telling = std::find_if(views.begin(), views.end(), [](const HandEyeView& view) {
+    return view.sighting.layout != CharucoLayout::kUnknown;
+  });
+  if (board.kind != BoardKind::kCharuco || telling == views.end()) return;
+  board.layout = telling->sighting.layout;
+  std::vector<std::size_t> places, again;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (views[i].sighting.layout == board.layout) continue;
+    places.push_back(i);
+    again.push_back(frames[i]);
+  }
+  std::size_t next = 0;
+  ShowFrames(folder, camera, again, [&](std::size_t, const Image& image) {
+    views[places[next++]].sighting = DetectBoard(image, board);
+  });
+}
+
 }  // namespace
 
 std::vector<HandEyeView> FindHandEyeViews(
@@ -61,6 +81,7 @@ std::vector<HandEyeView> FindHandEyeViews(
     progress(views.size(), (source->Count() + every - 1) / every);
     if (every > 1) source->Skip(every - 1);
   }
+  if (board) DetectAgain(folder, camera, *board, frames, views);
   return views;
 }
 

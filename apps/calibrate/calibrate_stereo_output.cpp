@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/calibrate/calibrate_camera_verdict.h"
 #include "apps/calibrate/calibrate_stereo_files.h"
 #include "apps/calibrate/calibrate_uncertainty.h"
 #include "recording/calibration_file.h"
@@ -196,6 +197,7 @@ void WriteStereoResults(OutputFolder& output, const StereoResult& result, const 
     }
     if (!pair.apart.empty()) output.Warn(fmt::format("{}: {}", pair.names[0], pair.apart));
   }
+  summary["verdict"] = VerdictJson(StereoVerdict(result, summary));
   output.WriteSummary(summary);
   WriteCalibrateReport(folder);
   output.Commit();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/calibrate/calibrate.h"
+#include "apps/calibrate/calibrate_loads_verdict.h"
 #include "apps/output.h"
 #include "apps/recording_input.h"
 #include "calibration/shaft/stiffness_calibration.h"
@@ -179,6 +180,7 @@ void Run(Options options, bool quiet) {
   WriteTextFile(output.folder() / "residuals.csv", ResidualsText(result));
   WriteFigures(output.folder() / "figures.json", {InsertionFigure(result), LoadFigure(result)});
   nlohmann::json summary = Summary(result);
+  summary["verdict"] = VerdictJson(StiffnessVerdict(result));
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   output.WriteSummary(summary);
   WriteCalibrateReport(output.folder());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/calibrate/calibrate.h"
+#include "apps/calibrate/calibrate_loads_verdict.h"
 #include "apps/output.h"
 #include "apps/recording_input.h"
 #include "calibration/shaft/strain_calibration.h"
@@ -183,6 +184,7 @@ void Run(const Options& options, bool quiet) {
     WriteFigures(output.folder() / "figures.json", {MomentsFigure(result), ResidualFigure(result)});
   }
   nlohmann::json summary = Summary(result);
+  summary["verdict"] = VerdictJson(StrainVerdict(result));
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   output.WriteSummary(summary);
   WriteCalibrateReport(output.folder());

@@ -118,7 +118,9 @@ void RunCalibrateTip(const CalibrateTipOptions& options, bool quiet) {
     WriteTextFile(output.folder() / "residuals.csv", TipResidualTable(body.poses, result));
     WriteFigures(output.folder() / "figures.json", TipFigures(body.poses, result));
   }
-  output.WriteSummary(TipSummary(body.poses, result, body.tip_name, body.frame));
+  auto summary = TipSummary(body.poses, result, body.tip_name, body.frame);
+  summary["verdict"] = VerdictJson(TipVerdict(result, body.tip_name, body.frame));
+  output.WriteSummary(summary);
   WriteCalibrateReport(output.folder());
   output.Commit();
   if (!quiet) PrintResult(options, result, body);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/calibrate/calibrate_verdict.h"
 #include "calibration/tip/pivot.h"
 #include "recording/calibration_file.h"
 #include "report/figure.h"
@@ -19,6 +20,9 @@ std::string AdviceText(const PivotResult& result, const std::string& body);
 
 nlohmann::json TipSummary(const std::vector<PivotPose>& poses, const PivotResult& result,
                           const std::string& tip_name, const std::string& body);
+
+CalibrationVerdict TipVerdict(const PivotResult& result, const std::string& tip_name,
+                              const std::string& body);
 
 /// A row a pose, in mm.
 std::string TipResidualTable(const std::vector<PivotPose>& poses, const PivotResult& result);

@@ -16,6 +16,7 @@ constexpr double kChi2Median = 5.348, kChi2Limit = 27.86;  // six degrees of fre
 constexpr double kOffsetScan_s = 0.3, kOffsetStep_s = 0.025;
 constexpr double kSameOffset_s = 1e-6, kSameNoise = 0.01;
 constexpr double kKnownOffset_s = 0.05;
+constexpr double kDoubtfulNoise = 10.0;  // over the stated one
 
 // By how much each view's seen board differs from the chain's.
 void JudgeViews(HandEyeWork& work) {
@@ -196,6 +197,43 @@ void DropUnknownTimeOffset(HandEyeWork& work) {
   FitAll(work);
 }
 
+// Frames of which few views approve, or only with a wrist far worse than stated.
+bool IsDoubtful(const HandEyeWork& work) {
+  return 2 * work.Used() <= static_cast<int>(work.PoseViews().size()) ||
+         work.noise.orientation_rad > kDoubtfulNoise * work.stated.orientation_rad ||
+         work.noise.position_m > kDoubtfulNoise * work.stated.position_m;
+}
+
+bool FitViews(HandEyeWork& work) {
+  if (!Start(work) || !FitAll(work)) return false;
+  DropUnknownTimeOffset(work);
+  return true;
+}
+
+// Whether the views fit with camera and board in each other's place.
+bool FitsTheOtherWay(HandEyeInput input, const HandEyeOptions& options) {
+  input.mount =
+      input.mount == HandEyeMount::kEyeToHand ? HandEyeMount::kEyeInHand : HandEyeMount::kEyeToHand;
+  HandEyeWork work = BeginHandEye(input, options);
+  return FitViews(work) && !IsDoubtful(work);
+}
+
+// Why nothing can be said; empty where something can.
+std::string WhyNothing(HandEyeWork& work, const HandEyeInput& input) {
+  const bool fits = FitViews(work);
+  if (fits && !IsDoubtful(work)) return {};
+  if (FitsTheOtherWay(input, work.options)) {
+    return work.mount == HandEyeMount::kEyeToHand
+               ? "the views fit only if the camera is on the wrist (--eye-in-hand)"
+               : "the views fit only if the board is on the wrist (without --eye-in-hand)";
+  }
+  const auto usable = work.PoseViews().size();
+  if (!fits) return "no frames fit three of the views";
+  if (2 * work.Used() > static_cast<int>(usable)) return {};
+  return fmt::format("only {} of {} views agree: wrong wrist poses, board or clocks", work.Used(),
+                     usable);
+}
+
 }  // namespace
 
 HandEyeResult CalibrateHandEye(const HandEyeInput& input, const HandEyeOptions& options) {
@@ -214,10 +252,8 @@ HandEyeResult CalibrateHandEye(const HandEyeInput& input, const HandEyeOptions& 
         HandEyeStatus::kTooFewViews,
         fmt::format("{} views with board and wrist, at least {} are needed", usable, kMinViews));
   }
-  if (!Start(work) || !FitAll(work)) {
-    return finish(HandEyeStatus::kNotConverged, "no frames fit three of the views");
-  }
-  DropUnknownTimeOffset(work);
+  const std::string why_nothing = WhyNothing(work, input);
+  if (!why_nothing.empty()) return finish(HandEyeStatus::kNotConverged, why_nothing);
   for (WorkView& view : work.views) {
     if (view.Usable() && !view.used) view.reason = WhyNotUsed(work, view);
     if (view.used) view.reason.clear();

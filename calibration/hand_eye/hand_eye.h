@@ -107,7 +107,8 @@ struct HandEyeResult {
 /// Start: both planar poses of every board, chosen together (hand_eye_start.h). Then maximum
 /// a-posteriori over both frames, the time offset and every wrist pose within its noise, from all
 /// corners; views that do not fit the others are left out, worst first. The noises of corners and
-/// wrist are estimated with it (variance components, Foerstner 1979).
+/// wrist are estimated with it (variance components, Foerstner 1979). Not converged is also what
+/// half of the views disagree with, and what fits only with the other mount; `message` says so.
 HandEyeResult CalibrateHandEye(const HandEyeInput& input, const HandEyeOptions& options = {});
 
 /// The result under the names of docs/formats.md. `board` is "board", or "tags0" for the collar, of

@@ -103,6 +103,29 @@ TEST_P(HandEyeBothMounts, TheDerivativesAreThose) {
   EXPECT_LT((ChainJacobian(s.mount, s.T_FC, s.T_KB, T_RW) - steps).norm(), 1e-7);
 }
 
+TEST_P(HandEyeBothMounts, TheWrongMountIsNoticed) {
+  for (const int views : {6, 12}) {
+    HandEyeInput input = Record(Given(), views, 4);
+    const bool to_hand = input.mount == HandEyeMount::kEyeToHand;
+    input.mount = to_hand ? HandEyeMount::kEyeInHand : HandEyeMount::kEyeToHand;
+    const auto r = CalibrateHandEye(input, kQuick);
+    EXPECT_EQ(r.status, HandEyeStatus::kNotConverged);
+    EXPECT_THAT(r.message,
+                HasSubstr(to_hand ? "the board is on the wrist" : "the camera is on the wrist"));
+  }
+}
+
+// Pictures of another day: their wrists have nothing to do with the boards.
+TEST(HandEye, WristsOfAnotherRecordingAreRefused) {
+  HandEyeInput input = Record(EyeToHand(), 12, 4);
+  Scene other = EyeToHand();
+  other.board =
+      hand_eye_test::Steps(other.frame_period_s, 0.25, 0.5, 99, hand_eye_test::Middle(other));
+  input.wrist = Record(other, 12, 5).wrist;
+  const auto r = CalibrateHandEye(input, kQuick);
+  EXPECT_TRUE(r.status == HandEyeStatus::kNotConverged || (!r.knows_camera && !r.knows_board));
+}
+
 TEST(HandEye, FindsTheTimeOffset) {
   Scene s = EyeToHand();
   s.frame_period_s = 0.3137;  // pictures fall between the wrist's samples

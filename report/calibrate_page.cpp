@@ -1,0 +1,141 @@
+// The page of flextip calibrate: verdict, figures, pictures, then every number.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "report/diagnose_parts.h"
+#include "report/page_parts.h"
+#include "report/pages.h"
+#include "report/report.h"
+#include "report/result_files.h"
+
+namespace flextip {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kPictures = 12;
+constexpr std::size_t kResiduals = 400;  // rows of residuals.csv that a page shows
+
+std::string TitleOf(const std::string& command) {
+  static const std::map<std::string, std::string> titles = {
+      {"calibrate budget", "Error budget of the tip"},
+      {"calibrate camera", "Camera calibration"},
+      {"calibrate em", "EM calibration"},
+      {"calibrate hand-eye", "Hand-eye calibration"},
+      {"calibrate stereo", "Stereo calibration"},
+      {"calibrate stiffness", "Stiffness of the shaft"},
+      {"calibrate strain", "Strain gage calibration"},
+      {"calibrate tip", "Tip calibration"}};
+  const auto it = titles.find(command);
+  return it == titles.end() ? "Calibration" : it->second;
+}
+
+std::string Text(const Json& object, const char* key) {
+  return object.contains(key) && object[key].is_string() ? object[key].get<std::string>() : "";
+}
+
+std::string VerdictHtml(const Json& verdict) {
+  const std::string grade = Text(verdict, "grade");
+  std::string html =
+      fmt::format("<section class=\"verdict {}\">\n<p class=\"says\">{}</p>\n",
+                  grade == "good" ? "good" : "beware", EscapeHtml(Text(verdict, "says")));
+  if (verdict.contains("reasons") && !verdict["reasons"].empty()) {
+    html += "<ul class=\"reasons\">\n";
+    for (const auto& r : verdict["reasons"]) {
+      html += fmt::format("<li>{}</li>\n", EscapeHtml(r.get<std::string>()));
+    }
+    html += "</ul>\n";
+  }
+  const std::string next = Text(verdict, "next");
+  if (!next.empty()) {
+    html += fmt::format("<p class=\"advice\"><b>Next:</b> {}.</p>\n", EscapeHtml(next));
+  }
+  return html + "</section>\n";
+}
+
+std::string ValuesHtml(const Json& values) {
+  if (values.empty()) return "";
+  std::string html = "<dl class=\"figures found\">\n";
+  for (const auto& v : values) {
+    const std::string sd = Text(v, "sd");
+    html += fmt::format("<div><dt>{}</dt><dd>{}{}</dd></div>\n", EscapeHtml(Text(v, "name")),
+                        EscapeHtml(Text(v, "value")),
+                        sd.empty() ? "" : fmt::format("<small>± {}</small>", EscapeHtml(sd)));
+  }
+  return html + "</dl>\n";
+}
+
+std::string NotFoundHtml(const Json& list) {
+  if (list.empty()) return "";
+  std::string html = "<aside class=\"warnings\"><h3>What could not be found</h3>\n<ul>\n";
+  for (const auto& one : list) {
+    html += fmt::format("<li><b>{}</b>: {}</li>\n", EscapeHtml(Text(one, "parameter")),
+                        EscapeHtml(Text(one, "reason")));
+  }
+  return html + "</ul></aside>\n";
+}
+
+// Warnings that say no more than what could not be found.
+std::vector<std::string> Warnings(const Json& summary, const Json& not_found) {
+  std::vector<std::string> warnings;
+  for (const auto& w : summary.value("warnings", Json::array())) {
+    const auto text = w.get<std::string>();
+    bool said = false;
+    for (const auto& one : not_found) {
+      said = said || text.find(Text(one, "reason")) != std::string::npos;
+    }
+    if (!said) warnings.push_back(text);
+  }
+  return warnings;
+}
+
+void AddResiduals(Report& report, const fs::path& file) {
+  if (!fs::exists(file)) return;
+  const auto table = ReadResultTable(file);
+  const std::size_t shown = std::min(kResiduals, table.Rows());
+  std::vector<std::vector<std::string>> rows(shown);
+  for (std::size_t r = 0; r < shown; ++r) {
+    for (const auto& column : table.texts) rows[r].push_back(column[r]);
+  }
+  const std::string title =
+      shown == table.Rows()
+          ? fmt::format("residuals.csv ({} rows)", shown)
+          : fmt::format("residuals.csv (the first {} of {} rows)", shown, table.Rows());
+  report.AddHtml(FoldedTableHtml(title, table.names, rows));
+}
+
+}  // namespace
+
+void WriteCalibrateReport(const fs::path& folder) {
+  Report report = TitledPage(folder, TitleOf);
+  const Json summary = Json::parse(ReadBytes(folder / "summary.json"));
+  const Json verdict = summary.value("verdict", Json::object());
+  const Json not_found = verdict.value("not_found", Json::array());
+  if (!verdict.empty()) {
+    report.AddHtml(VerdictHtml(verdict));
+    report.AddHtml(ValuesHtml(verdict.value("values", Json::array())));
+    report.AddHtml(NotFoundHtml(not_found));
+  }
+  report.AddWarnings(Warnings(summary, not_found));
+  if (fs::exists(folder / "figures.json")) {
+    report.AddHeading("Residuals");
+    AddFigureFile(report, folder / "figures.json");
+  }
+  auto pictures = PicturesIn(folder, kPictures);
+  const auto views = PicturesIn(folder / "overlay", kPictures);
+  pictures.insert(pictures.end(), views.begin(), views.end());
+  AddPictureFiles(report, "Pictures", pictures);
+  report.AddHeading("All numbers");
+  AddSummaryFigures(report, folder);
+  AddSummaryTables(report, folder);
+  AddResiduals(report, folder / "residuals.csv");
+  report.Write(folder / "report.html");
+}
+
+}  // namespace flextip
