@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/calibrate/board_json.h"
 #include "apps/calibrate/calibrate_camera_pictures.h"
 #include "apps/calibrate/calibrate_camera_verdict.h"
 #include "apps/calibrate/calibrate_uncertainty.h"
-#include "calibration/camera/camera_board_shape.h"
 #include "calibration/camera/camera_choice.h"
 #include "calibration/camera/camera_split.h"
 #include "core/error.h"
@@ -92,18 +92,6 @@ json WarpJson(const CameraCalibrationResult& r) {
   return warp;
 }
 
-json ShapeJson(const CameraCalibrationResult& r) {
-  const BoardShape& board = r.solution.shape;
-  json shape = {{"estimated", board.sd_m > 0}, {"reason", r.shape_reason}};
-  if (!(board.sd_m > 0)) return shape;
-  const auto [rms_m, longest_m] = SizeOf(board);
-  shape.update({{"rms_m", rms_m}, {"longest_m", longest_m}, {"prior_sd_m", board.sd_m}});
-  for (const auto& [id, offset] : board.offset_B) {
-    shape["offsets_m"].push_back({id, offset.x(), offset.y(), offset.z()});
-  }
-  return shape;
-}
-
 json Summary(const CameraCalibrationResult& r) {
   const CameraCalibration& c = r.solution.camera;
   json summary = {
@@ -120,7 +108,7 @@ json Summary(const CameraCalibrationResult& r) {
       {"lens_candidates", CandidatesJson(r)},
       {"board_warp", WarpJson(r)},
       {"views", ViewsJson(r)}};
-  summary["board_shape"] = ShapeJson(r);
+  summary["board_shape"] = BoardShapeJson(r.solution.shape, r.shape_reason);
   if (const auto split = SplitViews(r.solution)) {
     summary["split_views_rms_px"] = split->rms_px;
     summary["split_views_max_px"] = split->max_px;

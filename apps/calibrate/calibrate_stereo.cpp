@@ -1,17 +1,18 @@
 // flextip calibrate stereo: two cameras fixed to each other, from pictures of a board.
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "apps/calibrate/board_pictures.h"
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/calibrate_stereo_output.h"
-#include "apps/frames.h"
+#include "apps/calibrate/lens_options.h"
 #include "apps/output.h"
-#include "apps/progress.h"
 #include "core/error.h"
 #include "recording/camera_file.h"
 
@@ -22,61 +23,47 @@ namespace fs = std::filesystem;
 
 struct CalibrateStereoOptions {
   std::vector<fs::path> left, right;
-  std::string board, distortion = "auto", warp = "auto";
-  int terms = 5;
+  LensOptions lens;
+  std::vector<fs::path> corners;  // none, or of the left and the right camera
   fs::path pose;
   bool force = false;
   fs::path out;
 };
 
-StereoOptions CalibrationOptions(const CalibrateStereoOptions& o) {
-  StereoOptions options;
-  auto& lens = options.camera.lens;
-  if (o.distortion == "radial-tangential") lens = {Distortion::kRadialTangential, 4};
-  if (o.distortion == "equidistant") lens = {Distortion::kEquidistant, 4};
-  if (o.distortion == "opencv") lens = {Distortion::kOpenCv, o.terms};
-  if (o.warp != "auto") options.camera.warp = o.warp == "on";
-  return options;
-}
-
-// The board in one eye's picture; all of an eye's pictures have the size of its first.
-BoardView Detect(const fs::path& file, const BoardSpec& board, Eigen::Vector2i& size_px) {
-  const Image image = ReadImageFile(file);
-  const Eigen::Vector2i size(image.width_px, image.height_px);
-  if (size_px.isZero()) size_px = size;
-  if (size != size_px) {
-    throw InputError::At(file.string(), 0,
-                         fmt::format("expected {}x{} pixels as in the first, found {}x{}",
-                                     size_px.x(), size_px.y(), size.x(), size.y()));
+// What both cameras saw, picture by picture in their order.
+std::vector<StereoPair> Pair(std::array<CornersFile, 2> eyes) {
+  if (eyes[0].views.size() != eyes[1].views.size()) {
+    throw InputError(fmt::format(
+        "calibrate stereo: {} left and {} right pictures; they are paired in their order",
+        eyes[0].views.size(), eyes[1].views.size()));
   }
-  return {file.string(), DetectBoard(image, board)};
+  std::vector<StereoPair> pairs;
+  for (std::size_t i = 0; i < eyes[0].views.size(); ++i) {
+    pairs.push_back({{std::move(eyes[0].views[i]), std::move(eyes[1].views[i])}});
+  }
+  return pairs;
 }
 
 void RunCalibrateStereo(const CalibrateStereoOptions& options, bool quiet) {
-  if (options.left.size() != options.right.size()) {
-    throw InputError(fmt::format(
-        "calibrate stereo: {} left and {} right pictures; they are paired in their order",
-        options.left.size(), options.right.size()));
-  }
-  const BoardSpec board = ParseBoardSpec(options.board);
   Pose T_RC0;
   if (!options.pose.empty()) T_RC0 = ReadCameraCalibration(options.pose).T_RC;
   std::vector<fs::path> inputs = options.left;
   inputs.insert(inputs.end(), options.right.begin(), options.right.end());
   OutputFolder output(options.out, "calibrate stereo", {.force = options.force, .inputs = inputs});
-  std::vector<StereoPair> pairs;
-  std::array<Eigen::Vector2i, 2> sizes_px = {Eigen::Vector2i::Zero(), Eigen::Vector2i::Zero()};
-  {
-    Progress progress("pairs", options.left.size(), quiet);
-    for (std::size_t i = 0; i < options.left.size(); ++i) {
-      pairs.push_back({{Detect(options.left[i], board, sizes_px[0]),
-                        Detect(options.right[i], board, sizes_px[1])}});
-      progress.Update(pairs.size());
-    }
+  std::array<CornersFile, 2> eyes;
+  std::array<Eigen::Vector2i, 2> sizes_px;
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const fs::path corners = options.corners.empty() ? fs::path() : options.corners[eye];
+    const auto& images = eye == 0 ? options.left : options.right;
+    eyes[eye] = CornersOf({images, options.lens.board, corners}, quiet);
+    sizes_px[eye] = {eyes[eye].width_px, eyes[eye].height_px};
   }
-  const StereoResult result = CalibrateStereo(pairs, sizes_px, board, CalibrationOptions(options));
+  StereoOptions calibration;
+  calibration.camera = options.lens.Calibration();
+  const StereoResult result = CalibrateStereo(Pair(std::move(eyes)), sizes_px,
+                                              ParseBoardSpec(options.lens.board), calibration);
   if (!result.IsUsable()) throw WorkError(fmt::format("calibrate stereo: {}", result.message));
-  WriteStereoResults(output, result, options.board, T_RC0);
+  WriteStereoResults(output, result, options.lens.board, T_RC0);
   if (quiet) return;
   fmt::print("{} pairs and {} single views used, reprojection error {:.4f} px RMS\n",
              result.pairs_used, result.single_views_used, result.solution.RmsPx());
@@ -94,26 +81,16 @@ void RunCalibrateStereo(const CalibrateStereoOptions& options, bool quiet) {
 void AddCalibrateStereo(CLI::App& calibrate, AppContext& context) {
   auto* command = calibrate.add_subcommand("stereo", "Two cameras fixed to each other");
   auto options = std::make_shared<CalibrateStereoOptions>();
-  command->add_option("left", options->left, "Pictures of camera 0, in order")
-      ->required()
-      ->type_name("IMAGE");
+  command->add_option("left", options->left, "Pictures of camera 0, in order")->type_name("IMAGE");
   command->add_option("--right", options->right, "Of camera 1, at the same moments")
-      ->required()
       ->type_name("IMAGE");
-  command->add_option("--board", options->board, "As in calibrate camera")
-      ->required()
-      ->type_name("SPEC");
+  AddLensOptions(*command, options->lens);
   command
-      ->add_option("--distortion", options->distortion,
-                   "auto (by the error of held-out views), radial-tangential, opencv, equidistant")
-      ->check(CLI::IsMember({"auto", "radial-tangential", "opencv", "equidistant"}))
-      ->capture_default_str();
-  command->add_option("--terms", options->terms, "Terms of the opencv model")
-      ->check(CLI::IsMember({5, 8, 12}))
-      ->capture_default_str();
-  command->add_option("--warp", options->warp, "Whether the board may be bent: auto, on or off")
-      ->check(CLI::IsMember({"auto", "on", "off"}))
-      ->capture_default_str();
+      ->add_option("--corners", options->corners,
+                   "Detected corners of the left and of the right camera: read where the file "
+                   "exists, else written")
+      ->expected(2)
+      ->type_name("LEFT RIGHT");
   command->add_option("--pose", options->pose, "A sensor.yaml with camera 0's T_RC; else it is R")
       ->type_name("FILE");
   command->add_option("-o,--output", options->out, "Folder for the results")->required();

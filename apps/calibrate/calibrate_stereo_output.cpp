@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/calibrate/board_json.h"
 #include "apps/calibrate/calibrate_camera_verdict.h"
 #include "apps/calibrate/calibrate_stereo_files.h"
 #include "apps/calibrate/calibrate_uncertainty.h"
@@ -100,6 +101,7 @@ json Summary(const StereoResult& r) {
                   {"corners_used", r.solution.CornersUsed()},
                   {"baseline_m", r.baseline.length_m},
                   {"baseline_sd_m", r.baseline.sd_m},
+                  {"board_shape", BoardShapeJson(r.solution.shape, r.shape_reason)},
                   {"extrinsics", PoseJson(r)},
                   {"epipolar_rms_px", r.epipolar_rms_px},
                   {"cam0", EyeJson(r, 0)},

@@ -18,8 +18,7 @@ struct Sums {
 };
 
 struct Seen {
-  double row_m;                       // as described
-  Eigen::Vector3d x_B;                // as it is
+  Eigen::Vector3d x_B;                // as the board is
   Eigen::Vector2d left_px, right_px;  // rectified
 };
 
@@ -36,7 +35,7 @@ std::map<int, Seen> SeenByBoth(const StereoSolution& s, const StereoView& view,
     const auto a = RectifiedPixel(rectification, 0, s.cameras[0], view.eyes[0].px[i]);
     const auto b = RectifiedPixel(rectification, 1, s.cameras[1], view.eyes[1].px[other->second]);
     if (a && b) {
-      seen[other->first] = {view.eyes[0].x_B[i].y(), s.CornerOf(view.eyes[0], i), *a, *b};
+      seen[other->first] = {s.CornerOf(view.eyes[0], i), *a, *b};
     }
   }
   return seen;
@@ -48,6 +47,11 @@ Eigen::Vector3d Triangulate(const Eigen::Matrix4d& Q, const Seen& s) {
       .hnormalized();
 }
 
+// The next id is to the right, not at the other end of the next row.
+bool BesideInRow(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return b.x() > a.x() && std::abs(b.y() - a.y()) < 0.3 * (b.x() - a.x());
+}
+
 void Add(const StereoSolution& s, const StereoView& view, const Rectification& rectification,
          Sums& sums) {
   const auto seen = SeenByBoth(s, view, rectification);
@@ -57,7 +61,7 @@ void Add(const StereoSolution& s, const StereoView& view, const Rectification& r
   for (const auto& [id, corner] : seen) {
     sums.rows_px2 += std::pow(corner.left_px.y() - corner.right_px.y(), 2);
     ++sums.corners;
-    if (before && id == id_before + 1 && before->row_m == corner.row_m) {
+    if (before && id == id_before + 1 && BesideInRow(before->x_B, corner.x_B)) {
       const double error = (Triangulate(Q, corner) - Triangulate(Q, *before)).norm() -
                            (corner.x_B - before->x_B).norm();
       sums.lengths_m2 += error * error;

@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 
 #include "calibration/stereo/stereo_bundle.h"
 #include "calibration/stereo/stereo_calibration.h"
 #include "calibration/stereo/stereo_heldout.h"
 #include "calibration/stereo/stereo_rectification.h"
+#include "core/derivative_check.h"
 #include "core/error.h"
 #include "tests/calibration/stereo_scene.h"
 #include "vision/reprojection.h"
@@ -66,6 +68,58 @@ TEST(StereoBundle, CovarianceIsTheSpreadOfWhatIsFound) {
   EXPECT_NEAR(inside, 0.683, 0.18);
 }
 
+// All residuals of the bundle with a shape, the corners' hold on their places among them.
+Eigen::VectorXd Residuals(const StereoSolution& s, const Eigen::VectorXd& step) {
+  StereoSolution moved = s;
+  for (int eye = 0; eye < 2; ++eye) {
+    CameraCalibration& c = moved.cameras[eye];
+    const Eigen::VectorXd by = step.segment(8 * eye, 8);
+    c.fu_px += by[0], c.fv_px += by[1], c.cu_px += by[2], c.cv_px += by[3];
+    for (int k = 0; k < 4; ++k) c.distortion_coefficients[k] += by[4 + k];
+  }
+  const auto turned = [](const Pose& T, const Eigen::VectorXd& by) {
+    return Pose{ExpRotation(by.head<3>()) * T.R, T.p + by.tail<3>()};
+  };
+  moved.T_C0C1 = turned(s.T_C0C1, step.segment(16, 6));
+  std::vector<double> r;
+  for (std::size_t v = 0; v < s.views.size(); ++v) {
+    moved.views[v].T_C0B = turned(s.views[v].T_C0B, step.segment(s.ViewStart(v), 6));
+    for (int eye = 0; eye < 2; ++eye) {
+      const SolvedView& seen = s.views[v].eyes[eye];
+      const CameraModel model(moved.cameras[eye]);
+      for (std::size_t i = 0; i < seen.px.size(); ++i) {
+        const Eigen::Vector3d place =
+            seen.x_B[i] + s.shape.Of(seen.ids[i]) + step.segment<3>(s.Size() + 3 * seen.ids[i]);
+        const auto px = model.Project(moved.T_CB(moved.views[v], eye) * place).value();
+        r.insert(r.end(), {px.x(), px.y()});
+      }
+    }
+  }
+  const double weight = s.noise_px / s.shape.sd_m;
+  for (Eigen::Index k = s.Size(); k < step.size(); ++k) r.push_back(weight * step[k]);
+  return Eigen::Map<Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
+}
+
+// The inverse of the normal matrix that is left is a block of the whole one's.
+TEST(StereoBundle, TheShapeIsEliminatedAsByDifferences) {
+  const StereoScene scene = MakeStereoScene(3, 2);
+  StereoSolution s = scene.Exact();
+  s.noise_px = 0.1;
+  s.shape.sd_m = 2e-5;
+  ASSERT_TRUE(AdjustStereo(s, {.estimate_shape = true}));
+  s.noise_px = 0.1;  // with which it was held
+  const Eigen::Index n = s.Size(), all = n + 3 * 48;
+  const Eigen::MatrixXd J =
+      NumericJacobian([&](const Eigen::VectorXd& step) { return Residuals(s, step); },
+                      Eigen::VectorXd::Zero(all), 1e-5);
+  const Eigen::MatrixXd whole = J.transpose() * J;
+  const Eigen::MatrixXd eliminated =
+      whole.topLeftCorner(n, n) -
+      whole.topRightCorner(n, all - n) *
+          whole.bottomRightCorner(all - n, all - n).llt().solve(whole.bottomLeftCorner(all - n, n));
+  EXPECT_TRUE(s.normal_matrix.isApprox(eliminated, 1e-6));
+}
+
 TEST(StereoBundle, ViewsOfOneEyeAndAWarpedBoardAreUsed) {
   StereoScene scene = MakeStereoScene(10, 2);
   scene.warp.bulge_m = {1e-4, -5e-5};
@@ -118,6 +172,32 @@ StereoOptions Radial() {
   options.camera.lens = LensModel{Distortion::kRadialTangential, 4};
   options.camera.warp = false;
   return options;
+}
+
+// A board that is not as described is told from one that is, by pairs left out; the baseline is
+// then what it claims to be.
+TEST(StereoCalibration, SeesABoardThatIsNotAsDescribed) {
+  const StereoScene scene = MakeStereoScene(12, 6);
+  const Eigen::Vector2i size(800, 600);
+  std::mt19937 random(3);
+  std::normal_distribution<double> off(0, 2e-5);
+  StereoSolution s = Noised(scene, random);
+  const StereoResult as_described =
+      CalibrateStereo(AsPairs(s), {size, size}, scene.board, Radial());
+  ASSERT_TRUE(as_described.IsUsable()) << as_described.message;
+  EXPECT_EQ(as_described.solution.shape.sd_m, 0.0) << as_described.shape_reason;
+  std::map<int, Eigen::Vector3d> offsets;
+  for (int id = 0; id < 48; ++id) offsets[id] = {off(random), off(random), off(random)};
+  for (StereoView& view : s.views) {
+    for (SolvedView& eye : view.eyes) {
+      for (std::size_t i = 0; i < eye.x_B.size(); ++i) eye.x_B[i] -= offsets[eye.ids[i]];
+    }
+  }
+  const StereoResult r = CalibrateStereo(AsPairs(s), {size, size}, scene.board, Radial());
+  ASSERT_TRUE(r.IsUsable()) << r.message;
+  EXPECT_NEAR(r.solution.shape.sd_m, 2e-5, 5e-6) << r.shape_reason;
+  EXPECT_NEAR(r.solution.noise_px, kNoise_px, 0.05 * kNoise_px);
+  EXPECT_NEAR(r.baseline.length_m, scene.T_C0C1.p.norm(), 3 * r.baseline.sd_m);
 }
 
 TEST(StereoCalibration, FindsThePairThatIsNotOfOneMoment) {
