@@ -10,6 +10,7 @@
 #include "bench/calibration_corners.h"
 #include "bench/calibration_peer.h"
 #include "bench/tool.h"
+#include "calibration/camera/camera_board_shape.h"
 #include "calibration/uncertainty/projection_uncertainty.h"
 #include "core/error.h"
 
@@ -73,6 +74,7 @@ nlohmann::json Row(const std::string& peer, const std::string& model, const Corn
   const LensModel lens{whole.camera.distortion,
                        static_cast<int>(whole.camera.distortion_coefficients.size())};
   row["lens"] = lens.Name();
+  row["board_shape_mm"] = 1e3 * SizeOf(whole.shape).first;
   row["warp_mm"] = {1e3 * whole.warp.bulge_m.x(), 1e3 * whole.warp.bulge_m.y()};
   row["median_depth_m"] = MedianBoardDepth(*whole.solution);
   for (const auto& [name, depth_m] :
@@ -102,15 +104,20 @@ void Run(Arguments& a) {
                        [&](const CornerSet& s) { return CalibrateByOpenCv(s, terms); }));
     fmt::print("{}\n", rows.back().dump());
   }
-  const auto add_own = [&](const std::string& name, const std::optional<LensModel>& lens) {
-    rows.push_back(
-        Row("flextip", name, set, [&](const CornerSet& s) { return CalibrateByFlextip(s, lens); }));
+  const auto add_own = [&](const std::string& name, const std::optional<LensModel>& lens,
+                           std::optional<double> board_sd_m) {
+    rows.push_back(Row("flextip", name, set, [&](const CornerSet& s) {
+      return CalibrateByFlextip(s, lens, board_sd_m);
+    }));
     fmt::print("{}\n", rows.back().dump());
   };
-  for (const int terms : {5, 8, 12}) {
-    add_own(fmt::format("{} terms", terms), LensModel{Distortion::kOpenCv, terms});
+  for (const int terms : {5, 8}) {
+    const LensModel lens{Distortion::kOpenCv, terms};
+    add_own(fmt::format("{} terms, board as described", terms), lens, 0.0);
+    add_own(fmt::format("{} terms", terms), lens, {});
   }
-  add_own("chosen", {});
+  add_own("chosen, board as described", {}, 0.0);
+  add_own("chosen", {}, {});
   std::ofstream(a.out / "rows.json") << rows.dump(1) << '\n';
 }
 

@@ -83,11 +83,13 @@ CalibrationAnswer CalibrateByOpenCv(const CornerSet& set, int terms) {
   return answer;
 }
 
-CalibrationAnswer CalibrateByFlextip(const CornerSet& set, const std::optional<LensModel>& lens) {
+CalibrationAnswer CalibrateByFlextip(const CornerSet& set, const std::optional<LensModel>& lens,
+                                     std::optional<double> board_sd_m) {
   std::vector<BoardView> views;
   for (std::size_t i = 0; i < set.names.size(); ++i) views.push_back({set.names[i], set.seen[i]});
   CameraCalibrationOptions options;
   options.lens = lens;
+  options.board_sd_m = board_sd_m;
   const std::clock_t start = std::clock();
   const auto result = CalibrateCamera(views, set.width_px, set.height_px, set.board, options);
   CalibrationAnswer answer;
@@ -95,6 +97,7 @@ CalibrationAnswer CalibrateByFlextip(const CornerSet& set, const std::optional<L
   if (!result.IsUsable()) throw WorkError(result.message);
   answer.camera = result.solution.camera;
   answer.warp = result.solution.warp;
+  answer.shape = result.solution.shape;
   answer.sd = result.StandardDeviations();
   answer.rms_px = result.solution.RmsPx();
   answer.outliers = result.solution.Outliers();
@@ -112,7 +115,8 @@ double FittedPosesRms(const CalibrationAnswer& answer, const CornerSet& set) {
     for (std::size_t i = 0; i < points.seen[view].size(); ++i) {
       const cv::Point3f b = points.board[view][i];
       const cv::Point2f p = points.seen[view][i];
-      seen.push_back({answer.warp.Bent({b.x, b.y, 0}), {p.x, p.y}});
+      seen.push_back(
+          {answer.warp.Bent({b.x, b.y, 0}) + answer.shape.Of(set.seen[view].ids[i]), {p.x, p.y}});
     }
     const auto fit = MinimiseReprojection(
         model, seen, StartPose(answer.camera, points.board[view], points.seen[view]), 50);
