@@ -121,8 +121,9 @@ bool Minimise(const CameraSolution& s, const BundleOptions& options, Parameters&
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.linear_solver_ordering = Ordering(problem, at);
   solver.max_num_iterations = options.max_iterations;
-  // Always some damping: parameters that the views do not tell would make the matrix singular.
-  solver.max_trust_region_radius = 1e7;
+  // Always some damping: parameters that the views do not tell would make the matrix singular. So
+  // little that what they hardly tell (8 terms) converges too.
+  solver.max_trust_region_radius = 1e11;
   solver.function_tolerance = options.tolerance;
   solver.parameter_tolerance = 1e-11;
   solver.gradient_tolerance = 1e-12;

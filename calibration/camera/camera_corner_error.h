@@ -1,12 +1,14 @@
 // The error of one corner with its derivatives, for Ceres. Private to this folder.
 #pragma once
 
-#include <ceres/cost_function.h>
-
 #include <cstddef>
 #include <memory>
 
 #include "calibration/camera/camera_solution.h"
+
+namespace ceres {
+class CostFunction;
+}
 
 namespace flextip {
 

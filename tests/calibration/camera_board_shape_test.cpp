@@ -2,6 +2,7 @@
 // covariance.
 #include "calibration/camera/camera_board_shape.h"
 
+#include <ceres/cost_function.h>
 #include <gtest/gtest.h>
 
 #include <map>
