@@ -125,8 +125,7 @@ void WriteCalibrateReport(const fs::path& folder) {
   }
   report.AddWarnings(Warnings(summary, verdict));
   if (fs::exists(folder / "figures.json")) {
-    report.AddHeading(Text(summary, "command") == "calibrate budget" ? "Contributions"
-                                                                     : "Residuals");
+    report.AddHeading("Where, and by how much");
     AddFigureFile(report, folder / "figures.json");
   }
   auto pictures = PicturesIn(folder, kPictures);
