@@ -183,9 +183,10 @@ FarBoards MakeFarBoards(int views, double distance_m, double tilt_rad, double co
     HandEyeView view{std::to_string(i), t_ns, {}};
     for (int k = 0; k < 24; ++k) {
       view.sighting.ids.push_back(k);
-      view.sighting.x_B.emplace_back(0.006 * (k % 6) - 0.015, 0.006 * (k / 6) - 0.009, 0);
-      view.sighting.px.push_back(model.Project(T_CB * view.sighting.x_B.back()).value() +
-                                 noise(corner_noise_px).head<2>());
+      const int row = k / 6, column = k % 6;
+      view.sighting.x_B.emplace_back(0.006 * column - 0.015, 0.006 * row - 0.009, 0);
+      view.sighting.px.emplace_back(model.Project(T_CB * view.sighting.x_B.back()).value() +
+                                    noise(corner_noise_px).head<2>());
     }
     input.views.push_back(view);
   }

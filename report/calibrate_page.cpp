@@ -73,7 +73,7 @@ std::string ValuesHtml(const Json& values) {
 
 std::string NotFoundHtml(const Json& list) {
   if (list.empty()) return "";
-  std::string html = "<aside class=\"warnings\"><h3>What could not be found</h3>\n<ul>\n";
+  std::string html = "<aside class=\"warnings\"><h3>What is not known</h3>\n<ul>\n";
   for (const auto& one : list) {
     html += fmt::format("<li><b>{}</b>: {}</li>\n", EscapeHtml(Text(one, "parameter")),
                         EscapeHtml(Text(one, "reason")));
@@ -81,12 +81,14 @@ std::string NotFoundHtml(const Json& list) {
   return html + "</ul></aside>\n";
 }
 
-// Warnings that say no more than what could not be found.
-std::vector<std::string> Warnings(const Json& summary, const Json& not_found) {
+// Warnings that the verdict does not say already.
+std::vector<std::string> Warnings(const Json& summary, const Json& verdict) {
+  const Json reasons = verdict.value("reasons", Json::array());
+  const Json not_found = verdict.value("not_found", Json::array());
   std::vector<std::string> warnings;
   for (const auto& w : summary.value("warnings", Json::array())) {
     const auto text = w.get<std::string>();
-    bool said = false;
+    bool said = std::find(reasons.begin(), reasons.end(), text) != reasons.end();
     for (const auto& one : not_found) {
       said = said || text.find(Text(one, "reason")) != std::string::npos;
     }
@@ -116,15 +118,14 @@ void WriteCalibrateReport(const fs::path& folder) {
   Report report = TitledPage(folder, TitleOf);
   const Json summary = Json::parse(ReadBytes(folder / "summary.json"));
   const Json verdict = summary.value("verdict", Json::object());
-  const Json not_found = verdict.value("not_found", Json::array());
   if (!verdict.empty()) {
     report.AddHtml(VerdictHtml(verdict));
     report.AddHtml(ValuesHtml(verdict.value("values", Json::array())));
-    report.AddHtml(NotFoundHtml(not_found));
+    report.AddHtml(NotFoundHtml(verdict.value("not_found", Json::array())));
   }
-  report.AddWarnings(Warnings(summary, not_found));
+  report.AddWarnings(Warnings(summary, verdict));
   if (fs::exists(folder / "figures.json")) {
-    report.AddHeading("Residuals");
+    report.AddHeading("Where, and by how much");
     AddFigureFile(report, folder / "figures.json");
   }
   auto pictures = PicturesIn(folder, kPictures);

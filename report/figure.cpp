@@ -66,11 +66,11 @@ Json FieldJson(const FigureField& field) {
 }
 
 Json FigureJson(const Figure& figure) {
-  Json json{{"name", figure.name},       {"title", figure.title},
-            {"caption", figure.caption}, {"x_label", figure.x_label},
-            {"y_label", figure.y_label}, {"log_x", figure.log_x},
-            {"log_y", figure.log_y},     {"equal_axes", figure.equal_axes},
-            {"fields", Json::array()},   {"traces", Json::array()}};
+  Json json{
+      {"name", figure.name},       {"title", figure.title},           {"caption", figure.caption},
+      {"x_label", figure.x_label}, {"y_label", figure.y_label},       {"log_x", figure.log_x},
+      {"log_y", figure.log_y},     {"equal_axes", figure.equal_axes}, {"y_down", figure.y_down},
+      {"fields", Json::array()},   {"traces", Json::array()}};
   for (const auto& field : figure.fields) json["fields"].push_back(FieldJson(field));
   for (const auto& trace : figure.traces) json["traces"].push_back(TraceJson(trace));
   return json;

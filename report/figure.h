@@ -38,6 +38,7 @@ struct Figure {
   std::string title = {}, caption = {};
   std::string x_label = {}, y_label = {};  ///< with the unit: "depth (mm)"
   bool log_x = false, log_y = false;
+  bool y_down = false;                   ///< as in a picture
   bool equal_axes = false;               ///< a length is as long in both directions
   std::vector<FigureField> fields = {};  ///< none or one
   std::vector<FigureTrace> traces = {};  ///< on top of the field

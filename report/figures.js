@@ -31,18 +31,19 @@
     if (t.kind === "bars") Object.assign(out, { type: "bar", marker: { color: color } });
     else Object.assign(out, { type: "scatter", mode: t.kind === "points" ? "markers" : "lines", connectgaps: false,
       line: { color: color, width: 2, dash: t.dashed ? "dash" : "solid" },
-      marker: { color: color, size: 8, symbol: t.symbol || "circle", line: { color: color, width: 2 } } });
+      marker: { color: color, size: t.y.length > 200 ? 4 : 8, symbol: t.symbol || "circle", line: { color: color, width: t.y.length > 200 ? 1 : 2 } } });
     if (t.y_error) out.error_y = { type: "data", array: t.y_error, visible: true, color: INK, thickness: 1.2 };
     return out;
   }
 
   function layout(figure) {
     const named = figure.traces.filter((t) => t.name !== "").length;
-    const out = { font: FONT, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", margin: { l: 60, r: 16, t: 10, b: 48 },
-      showlegend: named > 0, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 }, hoverlabel: { font: FONT }, hovermode: "closest",
+    const out = { font: FONT, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", margin: { l: 60, r: 16, t: named > 0 ? 64 : 34, b: 48 },
+      showlegend: named > 0, legend: { orientation: "h", y: 1.01, yanchor: "bottom", x: 0 }, hoverlabel: { font: FONT }, hovermode: "closest",
       barmode: "group", modebar: { bgcolor: "rgba(0,0,0,0)", color: "#b9c2cc", activecolor: INK },
       xaxis: axis(figure.x_label, figure.log_x), yaxis: axis(figure.y_label, figure.log_y) };
     if (figure.equal_axes) Object.assign(out.yaxis, { scaleanchor: "x", constrain: "domain" }), out.xaxis.constrain = "domain";
+    if (figure.y_down) out.yaxis.autorange = "reversed";
     return out;
   }
 

@@ -73,6 +73,7 @@ void PutNameFirst(std::vector<std::string>& keys) {
 
 // Without its unit, which is in every cell, unless another column is called the same.
 std::string ColumnTitle(const std::string& key, const std::vector<std::string>& keys) {
+  if (key == "seconds") return "time";
   const std::string title = SpokenName(key);
   const auto alike = std::count_if(keys.begin(), keys.end(), [&](const std::string& other) {
     return SpokenName(other) == title;

@@ -68,7 +68,8 @@ bool IsPicture(const std::filesystem::path& path) {
   return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
 }
 
-constexpr std::array<UnitSuffix, 12> kUnits{{{"_Nm2", "N m²", 1},
+constexpr std::array<UnitSuffix, 13> kUnits{{{"_m_N", "mm/N", 1000},
+                                             {"_Nm2", "N m²", 1},
                                              {"_N_m", "N/m", 1},
                                              {"_Nm", "N m", 1},
                                              {"_mm", "mm", 1},

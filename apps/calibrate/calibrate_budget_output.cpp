@@ -163,8 +163,7 @@ CalibrationVerdict Verdict(const std::vector<PartFigures>& parts,
   verdict.next = Advice(parts);
   for (const PartFigures& part : parts) {
     verdict.Add(part.in_total ? part.name : part.name + " (if bending were corrected)",
-                fmt::format("{:.3g} mm in depth", part.depth_mm),
-                fmt::format("{:.3g} mm across", part.across_mm));
+                fmt::format("{:.2g} mm in depth, {:.2g} mm across", part.depth_mm, part.across_mm));
   }
   verdict.Add("frames", std::to_string(frames));
   for (const NotKnown& one : not_known) verdict.not_found.push_back({one.part, one.reason});

@@ -12,6 +12,7 @@ using nlohmann::json;
 constexpr double kManyRejected = 0.2;   // of the views
 constexpr double kManyOutliers = 0.05;  // of the corners
 constexpr double kMuchWorse = 1.3;      // held-out error over the one in sample
+constexpr double kUncovered = 20.0;     // uncertainty at a border over that in the middle
 constexpr double kOverconfident = 3.0;  // halves of the views differ by so many times the claim
 
 std::string Judged(const CalibrationVerdict& verdict) {
@@ -35,10 +36,17 @@ void AddUncertaintyOf(const json& camera, const std::string& name, CalibrationVe
       camera.contains("projection_uncertainty") ? &camera["projection_uncertainty"] : nullptr;
   if (u == nullptr) return;
   const json& near = (*u)["at_working_distance"];
-  verdict.Add(name + fmt::format("pixels at {:.0f} mm, mean",
-                                 1e3 * (*u)["working_distance_m"].get<double>()),
-              fmt::format("± {:.3f} px", near["mean_px"].get<double>()),
-              fmt::format("{:.3f} px at most", near["largest_px"].get<double>()));
+  const double centre_px = near["centre_px"], mean_px = near["mean_px"],
+               most_px = near["largest_px"];
+  verdict.Add(
+      name + fmt::format("uncertain at {:.0f} mm", 1e3 * (*u)["working_distance_m"].get<double>()),
+      fmt::format("{:.2g} px in the middle, {:.2g} px on average", centre_px, mean_px));
+  if (most_px > kUncovered * centre_px) {
+    verdict.reasons.push_back(
+        fmt::format("{}the borders of the picture were hardly covered: {:.2g} px there, {:.2g} px "
+                    "in the middle",
+                    name, most_px, centre_px));
+  }
   const json& next = (*u)["next_views"];
   if (verdict.next.empty() && !next.empty()) {
     verdict.next = fmt::format(

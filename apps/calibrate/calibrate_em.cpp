@@ -1,7 +1,6 @@
 // flextip calibrate em: where the EM system stands, where its sensor sits, how its field is bent.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -53,16 +52,6 @@ void PrintResult(const CalibrateEmOptions& options, const EmResult& result) {
   fmt::print("{}\n", (options.input.out / "calibration.yaml").string());
 }
 
-void WarnOfLag(const EmResult& result, OutputFolder& output) {
-  constexpr double kSure = 5.0;
-  if (std::abs(result.lag.late_s) <= kSure * result.lag.sd_s) return;
-  output.Warn(fmt::format(
-      "the sensor is {:.1f} ms {} the reference (standard deviation {:.1f} ms): their clocks or "
-      "filters differ, and what is found is worse for it",
-      1e3 * std::abs(result.lag.late_s), result.lag.late_s > 0 ? "behind" : "ahead of",
-      1e3 * result.lag.sd_s));
-}
-
 void RunCalibrateEm(const CalibrateEmOptions& options, bool quiet) {
   OutputFolder output(options.input.out, "calibrate em",
                       {.force = options.force, .inputs = {options.input.recording}});
@@ -75,7 +64,7 @@ void RunCalibrateEm(const CalibrateEmOptions& options, bool quiet) {
   for (const auto& [parameter, reason] : result.unobservable) {
     output.Warn(fmt::format("{} cannot be named: {}", parameter, reason));
   }
-  WarnOfLag(result, output);
+  if (const std::string lag = LagText(result); !lag.empty()) output.Warn(lag);
   WriteCalibration(output.folder() / "calibration.yaml", EmFileOf(result));
   if (!result.residuals.empty()) {
     WriteTextFile(output.folder() / "residuals.csv", EmResidualTable(found.pairs, result));

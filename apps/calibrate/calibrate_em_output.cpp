@@ -48,7 +48,8 @@ nlohmann::json OutlierList(const std::vector<EmPair>& pairs, const EmResult& res
 FigureTrace ErrorLines(const EmResult& result, bool after, int right, int up, double enlarged) {
   constexpr std::size_t kMost = 400;
   const double gap = std::numeric_limits<double>::quiet_NaN();
-  FigureTrace trace{.name = after ? "after" : "before", .color = after ? "#0072b2" : "#d55e00"};
+  FigureTrace trace{.name = after ? "with the field" : "registration alone",
+                    .color = after ? "#0072b2" : "#d55e00"};
   const std::size_t every = 1 + result.residuals.size() / kMost;
   for (std::size_t i = 0; i < result.residuals.size(); i += every) {
     const EmResidual& r = result.residuals[i];
@@ -64,6 +65,9 @@ FigureTrace ErrorLines(const EmResult& result, bool after, int right, int up, do
 Figure TimeFigure(const std::vector<EmPair>& pairs, const EmResult& result) {
   Figure figure{.name = "residuals",
                 .title = "Sensor less reference over time",
+                .caption =
+                    "Length of the error. One that comes and goes with the motion is no "
+                    "noise: a bent field, a clock, or the reference.",
                 .x_label = "time (s)",
                 .y_label = "distance (mm)"};
   FigureTrace before{
@@ -155,12 +159,16 @@ std::vector<Figure> EmFigures(const std::vector<EmPair>& pairs, const EmResult& 
       std::pow(10.0, std::floor(std::log10(0.02 / std::max(1e-6, result.rms_before_m))));
   const std::string axes = "xyz";
   for (const auto& [right, up] : {std::pair{0, 1}, std::pair{0, 2}}) {
-    Figure figure{.name = fmt::format("errors-{}{}", axes[right], axes[up]),
-                  .title = fmt::format("Errors where the sensor was, {:.0f} times", enlarged),
-                  .caption = "From where the sensor is to where it seems to be.",
-                  .x_label = fmt::format("{} in R (mm)", axes[right]),
-                  .y_label = fmt::format("{} in R (mm)", axes[up]),
-                  .equal_axes = true};
+    Figure figure{
+        .name = fmt::format("errors-{}{}", axes[right], axes[up]),
+        .title = fmt::format("Errors where the sensor was, {}",
+                             enlarged == 1.0 ? "to scale" : fmt::format("{:g} times", enlarged)),
+        .caption =
+            "From where the sensor is to where it seems to be; outliers are not "
+            "shown.",
+        .x_label = fmt::format("{} in R (mm)", axes[right]),
+        .y_label = fmt::format("{} in R (mm)", axes[up]),
+        .equal_axes = true};
     figure.traces.push_back(ErrorLines(result, false, right, up, enlarged));
     if (HasField(result)) figure.traces.push_back(ErrorLines(result, true, right, up, enlarged));
     figures.push_back(figure);

@@ -16,6 +16,9 @@ Calibration EmFileOf(const EmResult& result);
 
 nlohmann::json EmSummary(const std::vector<EmPair>& pairs, const EmResult& result);
 
+/// That sensor and reference are not of one time; empty where they may be.
+std::string LagText(const EmResult& result);
+
 CalibrationVerdict EmVerdict(const EmResult& result);
 
 /// A row a sample, in mm.

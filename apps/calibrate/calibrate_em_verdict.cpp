@@ -19,10 +19,10 @@ const EmCandidate* Chosen(const EmResult& r) {
 }
 
 void AddReasons(const EmResult& r, CalibrationVerdict& verdict) {
-  if (std::abs(r.lag.late_s) > kSureLag * r.lag.sd_s) {
-    verdict.Beware(fmt::format("the sensor is {:.1f} ± {:.1f} ms {} the reference",
-                               1e3 * std::abs(r.lag.late_s), 1e3 * r.lag.sd_s,
-                               r.lag.late_s > 0 ? "behind" : "ahead of"));
+  const std::string lag = LagText(r);
+  if (!lag.empty()) {
+    verdict.Beware(lag);
+    verdict.next = "bring the clocks of sensor and reference together";
   }
   if (r.noise_scale > kNoisier) {
     verdict.Beware(
@@ -45,9 +45,12 @@ void AddValues(const EmResult& r, CalibrationVerdict& verdict) {
   verdict.Add("EM system in R, em0.T_RF", PlaceText(r.solution.T_RF.p),
               fmt::format("{:.2f} mm and {:.3f}°", 1e3 * sd.segment<3>(3).norm(),
                           180.0 / M_PI * sd.head<3>().norm()));
-  verdict.Add(
-      "sensor before the tip", fmt::format("{:.2f} mm", 1e3 * r.solution.distance_m),
-      r.design.free_distance ? fmt::format("{:.2f} mm", 1e3 * sd[6]) : "as the recording says");
+  const std::string distance = fmt::format("{:.2f} mm", 1e3 * r.solution.distance_m);
+  if (r.design.free_distance) {
+    verdict.Add("sensor to tip", distance, fmt::format("{:.2f} mm", 1e3 * sd[6]));
+  } else {
+    verdict.Add("sensor to tip", distance + ", as supposed");
+  }
   if (const EmCandidate* c = Chosen(r)) {
     verdict.Add("field", c->name);
     verdict.Add("parts of space held out",
@@ -59,6 +62,14 @@ void AddValues(const EmResult& r, CalibrationVerdict& verdict) {
 }
 
 }  // namespace
+
+std::string LagText(const EmResult& r) {
+  if (std::abs(r.lag.late_s) <= kSureLag * r.lag.sd_s) return {};
+  return fmt::format(
+      "the sensor is {:.1f} ms {} the reference (standard deviation {:.1f} ms): their clocks or "
+      "filters differ, and what is found is worse for it",
+      1e3 * std::abs(r.lag.late_s), r.lag.late_s > 0 ? "behind" : "ahead of", 1e3 * r.lag.sd_s);
+}
 
 CalibrationVerdict EmVerdict(const EmResult& r) {
   CalibrationVerdict verdict;

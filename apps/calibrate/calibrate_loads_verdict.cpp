@@ -77,6 +77,24 @@ CalibrationVerdict StrainVerdict(const StrainCalibration& r) {
   return verdict;
 }
 
+std::vector<std::string> StiffnessDoubts(const StiffnessCalibration& r) {
+  std::vector<std::string> doubts;
+  if (r.status == StiffnessStatus::kModelIncomplete) {
+    doubts.push_back(fmt::format(
+        "no stiffness explains these shapes to their noise (chi2 {:.1f} a degree of freedom): "
+        "something else gives way too, and the stiffness found makes up for it; flextip diagnose "
+        "says what it may be. The uncertainty stated is wider by that",
+        r.chosen().chi2_per_dof));
+  }
+  if (r.port_shift_m.norm() > 4 * r.port_noise_m) {
+    doubts.push_back(
+        fmt::format("the port would have to be {:.2f} mm from where it is registered, which "
+                    "is said to be good to {:.2f} mm",
+                    1e3 * r.port_shift_m.norm(), 1e3 * r.port_noise_m));
+  }
+  return doubts;
+}
+
 CalibrationVerdict StiffnessVerdict(const StiffnessCalibration& r) {
   CalibrationVerdict verdict;
   verdict.next = r.advice;
@@ -98,17 +116,7 @@ CalibrationVerdict StiffnessVerdict(const StiffnessCalibration& r) {
     verdict.says = "These loads bend the shaft too little to tell its stiffness.";
     return verdict;
   }
-  if (r.status == StiffnessStatus::kModelIncomplete) {
-    verdict.Beware(fmt::format(
-        "no stiffness explains the shapes: what is left is {:.1f} times the noise. Something else "
-        "gives way too, and flextip diagnose says what it may be",
-        std::sqrt(m.chi2_per_dof)));
-  }
-  if (r.port_shift_m.norm() > 4 * r.port_noise_m) {
-    verdict.Beware(fmt::format(
-        "the port would have to be {:.1f} mm from where it is registered (to {:.1f} mm)",
-        1e3 * r.port_shift_m.norm(), 1e3 * r.port_noise_m));
-  }
+  for (const std::string& doubt : StiffnessDoubts(r)) verdict.Beware(doubt);
   verdict.says = fmt::format(
       "{} The stiffness is known to {:.2g} %; loads held out put the tip {:.2f} mm off, of {:.1f} "
       "mm "

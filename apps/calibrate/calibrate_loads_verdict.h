@@ -8,6 +8,9 @@
 namespace flextip {
 
 CalibrationVerdict StrainVerdict(const StrainCalibration& result);
+/// Why the stiffness found is not the whole truth.
+std::vector<std::string> StiffnessDoubts(const StiffnessCalibration& result);
+
 CalibrationVerdict StiffnessVerdict(const StiffnessCalibration& result);
 
 }  // namespace flextip

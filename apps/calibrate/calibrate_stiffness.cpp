@@ -138,20 +138,7 @@ void Warn(const StiffnessCalibration& result, OutputFolder& output) {
     if (!h.used) output.Warn(SpanOf(h.hold, start_ns) + ": " + h.reason);
   }
   for (const auto& u : result.found.unobservable) output.Warn(u.parameter + ": " + u.reason);
-  if (result.status == StiffnessStatus::kModelIncomplete) {
-    const auto& m = result.chosen();
-    output.Warn(fmt::format(
-        "no stiffness explains these shapes to their noise (chi2 {:.1f} a degree of freedom): "
-        "something else gives way too, and the stiffness found makes up for it; flextip diagnose "
-        "says what it may be. The uncertainty stated is wider by that",
-        m.chi2_per_dof));
-  }
-  if (result.port_shift_m.norm() > 4 * result.port_noise_m) {
-    output.Warn(
-        fmt::format("the port would have to be {:.2f} mm from where it is registered, which "
-                    "is said to be good to {:.2f} mm",
-                    1e3 * result.port_shift_m.norm(), 1e3 * result.port_noise_m));
-  }
+  output.Warn(StiffnessDoubts(result));
 }
 
 void Print(const StiffnessCalibration& result) {

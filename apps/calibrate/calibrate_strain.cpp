@@ -113,6 +113,11 @@ std::string ResidualsText(const StrainCalibration& result) {
   return csv.text();
 }
 
+FigureTrace LeftOut() {
+  return {
+      .name = "left out", .kind = FigureTrace::Kind::kPoints, .color = "#1d2733", .symbol = "x"};
+}
+
 Figure MomentsFigure(const StrainCalibration& result) {
   Figure figure;
   figure.name = "moments";
@@ -120,7 +125,7 @@ Figure MomentsFigure(const StrainCalibration& result) {
   figure.caption = "Each hold, as the calibrated gages measure it; crosses were left out.";
   figure.x_label = "stated by load and rod (Nm)";
   figure.y_label = "measured (Nm)";
-  FigureTrace out{.name = "left out", .kind = FigureTrace::Kind::kPoints, .symbol = "x"};
+  FigureTrace out = LeftOut();
   double most = 0;
   for (int c = 0; c < 4; ++c) {
     FigureTrace trace{.name = kChannels[c], .kind = FigureTrace::Kind::kPoints};
@@ -132,7 +137,7 @@ Figure MomentsFigure(const StrainCalibration& result) {
     }
     figure.traces.push_back(trace);
   }
-  figure.traces.push_back(out);
+  if (!out.y.empty()) figure.traces.push_back(out);
   figure.traces.push_back(
       {.name = "equal", .x = {-most, most}, .y = {-most, most}, .dashed = true});
   return figure;
@@ -142,18 +147,20 @@ Figure ResidualFigure(const StrainCalibration& result) {
   Figure figure;
   figure.name = "residuals";
   figure.title = "What is left";
-  figure.caption = "Measured less stated moment of each hold used, over time.";
+  figure.caption = "Measured less stated moment of each load over time; crosses were left out.";
   figure.x_label = "time (s)";
   figure.y_label = "residual (mNm)";
+  FigureTrace out = LeftOut();
   for (int c = 0; c < 4; ++c) {
     FigureTrace trace{.name = kChannels[c], .kind = FigureTrace::Kind::kPoints};
     for (const auto& h : result.holds) {
-      if (!h.used) continue;
-      trace.x.push_back(Seconds(h.hold, StartOf(result)));
-      trace.y.push_back(1e3 * (h.m_measured_Nm[c] - h.m_stated_Nm[c]));
+      FigureTrace& to = h.used ? trace : out;
+      to.x.push_back(Seconds(h.hold, StartOf(result)));
+      to.y.push_back(1e3 * (h.m_measured_Nm[c] - h.m_stated_Nm[c]));
     }
     figure.traces.push_back(trace);
   }
+  if (!out.y.empty()) figure.traces.push_back(out);
   return figure;
 }
 

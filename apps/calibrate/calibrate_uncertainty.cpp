@@ -27,7 +27,7 @@ FigureTrace HullOfCorners(const std::vector<SolvedView>& views) {
   std::vector<std::pair<double, double>> points;
   for (const SolvedView& view : views) {
     for (std::size_t i = 0; i < view.px.size(); ++i) {
-      if (view.IsUsed(i)) points.emplace_back(view.px[i].x(), -view.px[i].y());
+      if (view.IsUsed(i)) points.emplace_back(view.px[i].x(), view.px[i].y());
     }
   }
   FigureTrace line{.name = "corners seen", .color = "#d55e00"};
@@ -65,12 +65,12 @@ Figure MapFigure(const CameraUncertainty& u, const UncertaintyMap& map, const st
       "the boards is seen after calibrating again from as noisy corners. The line is around all "
       "corners used.";
   figure.x_label = "x (px)";
-  figure.y_label = "y (px, down)";
-  figure.equal_axes = true;
+  figure.y_label = "y (px)";
+  figure.equal_axes = figure.y_down = true;
   FigureField field;
   field.name = "px";
   field.x = map.x_px;
-  for (const double y : map.y_px) field.y.push_back(-y);
+  for (const double y : map.y_px) field.y.push_back(y);
   for (Eigen::Index row = 0; row < map.sd_px.rows(); ++row) {
     for (Eigen::Index column = 0; column < map.sd_px.cols(); ++column) {
       field.values.push_back(map.sd_px(row, column));

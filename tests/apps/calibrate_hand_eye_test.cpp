@@ -183,6 +183,7 @@ TEST_F(CalibrateHandEyeCommand, FindsBothFramesAndWritesThem) {
   EXPECT_EQ(summary["views_used"], kViews);
   EXPECT_LT(summary["rms_reprojection_error_px"].get<double>(), 1.0);
   EXPECT_EQ(summary["mount"], "eye-to-hand");
+  EXPECT_EQ(summary["verdict"]["grade"], "good");
   EXPECT_TRUE(fs::exists(folder_ / "out/residuals.csv"));
   EXPECT_TRUE(fs::exists(folder_ / "out/report.html"));
   EXPECT_FALSE(fs::is_empty(folder_ / "out/overlay"));

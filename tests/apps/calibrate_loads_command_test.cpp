@@ -50,6 +50,8 @@ TEST(CalibrateLoads, GagesThenStiffnessThenAnEstimateThatFits) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto summary = SummaryOf(folder / "shaft");
   EXPECT_EQ(summary["status"], "ok");
+  EXPECT_EQ(summary["verdict"]["grade"], "good");
+  EXPECT_EQ(SummaryOf(folder / "gages")["verdict"]["grade"], "good");
   ASSERT_EQ(summary["calibrations"].size(), 1);
   EXPECT_EQ(summary["calibrations"][0]["kind"], "strain");
   const Calibration found = ReadCalibration(folder / "shaft" / "calibration.yaml");

@@ -59,6 +59,8 @@ TEST(CalibrateTip, TheTipOnTheWristIsWritten) {
   const auto summary = nlohmann::json::parse(ReadText(folder / "out/summary.json"));
   EXPECT_EQ(summary["status"], "ok");
   ASSERT_EQ(summary["outliers"].size(), 1u);
+  EXPECT_EQ(summary["verdict"]["grade"], "good");
+  EXPECT_THAT(summary["verdict"]["reasons"][0].get<std::string>(), testing::HasSubstr("1 pose"));
   EXPECT_EQ(summary["outliers"][0]["pose"], 17);
   EXPECT_THAT(summary["advice"].get<std::string>(), testing::HasSubstr("axis of W"));
   const std::string table = ReadText(folder / "out/residuals.csv");
@@ -78,6 +80,10 @@ TEST(CalibrateTip, OneAxisIsNotEnough) {
   ASSERT_EQ(found.unobservable.size(), 2u);
   EXPECT_THAT(found.unobservable[0].reason, testing::HasSubstr("one axis only"));
   EXPECT_THAT(run.out, testing::HasSubstr("cannot be named"));
+  const auto verdict = nlohmann::json::parse(ReadText(folder / "out/summary.json"))["verdict"];
+  EXPECT_EQ(verdict["grade"], "not found");
+  ASSERT_EQ(verdict["not_found"].size(), 1u);  // tip and pivot, for one reason
+  EXPECT_EQ(verdict["not_found"][0]["parameter"], "tip.p_WE, pivot.p_R");
 }
 
 TEST(CalibrateTip, WhatIsNotThereIsAskedFor) {

@@ -121,6 +121,34 @@ TEST_F(Pages, ShowPicturesOfAllCommands) {
   }
 }
 
+TEST_F(Pages, ACalibrationBeginsWithItsVerdict) {
+  Write("summary.json", R"({"command": "calibrate tip", "version": "1", "seconds": 1.5,
+    "warnings": ["pose 3: <far off>", "p cannot be named: no turn", "the port moved"],
+    "verdict": {"grade": "beware", "says": "To be used with care.", "reasons": ["the port moved"],
+      "values": [{"name": "tip", "value": "(1, 2, 3) mm", "sd": "0.5 mm"},
+                 {"name": "poses", "value": "7", "sd": ""}],
+      "not_found": [{"parameter": "p", "reason": "no turn"}], "next": "turn it"}})");
+  WriteCalibrateReport(folder_);
+  const std::string html = Page();
+  EXPECT_THAT(html, HasSubstr("<h1>Tip calibration</h1>"));
+  EXPECT_THAT(html, HasSubstr("class=\"verdict beware\""));
+  EXPECT_THAT(html, HasSubstr("<dd>(1, 2, 3) mm<small>± 0.5 mm</small></dd>"));
+  EXPECT_THAT(html, HasSubstr("<dd>7</dd>"));
+  EXPECT_THAT(html, HasSubstr("<b>p</b>: no turn"));
+  EXPECT_THAT(html, HasSubstr("turn it."));
+  // What the verdict says is no warning again.
+  EXPECT_THAT(html, HasSubstr("1 warning<"));
+  EXPECT_THAT(html, HasSubstr("pose 3: &lt;far off&gt;"));
+  EXPECT_LT(html.find("To be used with care"), html.find("1 warning<"));
+}
+
+TEST_F(Pages, TablesSayWhatARowIsAboutFirstAndTellLikeColumnsApart) {
+  Write("summary.json", R"({"command": "calibrate hand-eye", "version": "1", "warnings": [],
+    "views": [{"reason": "", "rms_mm": 0.5, "rms_px": 2, "view": "a.png"}]})");
+  WriteCalibrateReport(folder_);
+  EXPECT_THAT(Page(), HasSubstr("<th>view</th><th>rms mm</th><th>rms px</th><th>reason</th>"));
+}
+
 TEST_F(Pages, SayWhichFileIsWrong) {
   Write("deviation.csv", std::string(kDeviation) + "1700000000,0.5\n");
   try {
