@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/calibrate/board_json.h"
+#include "apps/calibrate/board_shape_output.h"
 #include "apps/calibrate/calibrate_camera_pictures.h"
 #include "apps/calibrate/calibrate_camera_verdict.h"
 #include "apps/calibrate/calibrate_uncertainty.h"
@@ -163,12 +163,13 @@ void WriteCameraResults(OutputFolder& output, const CornersFile& corners,
   const std::string folds = FoldsInPicture(result.solution.camera);
   if (!folds.empty())
     output.Warn(fmt::format("the lens holds only where boards were seen: {}", folds));
-  if (result.solution.shape.sd_m > 0 && !result.candidates.empty()) {
-    output.Warn("board: " + result.shape_reason);
-  }
   DrawCameraPictures(folder, corners, result);
   json summary = Summary(result);
-  AddUncertainty(folder, result.solution, BoardCorners(ParseBoardSpec(corners.board)), summary);
+  const auto x_B = BoardCorners(ParseBoardSpec(corners.board));
+  std::vector<Figure> figures;
+  AddUncertainty(folder, result.solution, x_B, summary, figures);
+  AddBoardFigure(x_B, result.solution.warp, result.solution.shape, figures);
+  WriteFigures(folder / "figures.json", figures);
   summary["verdict"] = VerdictJson(CameraVerdict(result, summary));
   output.WriteSummary(summary);
   WriteCalibrateReport(folder);

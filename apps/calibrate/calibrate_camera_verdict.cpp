@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "apps/calibrate/board_shape_output.h"
+
 namespace flextip {
 namespace {
 
@@ -13,6 +15,7 @@ constexpr double kManyRejected = 0.2;   // of the views
 constexpr double kManyOutliers = 0.05;  // of the corners
 constexpr double kMuchWorse = 1.3;      // held-out error over the one in sample
 constexpr double kUncovered = 20.0;     // uncertainty at a border over that in the middle
+constexpr double kUnsure = 10.0;        // uncertainty over the picture, of the corners' noise
 constexpr double kOverconfident = 3.0;  // halves of the views differ by so many times the claim
 
 std::string Judged(const CalibrationVerdict& verdict) {
@@ -30,8 +33,14 @@ void ReasonOfCount(std::size_t count, double all, double many, const std::string
   }
 }
 
+void AddShape(const BoardShape& shape, CalibrationVerdict& verdict) {
+  const std::string text = BoardShapeText(shape);
+  if (!text.empty()) verdict.reasons.push_back(text);
+}
+
 // What the map of the projection says, of the camera under `camera`.
-void AddUncertaintyOf(const json& camera, const std::string& name, CalibrationVerdict& verdict) {
+void AddUncertaintyOf(const json& camera, const std::string& name, double noise_px,
+                      CalibrationVerdict& verdict) {
   const json* u =
       camera.contains("projection_uncertainty") ? &camera["projection_uncertainty"] : nullptr;
   if (u == nullptr) return;
@@ -42,10 +51,15 @@ void AddUncertaintyOf(const json& camera, const std::string& name, CalibrationVe
       name + fmt::format("uncertain at {:.0f} mm", 1e3 * (*u)["working_distance_m"].get<double>()),
       fmt::format("{:.2g} px in the middle, {:.2g} px on average", centre_px, mean_px));
   if (most_px > kUncovered * centre_px) {
-    verdict.reasons.push_back(
-        fmt::format("{}the borders of the picture were hardly covered: {:.2g} px there, {:.2g} px "
-                    "in the middle",
-                    name, most_px, centre_px));
+    const std::string text = fmt::format(
+        "{}the borders of the picture were hardly covered: {:.2g} px there, {:.2g} px in the "
+        "middle",
+        name, most_px, centre_px);
+    if (mean_px > kUnsure * noise_px) {
+      verdict.Beware(text);
+    } else {
+      verdict.reasons.push_back(text);
+    }
   }
   const json& next = (*u)["next_views"];
   if (verdict.next.empty() && !next.empty()) {
@@ -66,7 +80,7 @@ CalibrationVerdict CameraVerdict(const CameraCalibrationResult& r, const json& s
               fmt::format("{:.2f}, {:.2f} px", sd[0], sd[1]));
   verdict.Add("principal point", fmt::format("{:.2f}, {:.2f} px", c.cu_px, c.cv_px),
               fmt::format("{:.2f}, {:.2f} px", sd[2], sd[3]));
-  AddUncertaintyOf(summary, "", verdict);
+  AddUncertaintyOf(summary, "", r.solution.noise_px, verdict);
   verdict.Add("lens", summary.value("lens", ""));
   verdict.Add("corners off by", fmt::format("{:.3f} px RMS", rms_px));
   verdict.Add("views held out", fmt::format("{:.3f} px RMS", r.heldout_rms_px));
@@ -79,6 +93,7 @@ CalibrationVerdict CameraVerdict(const CameraCalibrationResult& r, const json& s
                 kManyRejected, "view", verdict);
   ReasonOfCount(static_cast<std::size_t>(r.solution.Outliers()), r.solution.CornersUsed(),
                 kManyOutliers, "corner", verdict);
+  AddShape(r.solution.shape, verdict);
   if (r.heldout_rms_px > kMuchWorse * rms_px) {
     verdict.Beware("views that were held out fit much worse than the others: too few views");
   }
@@ -107,7 +122,8 @@ CalibrationVerdict StereoVerdict(const StereoResult& r, const json& summary) {
               fmt::format("{:.3f} mm and {:.3f}°", 1e3 * sd.tail<3>().norm(),
                           180 / M_PI * sd.head<3>().norm()));
   for (const char* name : {"cam0", "cam1"}) {
-    AddUncertaintyOf(summary.value(name, json::object()), std::string(name) + ", ", verdict);
+    AddUncertaintyOf(summary.value(name, json::object()), std::string(name) + ", ",
+                     r.solution.noise_px, verdict);
   }
   verdict.Add("corners off by", fmt::format("{:.3f} px RMS", r.solution.RmsPx()));
   verdict.Add("rows differ by", fmt::format("{:.3f} px RMS", r.epipolar_rms_px));
@@ -133,6 +149,7 @@ CalibrationVerdict StereoVerdict(const StereoResult& r, const json& summary) {
   }
   const auto pairs = static_cast<double>(r.pairs.size());
   ReasonOfCount(not_used, 2 * pairs, kManyRejected, "picture", verdict);
+  AddShape(r.solution.shape, verdict);
   if (apart > 0) {
     verdict.Beware(Counted(apart, "pair") + " whose pictures are not of one moment, see below");
   }

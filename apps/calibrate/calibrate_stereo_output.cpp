@@ -5,10 +5,11 @@
 #include <cmath>
 #include <filesystem>
 
-#include "apps/calibrate/board_json.h"
+#include "apps/calibrate/board_shape_output.h"
 #include "apps/calibrate/calibrate_camera_verdict.h"
 #include "apps/calibrate/calibrate_stereo_files.h"
 #include "apps/calibrate/calibrate_uncertainty.h"
+#include "calibration/boards/board.h"
 #include "recording/calibration_file.h"
 #include "recording/camera_file.h"
 #include "recording/text.h"
@@ -191,6 +192,8 @@ void WriteStereoResults(OutputFolder& output, const StereoResult& result, const 
       figures.push_back(std::move(figure));
     }
   }
+  AddBoardFigure(BoardCorners(ParseBoardSpec(board)), result.solution.warp, result.solution.shape,
+                 figures);
   WriteFigures(folder / "figures.json", figures);
   for (const StereoPairResult& pair : result.pairs) {
     for (int eye = 0; eye < 2; ++eye) {

@@ -151,12 +151,15 @@ std::string UncertaintyTable(const CameraUncertainty& u) {
 }
 
 void AddUncertainty(const std::filesystem::path& folder, const CameraSolution& solution,
-                    const std::vector<Eigen::Vector3d>& x_B, nlohmann::json& summary) {
+                    const std::vector<Eigen::Vector3d>& x_B, nlohmann::json& summary,
+                    std::vector<Figure>& figures) {
   const auto uncertainty = FindUncertainty(solution, x_B);
   if (!uncertainty) return;
   summary["projection_uncertainty"] = UncertaintyJson(*uncertainty);
   WriteTextFile(folder / "cam0_uncertainty.csv", UncertaintyTable(*uncertainty));
-  WriteFigures(folder / "figures.json", UncertaintyFigures(*uncertainty, solution.views));
+  for (Figure& figure : UncertaintyFigures(*uncertainty, solution.views)) {
+    figures.push_back(std::move(figure));
+  }
 }
 
 }  // namespace flextip

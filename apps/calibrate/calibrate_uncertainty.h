@@ -35,9 +35,11 @@ std::vector<Figure> UncertaintyFigures(const CameraUncertainty& uncertainty,
 /// `#x [px],y [px],depth [m],sd [px],sd_across [mm]`; at infinity depth and sd_across are empty.
 std::string UncertaintyTable(const CameraUncertainty& uncertainty);
 
-/// Writes FOLDER/cam0_uncertainty.csv and FOLDER/figures.json and adds `projection_uncertainty`,
-/// with the views to add next, to a summary. Nothing where the views do not determine the camera.
+/// Writes FOLDER/cam0_uncertainty.csv and adds its figures to `figures` and
+/// `projection_uncertainty`, with the views to add next, to a summary. Nothing where the views do
+/// not determine the camera.
 void AddUncertainty(const std::filesystem::path& folder, const CameraSolution& solution,
-                    const std::vector<Eigen::Vector3d>& x_B, nlohmann::json& summary);
+                    const std::vector<Eigen::Vector3d>& x_B, nlohmann::json& summary,
+                    std::vector<Figure>& figures);
 
 }  // namespace flextip
