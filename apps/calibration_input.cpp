@@ -17,6 +17,7 @@ void AddCalibrationOption(CLI::App& command, CalibrationFiles& files) {
           "--calibration", files,
           "Take this calibration.yaml (of flextip calibrate) in place of what the recording "
           "says; once for each")
+      ->allow_extra_args(false)
       ->type_name("FILE");
 }
 

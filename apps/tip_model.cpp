@@ -82,6 +82,7 @@ std::optional<TipModel::RodTip> TipModel::SolveRod(const Measurements& z,
   ShaftProblem problem;
   problem.rod.rod.length_m = instrument.length_m;
   problem.rod.rod.bending_stiffness_Nm2 = instrument.bending_stiffness_Nm2;
+  problem.rod.rod.stiffness_taper = instrument.stiffness_taper;
   problem.rod.rod.p_wrist = z.p_RW;
   problem.rod.rod.p_port = p_RP;
   problem.rod.rod.f_tip = f_tip_N;

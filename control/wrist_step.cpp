@@ -16,7 +16,8 @@ ShaftProblem RodOf(const ShaftModel& model, const Eigen::Vector3d& p_RW) {
                      p_RW + model.wrist_shift_m,
                      model.p_RP,
                      model.f_tip_N,
-                     model.weight_N_m};
+                     model.weight_N_m,
+                     model.instrument.stiffness_taper};
   problem.rod.effects = model.effects;
   problem.tip_compliance_m_N = model.tip_compliance_m_N;
   return problem;

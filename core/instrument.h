@@ -7,8 +7,9 @@ namespace flextip {
 struct Instrument {
   double length_m = 0.0;  ///< from the wrist pivot to the tip, along the shaft
   double outer_diameter_m = 0.0;
-  double bending_stiffness_Nm2 = 0.0;  ///< E I
+  double bending_stiffness_Nm2 = 0.0;  ///< E I, in the middle where it tapers
   double mass_per_length_kg_m = 0.0;   ///< 0 where self-weight is not modelled
+  double stiffness_taper = 0.0;        ///< E I (1 + taper (s / L - 1/2)), s from the wrist
 };
 
 }  // namespace flextip

@@ -15,6 +15,7 @@ EffectRodProblem MakeProblem(const SampleSet& samples, std::size_t k, const Mode
   RodProblem& rod = problem.rod;
   rod.length_m = samples.instrument.length_m + u[kLength];
   rod.bending_stiffness_Nm2 = samples.instrument.bending_stiffness_Nm2 * std::exp(u[kStiffness]);
+  rod.stiffness_taper = samples.instrument.stiffness_taper;
   rod.p_wrist = sample.p_RW + u.segment<3>(kWrist);
   rod.p_port = samples.p_RP + u.segment<3>(kPort);
   rod.f_tip = f_tip_N;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/rotation.h"
+
 namespace flextip {
 namespace {
 
@@ -42,8 +44,18 @@ bool IsPlain(const RodEffects& e) {
 
 ShaftRodState ShaftRod::Solve(const ShaftProblem& problem, std::span<const RodStation> stations) {
   assert(stations.size() <= kMaxShaftStations);
-  ShaftRodState state = IsPlain(problem.rod.effects) ? SolvePlain(problem.rod.rod, stations)
-                                                     : SolveEffects(problem.rod, stations);
+  const RodProblem& rod = problem.rod.rod;
+  ShaftRodState state;
+  if (!IsPlain(problem.rod.effects)) {
+    state = SolveEffects(problem.rod, stations);
+  } else if (rod.stiffness_taper != 0) {
+    EffectRodProblem tapered{.rod = rod, .effects = {}};
+    tapered.effects.y_wrist = NormalBasis((rod.p_port - rod.p_wrist).normalized()).col(0);
+    state = SolveEffects(tapered, stations);
+    state.has_axes = false;  // these are arbitrary ones
+  } else {
+    state = SolvePlain(rod, stations);
+  }
   state.p_RE = state.end.p + problem.tip_compliance_m_N * problem.rod.rod.f_tip;
   state.dp_RE = state.end.dp;
   state.dp_RE.rightCols<3>() += problem.tip_compliance_m_N * Eigen::Matrix3d::Identity();

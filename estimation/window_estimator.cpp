@@ -72,6 +72,7 @@ void WindowEstimator::Add(const Measurements& z, const ShaftChange& change,
   sample.measurements = z;
   sample.shaft.rod.rod.length_m = model.instrument.length_m;
   sample.shaft.rod.rod.bending_stiffness_Nm2 = model.instrument.bending_stiffness_Nm2;
+  sample.shaft.rod.rod.stiffness_taper = model.instrument.stiffness_taper;
   sample.shaft.rod.rod.q_weight = model.weight_N_m;
   sample.shaft.rod.effects = change.effects;
   sample.shaft.tip_compliance_m_N = change.tip_compliance_m_N;

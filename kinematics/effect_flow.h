@@ -2,14 +2,15 @@
 // series, with their derivatives. Private to kinematics: the solver of effect_rod.h is the only
 // user.
 //
-// Units: length L, force EI/L^2, moment EI/L. With s the arc length, (t, y, z) the section's axes
-// and (ky, kz) the unloaded curvature, the axes turn at the rate K = m + ky y + kz z, so that
-//   t' = m x t - ky z + kz y,  y' = m x y - kz t,  z' = m x z + ky t,
+// Units: length L, force EI/L^2, moment EI/L. With s the arc length, (t, y, z) the section's axes,
+// (ky, kz) the unloaded curvature and c = m/g, where g(s) is the stiffness over EI (linear, for a
+// taper), the axes turn at the rate K = c + ky y + kz z, so that
+//   t' = c x t - ky z + kz y,  y' = c x y - kz t,  z' = c x z + ky t,
 //   m' = n x t,  P' = t,  n(s) = n0 - q s:
 // polynomial, so that Taylor coefficients of any order follow from short recurrences. A variation
 // turns the axes by a small vector `turn` (dt = turn x t, and so on), for which the curvature
 // cancels:
-//   turn' = dm + m x turn + dky y + dkz z,  dm' = dn x t + n x (turn x t),  dP' = turn x t.
+//   turn' = dm/g + c x turn + dky y + dkz z,  dm' = dn x t + n x (turn x t),  dP' = turn x t.
 #pragma once
 
 #include <Eigen/Dense>
@@ -44,18 +45,27 @@ struct FlowState {
   }
 };
 
-/// What acts along one stretch; `n0` is the force at its start.
+/// What acts along one stretch, and how stiff it is; `n0` and `stiffness` (over EI) are those at
+/// its start.
 struct FlowLoad {
   Eigen::Vector3d n0 = Eigen::Vector3d::Zero();
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
   Eigen::Vector2d curvature = Eigen::Vector2d::Zero();
+  double stiffness = 1.0, stiffness_rate = 0.0;
+
+  double StiffnessAt(double s) const { return stiffness + stiffness_rate * s; }
+  /// At which the axes turn, `s` from the start of the stretch.
+  Eigen::Vector3d RateAt(double s, const FlowState& at) const {
+    return at.m / StiffnessAt(s) + curvature.x() * at.y + curvature.y() * at.z;
+  }
 };
 
 /// One step: its start (from the start of the stretch), its length and the series of the states.
 struct FlowStep {
   double s0 = 0.0, h = 0.0;
   Eigen::Vector3d n0, P0;
-  Series t, y, z, m;
+  double g0 = 1.0, g1 = 0.0;  ///< stiffness at the start, and its rate
+  Series t, y, z, m, c;
 
   void Expand(const FlowState& from, const FlowLoad& load);
   FlowState At(double u) const;
@@ -68,12 +78,15 @@ inline void FlowStep::Expand(const FlowState& from, const FlowLoad& load) {
   t[0] = from.t, y[0] = from.y, z[0] = from.z, m[0] = from.m;
   P0 = from.P;
   n0 = load.n0 - s0 * load.q;
+  g0 = load.StiffnessAt(s0), g1 = load.stiffness_rate;
   for (int k = 0; k < kOrder; ++k) {
+    c[k] = m[k] / g0;
+    if (k > 0) c[k] -= g1 / g0 * c[k - 1];
     Eigen::Vector3d dt = kz * y[k] - ky * z[k], dy = -kz * t[k], dz = ky * t[k];
     for (int j = 0; j <= k; ++j) {
-      dt += m[k - j].cross(t[j]);
-      dy += m[k - j].cross(y[j]);
-      dz += m[k - j].cross(z[j]);
+      dt += c[k - j].cross(t[j]);
+      dy += c[k - j].cross(y[j]);
+      dz += c[k - j].cross(z[j]);
     }
     Eigen::Vector3d dm = n0.cross(t[k]);
     if (k > 0) dm -= load.q.cross(t[k - 1]);
@@ -194,6 +207,7 @@ struct Lanes {
     x += a.x() * f, y += a.y() * f, z += a.z() * f;
   }
   Lanes operator*(double f) const { return {f * x, f * y, f * z}; }
+  Lanes operator-(const Lanes& v) const { return {x - v.x, y - v.y, z - v.z}; }
   /// This times u, plus v: one step of Horner's rule.
   void Horner(double u, const Lanes& v) { x = u * x + v.x, y = u * y + v.y, z = u * z + v.z; }
 };
@@ -210,11 +224,13 @@ struct BlockSeries {
 
 inline void BlockSeries::Expand(const FlowStep& step, const Eigen::Vector3d& q, const Lanes& dn0,
                                 const Lanes& dq, const Lane& dky, const Lane& dkz) {
+  Lanes dc;
   for (int k = 0; k < kColumnOrder; ++k) {
-    Lanes change, turn_next = m[k], m_next;
+    dc = m[k] * (1.0 / step.g0) - dc * (step.g1 / step.g0);
+    Lanes change, turn_next = dc, m_next;
     for (int j = 0; j <= k; ++j) {
       change.SubtractCross(step.t[k - j], turn[j]);
-      turn_next.AddCross(step.m[k - j], turn[j]);
+      turn_next.AddCross(step.c[k - j], turn[j]);
     }
     turn_next.AddTimes(step.y[k], dky);
     turn_next.AddTimes(step.z[k], dkz);

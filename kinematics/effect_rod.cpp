@@ -21,6 +21,7 @@ using UnknownsByInputs = Eigen::Matrix<double, kUnknowns, rod_input::kCount>;
 bool IsPlausible(const EffectRodProblem& problem, std::span<const RodStation> stations) {
   const double L = problem.rod.length_m;
   if (!(L > 0.0 && problem.rod.bending_stiffness_Nm2 > 0.0)) return false;
+  if (!(std::abs(problem.rod.stiffness_taper) < 2.0)) return false;
   if (!Inputs(problem).allFinite() || !problem.effects.y_wrist.allFinite()) return false;
   if (stations.size() > kMaxRodStations) return false;
   for (const RodStation& station : stations) {
@@ -166,8 +167,7 @@ void StateWriter::WriteStation(const RodStation& station, double place, const Fl
   Total total = is_before ? BeforePort(columns) : BeyondPort(columns);
   const double ds_dL = ((station.from_tip ? 1.0 : 0.0) - place) / scaling_.L;
   const FlowLoad& load = path.load;
-  total.turn.col(rod_input::kLength) +=
-      ds_dL * (at.m + load.curvature.x() * at.y + load.curvature.y() * at.z);
+  total.turn.col(rod_input::kLength) += ds_dL * load.RateAt(s, at);
   total.m.col(rod_input::kLength) += ds_dL * (load.n0 - s * load.q).cross(at.t);
   total.P.col(rod_input::kLength) += ds_dL * at.t;
   WriteSection(at, total, place * scaling_.L, section);

@@ -59,6 +59,7 @@ EffectScaling::EffectScaling(const EffectRodProblem& problem)
     }
   }
   scaled.y_wrist = problem.effects.y_wrist.normalized();
+  scaled.taper = problem.rod.stiffness_taper;
 }
 
 /// The wrist's frame is made of y_wrist's part across the tangent, so that a turn of the tangent
@@ -99,11 +100,13 @@ bool EffectShot::Shoot(const ScaledProblem& problem, const EffectRodUnknowns& x)
   const Eigen::Vector3d q = problem.q(), q_beyond = q + problem.inside();
   const Eigen::Vector3d n_beyond = problem.f() + (1.0 - x.s_port) * q_beyond;
   n_wrist = n_beyond + x.r + x.s_port * q;
-  if (!before.Walk(wrist, {n_wrist, q, problem.curvature()}, x.s_port)) return false;
+  if (!before.Walk(wrist, problem.LoadFrom(0.0, n_wrist, q), x.s_port)) return false;
   port = before.end;
   FlowState start = port;
   start.m -= port.t.cross(problem.couple());
-  if (!beyond.Walk(start, {n_beyond, q_beyond, problem.curvature()}, 1.0 - x.s_port)) return false;
+  if (!beyond.Walk(start, problem.LoadFrom(x.s_port, n_beyond, q_beyond), 1.0 - x.s_port)) {
+    return false;
+  }
 
   StartColumns(problem, x);
   port_columns = wrist_columns;
@@ -193,14 +196,12 @@ void EffectShot::PassPort(const ScaledProblem& problem, const EffectRodUnknowns&
                           bool with_inputs) {
   at_port = Before(problem, x, port_columns, with_inputs);
   const Eigen::Vector3d couple = port.t.cross(problem.couple());
-  const Eigen::Vector3d rate =
-      port.m + before.load.curvature.x() * port.y + before.load.curvature.y() * port.z;
   port_turn_x = at_port.turn_x;
-  port_turn_x.col(kPlace) += rate;
+  port_turn_x.col(kPlace) += before.load.RateAt(x.s_port, port);
   // d((turn x t) x c) for the couple t x c.
   const Eigen::Matrix3d follow = Skew(problem.couple()) * Skew(port.t);
   at_beyond.turn_x = at_port.turn_x;
-  at_beyond.turn_x.col(kPlace) += couple;
+  at_beyond.turn_x.col(kPlace) += couple / before.load.StiffnessAt(x.s_port);
   at_beyond.m_x = at_port.m_x - follow * port_turn_x;
   at_beyond.m_x.col(kPlace) += x.r.cross(port.t);
   if (!with_inputs) return;

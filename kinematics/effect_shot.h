@@ -19,7 +19,12 @@ InputVector Inputs(const EffectRodProblem& problem);
 struct ScaledProblem {
   InputVector g = InputVector::Zero();
   Eigen::Vector3d y_wrist = Eigen::Vector3d::UnitY();
+  double taper = 0.0;
 
+  /// Along the stretch that starts `s` from the wrist.
+  FlowLoad LoadFrom(double s, const Eigen::Vector3d& n0, const Eigen::Vector3d& q) const {
+    return {n0, q, curvature(), 1.0 + taper * (s - 0.5), taper};
+  }
   Eigen::Vector3d span() const { return g.segment<3>(rod_input::kPort); }
   Eigen::Vector3d f() const { return g.segment<3>(rod_input::kForce); }
   Eigen::Vector3d q() const { return g.segment<3>(rod_input::kWeight); }

@@ -211,7 +211,8 @@ int RodSolver::SolveCold(const Scaled& scaled, Unknowns& x, Evaluation& e) {
 RodState RodSolver::Solve(const RodProblem& problem) {
   RodState state;
   state.status = RodStatus::kBadInput;
-  if (!IsFinite(problem) || problem.length_m <= 0 || problem.bending_stiffness_Nm2 <= 0)
+  if (!IsFinite(problem) || problem.length_m <= 0 || problem.bending_stiffness_Nm2 <= 0 ||
+      problem.stiffness_taper != 0)
     return state;
   const Scaled scaled(problem);
   const double reach = scaled.span.norm();

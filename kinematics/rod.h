@@ -17,11 +17,14 @@ struct RodProblem {
   Eigen::Vector3d p_port = Eigen::Vector3d::Zero();
   Eigen::Vector3d f_tip = Eigen::Vector3d::Zero();     ///< force on the tip (N)
   Eigen::Vector3d q_weight = Eigen::Vector3d::Zero();  ///< force per length on the shaft (N/m)
+  /// Above -2 and below 2: the stiffness is EI (1 + taper (s / L - 1/2)), s from the wrist.
+  /// RodSolver takes 0 only.
+  double stiffness_taper = 0.0;
 };
 
 enum class RodStatus : std::uint8_t {
   kOk,
-  kBadInput,      ///< not finite, or length or stiffness not positive
+  kBadInput,      ///< not finite, or length or stiffness not positive, or a taper
   kUnreachable,   ///< the port is at or beyond the shaft's length, or on the wrist
   kNotConverged,  ///< no equilibrium found near the straight shaft (buckled, load too high)
 };

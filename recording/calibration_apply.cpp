@@ -275,12 +275,13 @@ void Application::SetGages() {
 void Application::SetStiffness(const std::string& name) {
   if (name == "instrument.bending_stiffness_Nm2") {
     recording_.instrument.bending_stiffness_Nm2 = Positive(name);
-  } else if (Numbers(name, 1)[0] != 0) {
-    Refuse(name,
-           fmt::format("found {}, but the shaft models have one stiffness all along the shaft; "
-                       "calibrate stiffness with --model constant gives the best of those",
-                       Numbers(name, 1)[0]));
+    return;
   }
+  const double taper = Numbers(name, 1)[0];
+  if (!(std::abs(taper) < 2)) {
+    Refuse(name, fmt::format("found {}, expected above -2 and below 2", taper));
+  }
+  recording_.instrument.stiffness_taper = taper;
 }
 
 void Application::ApplyPose(const std::string& name, const Pose& pose) {

@@ -1,5 +1,7 @@
 #include "recording/recording_file.h"
 
+#include <cmath>
+
 #include "recording/text.h"
 #include "recording/yaml_map.h"
 
@@ -23,6 +25,11 @@ Instrument ReadInstrument(const YamlMap& yaml, ReadLog& log) {
   instrument.outer_diameter_m = yaml.Positive("outer_diameter_m");
   instrument.bending_stiffness_Nm2 = yaml.Positive("bending_stiffness_Nm2");
   instrument.mass_per_length_kg_m = yaml.NonNegativeOr("mass_per_length_kg_m", 0.0);
+  instrument.stiffness_taper = yaml.NumberOr("stiffness_taper", 0.0);
+  if (!(std::abs(instrument.stiffness_taper) < 2)) {
+    throw yaml.Error("stiffness_taper", fmt::format("found {}, expected above -2 and below 2",
+                                                    instrument.stiffness_taper));
+  }
   yaml.WarnUnknown(log);
   return instrument;
 }
@@ -72,6 +79,9 @@ void WriteRecordingFile(const std::filesystem::path& file, const Recording& reco
   text +=
       fmt::format("  bending_stiffness_Nm2: {}\n", YamlNumber(instrument.bending_stiffness_Nm2));
   text += fmt::format("  mass_per_length_kg_m: {}\n", YamlNumber(instrument.mass_per_length_kg_m));
+  if (instrument.stiffness_taper != 0) {
+    text += fmt::format("  stiffness_taper: {}\n", YamlNumber(instrument.stiffness_taper));
+  }
   text += fmt::format("port:\n  position_m: {}\n", vector3(recording.p_RP));
   text += fmt::format("gravity_m_s2: {}\n", vector3(recording.gravity_m_s2));
   text += recording.tolerances.empty() ? "tolerances: {}\n" : "tolerances:\n";

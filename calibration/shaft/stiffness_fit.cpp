@@ -104,7 +104,7 @@ StiffnessRows StiffnessFitter::Rows(const LoadHold& hold, const StiffnessVector&
   rod.p_port = setup_.p_RP + x.segment<3>(kStiffnessPort);
   rod.f_tip = hold.f_tip_N + hidden.d.head<3>();
   rod.q_weight = setup_.instrument.mass_per_length_kg_m * setup_.gravity_m_s2;
-  problem.taper = x[kStiffnessTaper];
+  problem.rod.stiffness_taper = x[kStiffnessTaper];
   problem.y_wrist =
       hold.R_RW ? Eigen::Vector3d(hold.R_RW->col(1))
                 : Eigen::Vector3d(NormalBasis((rod.p_port - rod.p_wrist).normalized()).col(0));

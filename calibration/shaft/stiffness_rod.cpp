@@ -128,7 +128,7 @@ Scaled<T> ScaledOf(const TaperedRodProblem& problem, int first, double part) {
   scaled.f = vector(problem.rod.f_tip, kForce) * (T(part) / force);
   scaled.q = problem.rod.q_weight.cast<T>() * (T(part * L) / force);
   scaled.y_wrist = problem.y_wrist.cast<T>();
-  scaled.taper = variable(problem.taper, kTaper);
+  scaled.taper = variable(problem.rod.stiffness_taper, kTaper);
   return scaled;
 }
 
@@ -210,7 +210,7 @@ TaperedRodSection SectionOf(const TaperedRodProblem& problem, const State<Full>&
 bool IsPlausible(const TaperedRodProblem& p) {
   const RodProblem& rod = p.rod;
   const double reach = (rod.p_port - rod.p_wrist).norm() / rod.length_m;
-  return rod.length_m > 0 && rod.bending_stiffness_Nm2 > 0 && std::abs(p.taper) < 2 &&
+  return rod.length_m > 0 && rod.bending_stiffness_Nm2 > 0 && std::abs(rod.stiffness_taper) < 2 &&
          reach > kLeastStretch && reach < 1 - kLeastStretch && rod.f_tip.allFinite() &&
          rod.q_weight.allFinite() &&
          p.y_wrist.cross(rod.p_port - rod.p_wrist).norm() > 1e-6 * rod.length_m * reach;

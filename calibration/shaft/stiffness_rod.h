@@ -1,5 +1,4 @@
-// The rod of kinematics/rod.h with a bending stiffness that changes along the shaft, for the
-// calibration of that change: E I(s) = EI (1 + taper (s / L - 1/2)), s from the wrist.
+// The rod of kinematics/rod.h with its taper, and derivatives by that too, for its calibration.
 #pragma once
 
 #include <Eigen/Dense>
@@ -11,8 +10,7 @@
 namespace flextip {
 
 struct TaperedRodProblem {
-  RodProblem rod;      ///< its bending stiffness is that in the middle of the shaft
-  double taper = 0.0;  ///< above -2 and below 2, so that the stiffness is positive everywhere
+  RodProblem rod;
   Eigen::Vector3d y_wrist = Eigen::Vector3d::UnitY();  ///< the instrument's y axis, not along it
 };
 

@@ -14,6 +14,7 @@ MomentModel::MomentModel(const Instrument& instrument, const Eigen::Vector3d& p_
     : stations_{{stations_m[0]}, {stations_m[1]}} {
   problem_.rod.length_m = instrument.length_m;
   problem_.rod.bending_stiffness_Nm2 = instrument.bending_stiffness_Nm2;
+  problem_.rod.stiffness_taper = instrument.stiffness_taper;
   problem_.rod.p_port = p_RP;
   problem_.rod.q_weight = instrument.mass_per_length_kg_m * gravity_m_s2;
 }

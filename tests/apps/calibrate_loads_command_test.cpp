@@ -74,6 +74,38 @@ TEST(CalibrateLoads, GagesThenStiffnessThenAnEstimateThatFits) {
   EXPECT_EQ(both["calibrations"][1]["names"][0], "instrument.bending_stiffness_Nm2");
 }
 
+// The plant's E I falls by half of its mean from wrist to tip.
+TEST(CalibrateLoads, AnEstimateTakesTheTaperThatWasFound) {
+  TestFolder folder;
+  testing::Bench bench;
+  bench.effects.taper = 0.25;  // 1 + 0.25 (1 - 2 s / L)
+  const auto masses = testing::AllWays({-0.08, 0.0, 0.08}, {0.15, 0.3});
+  const Recording recording = RecordBench(bench, masses, Hang(bench, masses), 11);
+  std::filesystem::create_directories(folder / "masses");
+  WriteRecording(folder / "masses", recording);
+  const auto run = [&](std::vector<std::string> command, const std::string& out) {
+    command.insert(command.end(),
+                   {(folder / "masses").string(), "-o", (folder / out).string(), "--quiet"});
+    const auto result = RunProgram(command);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return SummaryOf(folder / out);
+  };
+  run({"calibrate", "stiffness"}, "shaft");
+  const Calibration found = ReadCalibration(folder / "shaft" / "calibration.yaml");
+  ASSERT_TRUE(found.numbers.contains("instrument.stiffness_taper"));
+  const double sd = std::sqrt(found.CovarianceOf("instrument.stiffness_taper")(0, 0));
+  EXPECT_NEAR(found.numbers.at("instrument.stiffness_taper")[0], -0.5, 4 * sd);
+  const auto chi2 = [](const nlohmann::json& summary) {
+    return summary["chi2_per_measurement"].get<double>();
+  };
+  run({"calibrate", "stiffness", "--model", "constant"}, "constant");
+  const std::string tapered = (folder / "shaft/calibration.yaml").string(),
+                    constant = (folder / "constant/calibration.yaml").string();
+  const double with = chi2(run({"estimate", "--calibration", tapered}, "with"));
+  EXPECT_LT(with, 1.2);
+  EXPECT_GT(chi2(run({"estimate", "--calibration", constant}, "without")), 1.3 * with);
+}
+
 TEST(CalibrateLoads, CalibrationsThatDoNotFitAreRefused) {
   TestFolder folder;
   const std::string masses = Masses(folder);

@@ -305,6 +305,39 @@ TEST(ShaftRod, BothSolversAgree) {
   EXPECT_LT((x.stations[2].p - x.end.p).norm(), 1e-12);
 }
 
+/// A taper alone is a matter of the effects' solver, whatever axes the instrument has.
+TEST(ShaftRod, TakesATaper) {
+  ShaftProblem tapered;
+  tapered.rod.rod = Shaft();
+  tapered.rod.rod.stiffness_taper = -0.4;
+  ShaftProblem other = tapered;
+  other.rod.effects.y_wrist = {0.1, 0.5, 0.8};
+  other.rod.effects.wrist_compliance_m_N = 1e-15;
+  const RodStation stations[2] = {{0.12, false}, {0.02, true}};
+  ShaftRod a, b;
+  const ShaftRodState x = a.Solve(tapered, stations), y = b.Solve(other, stations);
+  ASSERT_TRUE(x.IsUsable() && y.IsUsable());
+  EXPECT_FALSE(x.has_axes);
+  EXPECT_LT((x.p_RE - y.p_RE).norm(), 1e-9);
+  EXPECT_LT((x.dp_RE - y.dp_RE).norm(), 1e-6 * x.dp_RE.norm());
+  EXPECT_LT((x.stations[0].m - y.stations[0].m).norm(), 1e-8);
+  ShaftProblem constant = tapered;
+  constant.rod.rod.stiffness_taper = 0;
+  EXPECT_GT((x.p_RE - a.Solve(constant, stations).p_RE).norm(), 1e-4);
+  // Turned so that the wrist's y axis, as it is where nobody knows it, lies along the shaft.
+  const Eigen::Matrix3d R = ExpRotation({0, 0, M_PI / 2});
+  ShaftProblem turned = tapered;
+  for (Eigen::Vector3d* v : {&turned.rod.rod.p_wrist, &turned.rod.rod.p_port, &turned.rod.rod.f_tip,
+                             &turned.rod.rod.q_weight}) {
+    *v = R * *v;
+  }
+  const ShaftRodState z = b.Solve(turned, stations);
+  ASSERT_TRUE(z.IsUsable());
+  EXPECT_LT((z.p_RE - R * x.p_RE).norm(), 1e-9);
+  RodProblem plain = tapered.rod.rod;
+  EXPECT_EQ(RodSolver().Solve(plain).status, RodStatus::kBadInput);
+}
+
 TEST(ShaftRod, TipComplianceMovesTheTipAndNotTheShaft) {
   ShaftProblem problem;
   problem.rod.rod = Shaft();

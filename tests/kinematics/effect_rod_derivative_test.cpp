@@ -101,6 +101,19 @@ TEST(EffectRodDerivatives, EveryOutputByEveryInput) {
   std::printf("largest error of a column: %.1e of its size\n", worst);
 }
 
+TEST(EffectRodDerivatives, WithATaper) {
+  double worst = 0.0;
+  for (EffectRodProblem problem : RandomEffectProblems(10, 13)) {
+    const double L = problem.rod.length_m;
+    for (const double taper : {-0.8, 0.5}) {
+      problem.rod.stiffness_taper = taper;
+      ExpectDerivatives(problem, {{{0.15 * L, true}, {0.2 * L, false}, {0.85 * L, true}}}, &worst);
+      if (HasFatalFailure()) return;
+    }
+  }
+  std::printf("largest error of a column: %.1e of its size\n", worst);
+}
+
 // Where an effect is absent its derivative is still wanted, to screen for it.
 TEST(EffectRodDerivatives, AtTheRodWithoutEffects) {
   double worst = 0.0;

@@ -342,11 +342,12 @@ TEST(CalibrationApply, ReadingsBecomeMoments) {
 TEST(CalibrationApply, SetsTheStiffness) {
   Recording r = Plain();
   Calibration c = WithNumbers("instrument.bending_stiffness_Nm2", {0.123});
-  c.numbers["instrument.stiffness_taper"] = {0.0};
+  c.numbers["instrument.stiffness_taper"] = {-0.1};
   Apply(c, r);
   EXPECT_EQ(r.instrument.bending_stiffness_Nm2, 0.123);
-  c.numbers["instrument.stiffness_taper"] = {0.1};
-  EXPECT_THAT(ErrorOf(c, r), HasSubstr("one stiffness all along the shaft"));
+  EXPECT_EQ(r.instrument.stiffness_taper, -0.1);
+  c.numbers["instrument.stiffness_taper"] = {2.0};
+  EXPECT_THAT(ErrorOf(c, r), HasSubstr("instrument.stiffness_taper: found 2"));
   EXPECT_THAT(ErrorOf(WithNumbers("instrument.bending_stiffness_Nm2", {0}), r),
               HasSubstr("found 0"));
 }

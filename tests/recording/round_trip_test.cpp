@@ -70,6 +70,7 @@ TEST_F(RoundTrip, InstrumentPortAndTolerances) {
             Bits(wrote.instrument.bending_stiffness_Nm2));
   EXPECT_EQ(Bits(read.instrument.mass_per_length_kg_m),
             Bits(wrote.instrument.mass_per_length_kg_m));
+  EXPECT_EQ(Bits(read.instrument.stiffness_taper), Bits(wrote.instrument.stiffness_taper));
   ExpectSameBits(read.p_RP, wrote.p_RP, "port");
   ExpectSameBits(read.gravity_m_s2, wrote.gravity_m_s2, "gravity");
   EXPECT_EQ(read.tolerances, wrote.tolerances);

@@ -84,7 +84,7 @@ VisionStream MakeVision(Awkward& numbers) {
 Recording MakeRecording() {
   Awkward numbers;
   Recording r;
-  r.instrument = {0.6, 0.00238, 0.30397301812345678, 1.0 / 300.0};
+  r.instrument = {0.6, 0.00238, 0.30397301812345678, 1.0 / 300.0, -1.0 / 7.0};
   r.p_RP = numbers.SmallVector();
   r.gravity_m_s2 = {0, -0.0, -9.80665};
   r.tolerances = {{"stiffness.scale", {0.1 / 3.0}}, {"port_offset.offset_m", {1e-4, 2e-4, 1e-4}}};
