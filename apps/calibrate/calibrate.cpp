@@ -12,13 +12,13 @@ void AddCalibrate(CLI::App& app, AppContext& context) {
   command->require_subcommand(1);
   command->footer("Example:\n  flextip calibrate camera --help\n");
   AddCalibrateCamera(*command, context);
+  AddCalibrateStereo(*command, context);
+  AddCalibrateHandEye(*command, context);
+  AddCalibrateTip(*command, context);
+  AddCalibrateEm(*command, context);
+  AddCalibrateStrain(*command, context);
   AddCalibrateStiffness(*command, context);
   AddCalibrateBudget(*command, context);
-  AddCalibrateStereo(*command, context);
-  AddCalibrateStrain(*command, context);
-  AddCalibrateHandEye(*command, context);
-  AddCalibrateEm(*command, context);
-  AddCalibrateTip(*command, context);
 }
 
 }  // namespace flextip

@@ -30,13 +30,16 @@ struct CalibrateStereoOptions {
   fs::path out;
 };
 
+void RequireAsMany(std::size_t left, std::size_t right) {
+  if (left == right) return;
+  throw InputError(
+      fmt::format("calibrate stereo: {} left and {} right pictures; they are paired in their order",
+                  left, right));
+}
+
 // What both cameras saw, picture by picture in their order.
 std::vector<StereoPair> Pair(std::array<CornersFile, 2> eyes) {
-  if (eyes[0].views.size() != eyes[1].views.size()) {
-    throw InputError(fmt::format(
-        "calibrate stereo: {} left and {} right pictures; they are paired in their order",
-        eyes[0].views.size(), eyes[1].views.size()));
-  }
+  RequireAsMany(eyes[0].views.size(), eyes[1].views.size());
   std::vector<StereoPair> pairs;
   for (std::size_t i = 0; i < eyes[0].views.size(); ++i) {
     pairs.push_back({{std::move(eyes[0].views[i]), std::move(eyes[1].views[i])}});
@@ -45,6 +48,8 @@ std::vector<StereoPair> Pair(std::array<CornersFile, 2> eyes) {
 }
 
 void RunCalibrateStereo(const CalibrateStereoOptions& options, bool quiet) {
+  // Named on neither side: all that the corners' files have.
+  if (options.corners.empty()) RequireAsMany(options.left.size(), options.right.size());
   Pose T_RC0;
   if (!options.pose.empty()) T_RC0 = ReadCameraCalibration(options.pose).T_RC;
   std::vector<fs::path> inputs = options.left;

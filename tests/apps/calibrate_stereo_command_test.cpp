@@ -128,6 +128,31 @@ TEST_F(CalibrateStereoCommand, FindsBothCamerasAndWritesThem) {
   EXPECT_NEAR(cv::norm(T), T_C0C1.p.norm(), 1e-12);
 }
 
+TEST_F(CalibrateStereoCommand, SolvesAgainFromCornersWithoutPictures) {
+  const std::vector<std::string> corners = {"--corners", (folder_ / "l.txt").string(),
+                                            (folder_ / "r.txt").string()};
+  ASSERT_EQ(Run(corners).exit_code, 0);
+  const std::string first = ReadText(folder_ / "out/calibration.yaml");
+  for (auto* names : {&left_, &right_}) {
+    for (const std::string& name : *names) fs::remove(name);
+  }
+  std::vector<std::string> again = {"calibrate",
+                                    "stereo",
+                                    "--board",
+                                    "chessboard:7x5:0.006",
+                                    "-o",
+                                    (folder_ / "out").string(),
+                                    "--force",
+                                    "--distortion",
+                                    "radial-tangential",
+                                    "--warp",
+                                    "off"};
+  again.insert(again.end(), corners.begin(), corners.end());
+  const auto run = RunProgram(again);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(ReadText(folder_ / "out/calibration.yaml"), first);
+}
+
 TEST_F(CalibrateStereoCommand, RefusesWhatItCannotPair) {
   right_.pop_back();
   EXPECT_TRUE(IsRefused(Run(), {"8 left and 7 right"}));
