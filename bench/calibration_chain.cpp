@@ -1,6 +1,6 @@
 // Whether the chain's error budget is true: lens, hand-eye and tip calibrated again and again from
-// pictures with other noise, by the program's own commands, and the tip that is then tracked beside
-// where it is.
+// other poses of the board and other noise, by the program's own commands, and the tip that is then
+// tracked beside where it is.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ struct Arguments {
 
 void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--runs", a.runs, "Repetitions")->check(CLI::PositiveNumber);
-  app.add_option("--first-seed", a.first_seed, "Of the noise; each repetition has the next");
+  app.add_option("--first-seed", a.first_seed, "Of poses and noise; each repetition has the next");
   app.add_option("--program", a.program, "The flextip to be judged")->check(CLI::ExistingFile);
   app.add_flag("--keep", a.keep, "Leave the recordings and results of every repetition");
   app.add_option("-o,--out", a.out, "Folder for chain.json and chain.svg")->required();
@@ -44,30 +44,38 @@ class RunMean {
   int n_ = 0;
 };
 
+/// Length of the larger axis.
+double Longest(const Eigen::Matrix2d& squares) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(squares, Eigen::EigenvaluesOnly);
+  return std::sqrt(eigen.eigenvalues()[1]);
+}
+
 /// Of one part over all repetitions.
 ChainPart PartOf(const std::string& name, const std::vector<ChainRun>& runs) {
-  ChainPart part{.name = name};
+  const std::size_t frames = runs.front().error_V.at(name).size();
   RunMean depth;
-  double depth_claimed = 0, across_claimed = 0;
-  Eigen::Matrix2d across = Eigen::Matrix2d::Zero();
-  std::size_t frames = 0;
+  Eigen::Vector2d claimed = Eigen::Vector2d::Zero();  // squares
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero(), constant = squares;
+  std::vector<Eigen::Vector3d> mean(frames, Eigen::Vector3d::Zero());
+  const double by_frame = 1.0 / static_cast<double>(frames),
+               by_run = 1.0 / static_cast<double>(runs.size());
   for (const ChainRun& run : runs) {
-    double squares = 0;
-    const auto& errors = run.error_V.at(name);
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-      squares += errors[i].z() * errors[i].z() / static_cast<double>(errors.size());
-      across += errors[i].head<2>() * errors[i].head<2>().transpose();
-      const Eigen::Vector2d& claimed = run.claimed_m.at(name)[i];
-      depth_claimed += claimed[0] * claimed[0];
-      across_claimed += claimed[1] * claimed[1];
-      ++frames;
+    double depth_squares = 0;
+    for (std::size_t i = 0; i < frames; ++i) {
+      const Eigen::Vector3d& e = run.error_V.at(name)[i];
+      depth_squares += by_frame * e.z() * e.z();
+      squares += by_frame * by_run * e * e.transpose();
+      claimed += by_frame * by_run * run.claimed_m.at(name)[i].cwiseAbs2();
+      mean[i] += by_run * e;
     }
-    depth.Add(squares);
+    depth.Add(depth_squares);
   }
-  const double n = static_cast<double>(frames);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(across / n, Eigen::EigenvaluesOnly);
-  part.depth_mm = {1e3 * std::sqrt(depth_claimed / n), 1e3 * std::sqrt(depth.Mean())};
-  part.across_mm = {1e3 * std::sqrt(across_claimed / n), 1e3 * std::sqrt(eigen.eigenvalues()[1])};
+  for (const Eigen::Vector3d& e : mean) constant += by_frame * e * e.transpose();
+  ChainPart part{.name = name};
+  part.depth_mm = {1e3 * std::sqrt(claimed[0]), 1e3 * std::sqrt(squares(2, 2)),
+                   1e3 * std::sqrt(constant(2, 2))};
+  part.across_mm = {1e3 * std::sqrt(claimed[1]), 1e3 * Longest(squares.topLeftCorner<2, 2>()),
+                    1e3 * Longest(constant.topLeftCorner<2, 2>())};
   part.depth_ratio_sd = 0.5 * depth.Error() / depth.Mean() * part.depth_mm.Ratio();
   return part;
 }
@@ -91,31 +99,32 @@ nlohmann::json Nees(const std::vector<ChainRun>& runs) {
       {"nees_over_3", nees.Mean()}, {"nees_over_3_sd", nees.Error()}, {"inside_95", inside.Mean()}};
 }
 
-void Write(const Arguments& a, const std::vector<ChainRun>& runs) {
+void Write(const std::filesystem::path& out, const std::vector<ChainRun>& runs) {
   std::vector<ChainPart> parts;
   nlohmann::json list = nlohmann::json::array();
-  fmt::print(
-      "part         claimed / true mm: along the line of sight, ratio       across, ratio\n");
+  fmt::print("part         line of sight: claimed, true (same each time) mm, ratio; across\n");
   for (const char* name : kChainParts) {
     const ChainPart part = PartOf(name, runs);
-    fmt::print("{:<12} {:.4f} / {:.4f}  {:.2f} +- {:.2f}        {:.4f} / {:.4f}  {:.2f}\n", name,
-               part.depth_mm.claimed, part.depth_mm.measured, part.depth_mm.Ratio(),
-               part.depth_ratio_sd, part.across_mm.claimed, part.across_mm.measured,
-               part.across_mm.Ratio());
+    const auto &d = part.depth_mm, &a = part.across_mm;
+    fmt::print("{:<12} {:.4f} {:.4f} ({:.4f}) {:.2f} +- {:.2f}   {:.4f} {:.4f} ({:.4f}) {:.2f}\n",
+               name, d.claimed, d.measured, d.constant, d.Ratio(), part.depth_ratio_sd, a.claimed,
+               a.measured, a.constant, a.Ratio());
     list.push_back({{"part", name},
-                    {"depth_claimed_mm", part.depth_mm.claimed},
-                    {"depth_true_mm", part.depth_mm.measured},
+                    {"depth_claimed_mm", d.claimed},
+                    {"depth_true_mm", d.measured},
+                    {"depth_same_each_time_mm", d.constant},
                     {"depth_ratio_sd", part.depth_ratio_sd},
-                    {"across_claimed_mm", part.across_mm.claimed},
-                    {"across_true_mm", part.across_mm.measured}});
+                    {"across_claimed_mm", a.claimed},
+                    {"across_true_mm", a.measured},
+                    {"across_same_each_time_mm", a.constant}});
     parts.push_back(part);
   }
   nlohmann::json result = Nees(runs);
   fmt::print("{}\n", result.dump());
   result["parts"] = list;
   result["runs"] = runs.size();
-  std::ofstream(a.out / "chain.json") << result.dump(1) << '\n';
-  std::ofstream(a.out / "chain.svg") << ChainSvg(parts);
+  std::ofstream(out / "chain.json") << result.dump(1) << '\n';
+  std::ofstream(out / "chain.svg") << ChainSvg(parts);
 }
 
 void Run(Arguments& a) {
@@ -130,7 +139,7 @@ void Run(Arguments& a) {
     if (!a.keep) std::filesystem::remove_all(folder);
     fmt::print(stderr, "{} of {}: {} frames\n", i + 1, a.runs, runs.back().claimed_V.size());
   }
-  Write(a, runs);
+  Write(a.out, runs);
 }
 
 }  // namespace

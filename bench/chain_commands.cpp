@@ -51,13 +51,16 @@ class Workshop {
       throw WorkError(fmt::format("{} {} failed, see {}", command[1], command[2], log));
   }
 
-  /// Tips by time; only those that were seen.
+  /// Tips by time. Throws WorkError where one was not seen.
   std::map<TimeNs, Eigen::Vector3d> Track(const std::string& out, const Files& calibrations) const {
     Run({"track", (folder_ / "work").string()}, out, calibrations);
     ReadLog log;
     std::map<TimeNs, Eigen::Vector3d> tips;
     for (const auto& tip : ReadVision(folder_ / out / "vision0", log).tips) {
-      if (tip.value.status == TipStatus::kOk) tips[tip.t_ns] = tip.value.p_RE;
+      if (tip.value.status != TipStatus::kOk) {
+        throw WorkError(fmt::format("{}: the tip was lost", (folder_ / out).string()));
+      }
+      tips[tip.t_ns] = tip.value.p_RE;
     }
     return tips;
   }
@@ -158,10 +161,6 @@ ChainRun RunChain(const ChainScene& scene, const fs::path& program, const fs::pa
   const std::vector<TimeNs> times = scene.WorkTimes();
   for (std::size_t i = 0; i < times.size(); ++i) {
     const TimeNs t_ns = times[i];
-    const bool seen = base.contains(t_ns) && budget.total_R.contains(t_ns) &&
-                      std::all_of(with.begin(), with.end(),
-                                  [&](const auto& one) { return one.second.contains(t_ns); });
-    if (!seen) continue;
     const Eigen::Matrix3d R_VR =
         Eigen::Quaterniond::FromTwoVectors(T_CR * truth[i], Eigen::Vector3d::UnitZ()) * T_CR.R;
     run.error_V["pixels"].push_back(R_VR * (base.at(t_ns) - truth[i]));

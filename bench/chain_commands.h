@@ -11,8 +11,8 @@
 
 namespace flextip {
 
-/// What one repetition came to. Lists have an entry for each frame in which every run of `track`
-/// saw the tip. V is C turned so that z is the line of sight to the tip.
+/// What one repetition came to. Lists have an entry for each frame of the work. V is C turned so
+/// that z is the line of sight to the tip.
 struct ChainRun {
   /// By part ("pixels", "lens", "hand-eye", "tip offset", "total"), the tip's error in V (m). The
   /// pixels' is with everything else as it truly is; a calibration's is what it adds to that.
@@ -26,7 +26,7 @@ struct ChainRun {
 inline constexpr const char* kChainParts[] = {"pixels", "lens", "hand-eye", "tip offset", "total"};
 
 /// Makes the recordings of one repetition in `folder` and runs `program` on them. Throws WorkError
-/// where a command fails.
+/// where a command fails or a tip is lost.
 ChainRun RunChain(const ChainScene& scene, const std::filesystem::path& program,
                   const std::filesystem::path& folder, unsigned seed);
 

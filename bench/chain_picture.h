@@ -6,9 +6,10 @@
 
 namespace flextip {
 
-/// Standard deviations in mm.
+/// In mm: the standard deviation claimed, the RMS error, and what of that is the same in every
+/// repetition.
 struct ClaimedAndMeasured {
-  double claimed = 0, measured = 0;
+  double claimed = 0, measured = 0, constant = 0;
   double Ratio() const { return measured / claimed; }
 };
 

@@ -161,24 +161,11 @@ Recording SetUp(const CameraCalibration& camera, std::size_t frames) {
 const char* ChainScene::Board() { return "chessboard:8x6:0.005"; }
 
 ChainScene::ChainScene(const Counts& counts)
-    : camera_(Camera()), collar_(Collar()), p_E_(0.0083, -0.0006, 0.0004) {
-  DrawBoards(counts);
-  DrawCollars(counts);
+    : counts_(counts), camera_(Camera()), collar_(Collar()), p_E_(0.0083, -0.0006, 0.0004) {
+  DrawCollars();
 }
 
-void ChainScene::DrawBoards(const Counts& counts) {
-  const CameraModel model(camera_);
-  const Pose T_WB{ExpRotation({-0.8, 0.5, 1.1}), {0.08, 0.03, -0.05}};
-  std::mt19937 random(5);
-  for (auto [views, count] : {std::pair{&lens_, counts.lens}, {&hand_eye_, counts.hand_eye}}) {
-    for (int i = 0; i < count; ++i) {
-      const Pose T_CB = BoardPose(random);
-      views->push_back({DrawBoard(model, T_CB), camera_.T_RC * T_CB * T_WB.Inverse(), {}});
-    }
-  }
-}
-
-void ChainScene::DrawCollars(const Counts& counts) {
+void ChainScene::DrawCollars() {
   LaparoscopeOptions options;
   options.tissue.point_R = camera_.T_RC * Eigen::Vector3d(0, 0, 0.16);
   options.tissue.normal_R = camera_.T_RC.R * Eigen::Vector3d(0.2, -0.3, -1);
@@ -188,20 +175,20 @@ void ChainScene::DrawCollars(const Counts& counts) {
   options.parts_per_px = 2;
   const Laparoscope scope(camera_, collar_, options);
   const auto draw = [&](const Pose& T_RE, std::vector<ChainView>& views) {
-    views.push_back({scope.RenderLight(StraightShaft(T_RE), 0), {}, T_RE});
+    views.push_back({scope.RenderLight(StraightShaft(T_RE), 0), T_RE});
   };
   const Eigen::Vector3d middle_C(0, 0, kDistance_m);
   const Eigen::Vector3d divot = CollarPose(camera_.T_RC, 0.35, 0.2, middle_C) * p_E_;
-  for (int i = 0; i < counts.tip; ++i) {
-    const double a = 2 * std::numbers::pi * i / counts.tip;
+  for (int i = 0; i < counts_.tip; ++i) {
+    const double a = 2 * std::numbers::pi * i / counts_.tip;
     Pose T_RE = CollarPose(camera_.T_RC, 0.35 + 0.35 * std::cos(a), 0.2 + 0.4 * std::sin(a + 0.7),
                            middle_C);
     T_RE.R = ExpRotation(0.4 * std::sin(a) * camera_.T_RC.R.col(2)) * T_RE.R;
     T_RE.p = divot - T_RE.R * p_E_;
     draw(T_RE, tip_);
   }
-  for (int i = 0; i < counts.work; ++i) {
-    const double a = 2 * std::numbers::pi * i / counts.work;
+  for (int i = 0; i < counts_.work; ++i) {
+    const double a = 2 * std::numbers::pi * i / counts_.work;
     draw(CollarPose(camera_.T_RC, 0.3 + 0.2 * std::sin(a), 0.15 * std::cos(2 * a),
                     middle_C + Eigen::Vector3d(0.012 * std::cos(a), 0.008 * std::sin(a),
                                                0.01 * std::sin(a + 1))),
@@ -210,26 +197,31 @@ void ChainScene::DrawCollars(const Counts& counts) {
 }
 
 void ChainScene::WriteLens(const fs::path& folder, std::mt19937& random) const {
+  const CameraModel model(camera_);
   fs::create_directories(folder);
-  for (std::size_t i = 0; i < lens_.size(); ++i) {
-    WriteFilm(folder / fmt::format("{:02}.png", i), lens_[i].light, *camera_.gamma, random);
+  for (int i = 0; i < counts_.lens; ++i) {
+    WriteFilm(folder / fmt::format("{:02}.png", i), DrawBoard(model, BoardPose(random)),
+              *camera_.gamma, random);
   }
 }
 
 void ChainScene::WriteHandEye(const fs::path& folder, std::mt19937& random) const {
-  Recording recording = SetUp(camera_, hand_eye_.size());
+  const CameraModel model(camera_);
+  const Pose T_WB{ExpRotation({-0.8, 0.5, 1.1}), {0.08, 0.03, -0.05}};
+  Recording recording = SetUp(camera_, static_cast<std::size_t>(counts_.hand_eye));
   recording.cam0->calibration.T_RC = Pose();  // which is what is sought
   WristStream& wrist = recording.wrist0.emplace();
   wrist.rate_hz = 25;
   wrist.position_noise_m = kWristPosition_m;
   wrist.orientation_noise_rad = kWristTurn_rad;
   fs::create_directories(folder / "cam0/data");
-  for (std::size_t i = 0; i < hand_eye_.size(); ++i) {
-    const ChainView& view = hand_eye_[i];
-    const Eigen::Matrix3d R = ExpRotation(Draw(kWristTurn_rad, random)) * view.T_RW.R;
-    wrist.samples.push_back(
-        {TimeOf(i), {view.T_RW.p + Draw(kWristPosition_m, random), Eigen::Quaterniond(R)}});
-    WriteFilm(folder / fmt::format("cam0/data/{}.png", i), view.light, *camera_.gamma, random);
+  for (int i = 0; i < counts_.hand_eye; ++i) {
+    const Pose T_CB = BoardPose(random), T_RW = camera_.T_RC * T_CB * T_WB.Inverse();
+    const Eigen::Matrix3d R = ExpRotation(Draw(kWristTurn_rad, random)) * T_RW.R;
+    wrist.samples.push_back({TimeOf(static_cast<std::size_t>(i)),
+                             {T_RW.p + Draw(kWristPosition_m, random), Eigen::Quaterniond(R)}});
+    WriteFilm(folder / fmt::format("cam0/data/{}.png", i), DrawBoard(model, T_CB), *camera_.gamma,
+              random);
   }
   WriteRecording(folder, recording);
 }

@@ -14,14 +14,15 @@
 
 namespace flextip {
 
-/// One picture without noise, and what it shows.
+/// A picture of the collar without noise, and where the collar's frame is in it.
 struct ChainView {
   LinearImage light;
-  Pose T_RW;  ///< hand-eye: of the wrist that holds the board
-  Pose T_RE;  ///< tip and work: of the collar's frame
+  Pose T_RE;
 };
 
-/// Draws every picture once; each repetition puts its own noise on them.
+/// The collar's pictures are rendered once, and each repetition puts its own noise on them. Boards
+/// are held elsewhere in each: what is wrong with a corner is mostly the same in every picture of
+/// one pose, and looks like noise only from pose to pose.
 class ChainScene {
  public:
   struct Counts {
@@ -29,7 +30,7 @@ class ChainScene {
   };
   explicit ChainScene(const Counts& counts);
 
-  /// Pictures of the board into `folder`.
+  /// Pictures of the board.
   void WriteLens(const std::filesystem::path& folder, std::mt19937& random) const;
   /// Recordings, their camera and collar as they truly are (the collar's tip apart).
   void WriteHandEye(const std::filesystem::path& folder, std::mt19937& random) const;
@@ -44,15 +45,15 @@ class ChainScene {
   static const char* Board();  ///< as `--board` takes it
 
  private:
-  void DrawBoards(const Counts& counts);
-  void DrawCollars(const Counts& counts);
+  void DrawCollars();
   void WriteCollar(const std::filesystem::path& folder, const std::vector<ChainView>& views,
                    std::mt19937& random) const;
 
+  Counts counts_;
   CameraCalibration camera_;
   TagCollar collar_;
   Eigen::Vector3d p_E_;  ///< the tip
-  std::vector<ChainView> lens_, hand_eye_, tip_, work_;
+  std::vector<ChainView> tip_, work_;
 };
 
 }  // namespace flextip
