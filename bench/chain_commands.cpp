@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 
@@ -11,8 +12,6 @@
 #include "recording/calibration_file.h"
 #include "recording/csv.h"
 #include "recording/sensor_streams.h"
-
-extern char** environ;
 
 namespace flextip {
 namespace {
@@ -35,6 +34,7 @@ class Workshop {
       command.insert(command.end(), {"--calibration", file.string()});
     }
     std::vector<char*> argv;
+    argv.reserve(command.size() + 1);
     for (std::string& argument : command) argv.push_back(argument.data());
     argv.push_back(nullptr);
     const std::string log = (folder_ / (out + ".log")).string();
@@ -163,13 +163,13 @@ ChainRun RunChain(const ChainScene& scene, const fs::path& program, const fs::pa
     const TimeNs t_ns = times[i];
     const Eigen::Matrix3d R_VR =
         Eigen::Quaterniond::FromTwoVectors(T_CR * truth[i], Eigen::Vector3d::UnitZ()) * T_CR.R;
-    run.error_V["pixels"].push_back(R_VR * (base.at(t_ns) - truth[i]));
+    run.error_V["pixels"].emplace_back(R_VR * (base.at(t_ns) - truth[i]));
     for (const auto& [part, tips] : with) {
       const Eigen::Vector3d& from = part == "total" ? truth[i] : base.at(t_ns);
-      run.error_V[part].push_back(R_VR * (tips.at(t_ns) - from));
+      run.error_V[part].emplace_back(R_VR * (tips.at(t_ns) - from));
     }
     for (const auto& [part, sd] : budget.parts_m.at(t_ns)) run.claimed_m[part].push_back(sd);
-    run.claimed_V.push_back(R_VR * budget.total_R.at(t_ns) * R_VR.transpose());
+    run.claimed_V.emplace_back(R_VR * budget.total_R.at(t_ns) * R_VR.transpose());
   }
   return run;
 }

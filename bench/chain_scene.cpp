@@ -78,8 +78,9 @@ LinearImage DrawBoard(const CameraModel& model, const Pose& T_CB) {
     for (int x = 0; x < c.width_px; ++x) {
       float sum = 0;
       for (int k = 0; k < kFine * kFine; ++k) {
-        const float a = (static_cast<float>(k % kFine) + 0.5F) / kFine,
-                    b = (static_cast<float>(k / kFine) + 0.5F) / kFine;
+        const int column = k % kFine, row = k / kFine;
+        const float a = (static_cast<float>(column) + 0.5F) / kFine,
+                    b = (static_cast<float>(row) + 0.5F) / kFine;
         const cv::Vec2f at = (1 - b) * ((1 - a) * corners(y, x) + a * corners(y, x + 1)) +
                              b * ((1 - a) * corners(y + 1, x) + a * corners(y + 1, x + 1));
         sum += Reflectance(at[0], at[1]);
