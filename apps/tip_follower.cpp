@@ -12,18 +12,11 @@ std::vector<CameraCalibration> Cameras(const Recording& recording) {
   return cameras;
 }
 
-// What of the shaft sticks out of the collar, which is rigid as far as its tags reach.
-FreeEnd BeyondCollar(const Recording& recording) {
-  const Instrument& shaft = recording.instrument;
-  return {FreeLength(*recording.tags0), shaft.bending_stiffness_Nm2,
-          shaft.mass_per_length_kg_m * recording.gravity_m_s2};
-}
-
 }  // namespace
 
 TipFollower::TipFollower(const Recording& recording, const TrackerOptions& options, bool with_model)
     : recording_(&recording),
-      beyond_collar_(BeyondCollar(recording)),
+      beyond_collar_(FreeEndOf(recording.instrument, *recording.tags0, recording.gravity_m_s2)),
       tracker_(Cameras(recording), *recording.tags0, options) {
   if (with_model && recording.wrist0) model_.emplace(recording);
 }

@@ -10,6 +10,12 @@ struct Instrument {
   double bending_stiffness_Nm2 = 0.0;  ///< E I, in the middle where it tapers
   double mass_per_length_kg_m = 0.0;   ///< 0 where self-weight is not modelled
   double stiffness_taper = 0.0;        ///< E I (1 + taper (s / L - 1/2)), s from the wrist
+
+  /// E I at `s_m` from the wrist.
+  double StiffnessAt(double s_m) const {
+    if (stiffness_taper == 0.0) return bending_stiffness_Nm2;
+    return bending_stiffness_Nm2 * (1.0 + stiffness_taper * (s_m / length_m - 0.5));
+  }
 };
 
 }  // namespace flextip

@@ -17,6 +17,13 @@ double FreeLength(const TagCollar& collar) {
   return std::max(0.0, -reach_m);
 }
 
+FreeEnd FreeEndOf(const Instrument& instrument, const TagCollar& collar,
+                  const Eigen::Vector3d& gravity_m_s2) {
+  const double free_m = FreeLength(collar);
+  return {free_m, instrument.StiffnessAt(instrument.length_m - 0.75 * free_m),
+          instrument.mass_per_length_kg_m * gravity_m_s2};
+}
+
 Pose BendFreeEnd(const FreeEnd& end, const Eigen::Vector3d& f_tip_N, const Pose& T_RE) {
   assert(end.length_m >= 0 && end.bending_stiffness_Nm2 > 0);
   const double l = end.length_m, EI = end.bending_stiffness_Nm2;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 
+#include "core/instrument.h"
 #include "core/pose.h"
 #include "core/tag_collar.h"
 
@@ -18,6 +19,11 @@ struct FreeEnd {
 /// How far the tip sticks out beyond a collar's tags, along E's x axis (m); the collar is rigid as
 /// far as they reach.
 double FreeLength(const TagCollar& collar);
+
+/// What of the shaft sticks out of the collar. A stiffness that tapers counts by its value where a
+/// load on the tip bends the end most: a quarter of its length beyond the collar.
+FreeEnd FreeEndOf(const Instrument& instrument, const TagCollar& collar,
+                  const Eigen::Vector3d& gravity_m_s2);
 
 /// The tip's pose where the collar, taken for rigid up to the tip, has it at `T_RE`: the cantilever
 /// to first order in its slope (Euler and Bernoulli; 0.4 % of the deflection at 0.1 rad). `f_tip_N`

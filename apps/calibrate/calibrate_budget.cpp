@@ -14,6 +14,7 @@
 #include "apps/recording_input.h"
 #include "apps/vector_option.h"
 #include "core/error.h"
+#include "kinematics/tip_bending.h"
 #include "recording/resample.h"
 
 namespace flextip {
@@ -79,10 +80,10 @@ Chain ChainOf(const std::vector<UsedCalibration>& used) {
 
 std::optional<TipBending> BendingAt(const CalibrateBudgetOptions& options,
                                     const Recording& recording, const Chain& chain, TimeNs t_ns) {
-  const Instrument& shaft = recording.instrument;
+  const FreeEnd end = FreeEndOf(recording.instrument, *recording.tags0, recording.gravity_m_s2);
   TipBending bending{.f_R = options.force_N,
-                     .weight_N_m = shaft.mass_per_length_kg_m * recording.gravity_m_s2,
-                     .stiffness_Nm2 = shaft.bending_stiffness_Nm2,
+                     .weight_N_m = end.weight_N_m,
+                     .stiffness_Nm2 = end.bending_stiffness_Nm2,
                      .stiffness_sd_Nm2 = chain.stiffness_sd_Nm2};
   if (options.force_given) return bending;
   const auto load = recording.load0 ? LoadAt(*recording.load0, t_ns) : std::nullopt;

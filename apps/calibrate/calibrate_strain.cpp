@@ -1,11 +1,13 @@
 // flextip calibrate strain: the matrix of the gages, from masses hung on the tip.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/calibrate/calibrate.h"
@@ -118,6 +120,26 @@ FigureTrace LeftOut() {
       .name = "left out", .kind = FigureTrace::Kind::kPoints, .color = "#1d2733", .symbol = "x"};
 }
 
+// A trace a channel with a point a hold, those left out crossed. `Point`: (hold, channel) to (x,
+// y).
+template <class Point>
+std::vector<FigureTrace> ChannelTraces(const StrainCalibration& result, const Point& point) {
+  std::vector<FigureTrace> traces;
+  FigureTrace out = LeftOut();
+  for (int c = 0; c < 4; ++c) {
+    FigureTrace trace{.name = kChannels[c], .kind = FigureTrace::Kind::kPoints};
+    for (const auto& h : result.holds) {
+      const auto [x, y] = point(h, c);
+      FigureTrace& to = h.used ? trace : out;
+      to.x.push_back(x);
+      to.y.push_back(y);
+    }
+    traces.push_back(trace);
+  }
+  if (!out.y.empty()) traces.push_back(out);
+  return traces;
+}
+
 Figure MomentsFigure(const StrainCalibration& result) {
   Figure figure;
   figure.name = "moments";
@@ -125,19 +147,11 @@ Figure MomentsFigure(const StrainCalibration& result) {
   figure.caption = "Each hold, as the calibrated gages measure it; crosses were left out.";
   figure.x_label = "stated by load and rod (Nm)";
   figure.y_label = "measured (Nm)";
-  FigureTrace out = LeftOut();
   double most = 0;
-  for (int c = 0; c < 4; ++c) {
-    FigureTrace trace{.name = kChannels[c], .kind = FigureTrace::Kind::kPoints};
-    for (const auto& h : result.holds) {
-      FigureTrace& to = h.used ? trace : out;
-      to.x.push_back(h.m_stated_Nm[c]);
-      to.y.push_back(h.m_measured_Nm[c]);
-      most = std::max(most, std::abs(h.m_stated_Nm[c]));
-    }
-    figure.traces.push_back(trace);
-  }
-  if (!out.y.empty()) figure.traces.push_back(out);
+  figure.traces = ChannelTraces(result, [&](const auto& h, int c) {
+    most = std::max(most, std::abs(h.m_stated_Nm[c]));
+    return std::pair(h.m_stated_Nm[c], h.m_measured_Nm[c]);
+  });
   figure.traces.push_back(
       {.name = "equal", .x = {-most, most}, .y = {-most, most}, .dashed = true});
   return figure;
@@ -150,17 +164,10 @@ Figure ResidualFigure(const StrainCalibration& result) {
   figure.caption = "Measured less stated moment of each load over time; crosses were left out.";
   figure.x_label = "time (s)";
   figure.y_label = "residual (mNm)";
-  FigureTrace out = LeftOut();
-  for (int c = 0; c < 4; ++c) {
-    FigureTrace trace{.name = kChannels[c], .kind = FigureTrace::Kind::kPoints};
-    for (const auto& h : result.holds) {
-      FigureTrace& to = h.used ? trace : out;
-      to.x.push_back(Seconds(h.hold, StartOf(result)));
-      to.y.push_back(1e3 * (h.m_measured_Nm[c] - h.m_stated_Nm[c]));
-    }
-    figure.traces.push_back(trace);
-  }
-  if (!out.y.empty()) figure.traces.push_back(out);
+  figure.traces = ChannelTraces(result, [&](const auto& h, int c) {
+    return std::pair(Seconds(h.hold, StartOf(result)),
+                     1e3 * (h.m_measured_Nm[c] - h.m_stated_Nm[c]));
+  });
   return figure;
 }
 

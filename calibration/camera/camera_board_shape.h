@@ -28,6 +28,7 @@ bool SettleBoardShape(Solution& solution, std::optional<double> sd_m, double sta
   Solution s = solution;
   s.shape.sd_m = sd_m.value_or(start_sd_m);
   for (int round = 0; round < kRounds; ++round) {
+    if (!(s.noise_px > 0 && s.shape.sd_m > 0)) return false;  // nothing to be explained
     const double noise_px = s.noise_px, before_m = s.shape.sd_m;
     if (!adjust(s)) return false;
     if (!sd_m) s.shape.sd_m = s.shape.scatter_m;

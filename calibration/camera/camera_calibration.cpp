@@ -213,28 +213,28 @@ std::optional<LensFit> ChooseAndFit(const Setup& setup, Starts& starts,
   return fit;
 }
 
-// The board's own shape where it is to be estimated: asked for, or seen by views left out.
-std::optional<BoardShape> DecideShape(const Setup& setup, const CameraSolution& described,
-                                      std::string& reason) {
+// Whether the board has a shape of its own: asked for, or seen by views left out. Then `solution`
+// has it.
+bool DecideShape(const Setup& setup, CameraSolution& solution, std::string& reason) {
   const auto& sd_m = setup.options.board_sd_m;
   reason = "as asked for";
-  if (sd_m && *sd_m <= 0) return {};
-  CameraSolution shaped = described;
+  if (sd_m && *sd_m <= 0) return false;
+  CameraSolution shaped = solution;
   const bool found = EstimateBoardShape(shaped, sd_m);
-  if (sd_m) {
-    if (!found) reason = "the views do not determine the board's shape";
-    return found ? std::optional(shaped.shape) : std::nullopt;
+  if (!sd_m) {
+    reason = "held-out views are predicted no better with corners in places of their own";
+    const auto with = found ? LeaveViewsOut(shaped, setup.options.folds) : std::nullopt;
+    const auto without = LeaveViewsOut(solution, setup.options.folds);
+    if (!with || !without || !ShapeHelps(*without, *with)) return false;
+    reason = fmt::format(
+        "held-out views are predicted better with corners in places of their own: {:.3f} instead "
+        "of {:.3f} px",
+        with->rms_px, without->rms_px);
+  } else if (!found) {
+    return false;
   }
-  reason = "held-out views are predicted no better with corners in places of their own";
-  if (!found) return {};
-  const auto with = LeaveViewsOut(shaped, setup.options.folds);
-  const auto without = LeaveViewsOut(described, setup.options.folds);
-  if (!with || !without || !ShapeHelps(*without, *with)) return {};
-  reason = fmt::format(
-      "held-out views are predicted better with corners in places of their own: {:.3f} instead of "
-      "{:.3f} px",
-      with->rms_px, without->rms_px);
-  return shaped.shape;
+  solution = std::move(shaped);
+  return true;
 }
 
 // What is wrong with the result as a whole; empty where it can be used.
@@ -310,12 +310,13 @@ CameraCalibrationResult CalibrateCamera(const std::vector<BoardView>& views, int
   }
   Starts starts(setup);
   auto fit = ChooseAndFit(setup, starts, result);
-  if (fit) {
-    if (const auto shape = DecideShape(setup, fit->solution, result.shape_reason)) {
-      setup.shape = *shape;  // lens and outliers anew: both may have stood in for it
-      fit = ChooseAndFit(setup, starts, result);
-      if (fit && !EstimateBoardShape(fit->solution, shape->sd_m)) fit.reset();
-    }
+  if (fit && DecideShape(setup, fit->solution, result.shape_reason)) {
+    setup.shape = fit->solution.shape;  // lens and outliers anew: both may have stood in for it
+    fit = ChooseAndFit(setup, starts, result);
+    if (fit && !EstimateBoardShape(fit->solution, setup.shape.sd_m)) fit.reset();
+  } else if (fit && options.board_sd_m.value_or(0.0) > 0) {
+    return Failed(result, CameraCalibrationStatus::kNotDetermined,
+                  "the views do not determine the board's shape");
   }
   if (!fit) {
     return Failed(result, CameraCalibrationStatus::kNotDetermined,

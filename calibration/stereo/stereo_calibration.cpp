@@ -174,33 +174,34 @@ bool EstimateShape(std::optional<double> sd_m, double start_sd_m, StereoSolution
                           [&](StereoSolution& moved) { return AdjustStereo(moved, bundle); });
 }
 
-// The board's own shape where it was asked for, or where pairs left out see it.
-void AddShape(const StereoOptions& options, int folds, StereoResult& result) {
+// Gives the board a shape of its own where it was asked for, or where pairs left out see it. False
+// where it was asked for and the pairs do not determine it.
+bool AddShape(const StereoOptions& options, int folds, StereoResult& result) {
   const auto& sd_m = options.camera.board_sd_m;
   result.shape_reason = "as asked for";
-  if (sd_m && *sd_m <= 0) return;
+  if (sd_m && *sd_m <= 0) return true;
   const double of_eyes_m =
       std::max(result.alone[0].solution.shape.sd_m, result.alone[1].solution.shape.sd_m);
-  result.shape_reason =
-      "pairs left out are predicted no better with corners in places of their own";
-  if (!sd_m && of_eyes_m <= 0) return;  // neither eye saw any
   StereoSolution shaped = result.solution;
-  shaped.shape = {};
-  if (!EstimateShape(sd_m, of_eyes_m, shaped) || !AdjustWithOutliers(options, shaped) ||
-      !EstimateShape(shaped.shape.sd_m, 0.0, shaped)) {
-    return;
+  const bool found = (sd_m || of_eyes_m > 0) && EstimateShape(sd_m, of_eyes_m, shaped) &&
+                     AdjustWithOutliers(options, shaped) &&
+                     EstimateShape(shaped.shape.sd_m, 0.0, shaped);
+  if (!sd_m) {
+    result.shape_reason =
+        "pairs left out are predicted no better with corners in places of their own";
+    if (!found) return true;
+    const auto with = LeavePairsOut(shaped, folds), without = LeavePairsOut(result.solution, folds);
+    if (!with || !without ||
+        !ShapeHelps({.squared_px2 = without->squared_px2}, {.squared_px2 = with->squared_px2})) {
+      return true;
+    }
+    result.shape_reason = fmt::format(
+        "pairs left out are predicted better with corners in places of their own: {:.3f} instead "
+        "of {:.3f} px",
+        with->rms_px, without->rms_px);
   }
-  const auto with = LeavePairsOut(shaped, folds), without = LeavePairsOut(result.solution, folds);
-  const bool helps =
-      with && without &&
-      ShapeHelps({.squared_px2 = without->squared_px2}, {.squared_px2 = with->squared_px2});
-  if (!sd_m && !helps) return;
-  result.shape_reason = sd_m ? "as asked for"
-                             : fmt::format(
-                                   "pairs left out are predicted better with corners in places of "
-                                   "their own: {:.3f} instead of {:.3f} px",
-                                   with->rms_px, without->rms_px);
-  result.solution = std::move(shaped);
+  if (found) result.solution = std::move(shaped);
+  return found;
 }
 
 void Describe(const std::vector<StereoPair>& pairs, StereoResult& result) {
@@ -244,7 +245,10 @@ StereoResult CalibrateStereo(const std::vector<StereoPair>& pairs,
   }
   const auto both = std::count_if(result.solution.views.begin(), result.solution.views.end(),
                                   [](const StereoView& view) { return view.InBoth(); });
-  AddShape(options, std::min(options.folds, static_cast<int>(both)), result);
+  if (!AddShape(options, std::min(options.folds, static_cast<int>(both)), result)) {
+    return Failed(result, StereoStatus::kNotDetermined,
+                  "the pairs do not determine the board's shape");
+  }
   for (const StereoView& view : result.solution.views) {
     ++(view.InBoth() ? result.pairs_used : result.single_views_used);
   }

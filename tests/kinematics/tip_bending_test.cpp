@@ -57,5 +57,27 @@ TEST(TipBending, MovesByItsCompliance) {
   EXPECT_EQ(BendFreeEnd({0, 0.3, {9, 9, 9}}, kTip.R.col(2), kTip).p, kTip.p);
 }
 
+// The compliance to a load on the tip is the integral of x^2 / E I(x), x from the tip.
+TEST(TipBending, ATaperedEndGivesAsItsIntegral) {
+  const Instrument shaft{.length_m = 0.5, .bending_stiffness_Nm2 = 0.1, .stiffness_taper = -0.8};
+  TagCollar collar;
+  CollarTag tag;
+  tag.size_m = 0.004;
+  tag.T_EG.p.x() = -0.062;
+  collar.tags = {tag};
+  const FreeEnd end = FreeEndOf(shaft, collar, Eigen::Vector3d::Zero());
+  ASSERT_NEAR(end.length_m, 0.06, 1e-12);
+  constexpr int kParts = 2000;
+  double compliance = 0;
+  for (int i = 0; i < kParts; ++i) {
+    const double x = (i + 0.5) * end.length_m / kParts, s = shaft.length_m - x;
+    const double EI = 0.1 * (1 - 0.8 * (s / 0.5 - 0.5));
+    compliance += x * x / EI * end.length_m / kParts;
+  }
+  EXPECT_NEAR(FreeEndCompliance(end), compliance, 1e-3 * compliance);
+  const FreeEnd middle{end.length_m, shaft.bending_stiffness_Nm2};
+  EXPECT_GT(compliance, 1.3 * FreeEndCompliance(middle));  // what the taper is worth there
+}
+
 }  // namespace
 }  // namespace flextip
