@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/commands.h"
+#include "apps/common/commands.h"
 #include "core/error.h"
-#include "recording/camera_formats.h"
+#include "recording/cameras/camera_formats.h"
 
 namespace flextip {
 namespace {

@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "apps/commands.h"
-#include "apps/frames.h"
-#include "apps/output.h"
-#include "apps/overlay.h"
-#include "apps/progress.h"
+#include "apps/common/commands.h"
+#include "apps/common/output.h"
+#include "apps/common/progress.h"
+#include "apps/track/overlay.h"
 #include "core/error.h"
-#include "recording/csv.h"
-#include "recording/text.h"
+#include "recording/frames/frames.h"
+#include "recording/text/csv.h"
+#include "recording/text/text.h"
 #include "report/pages.h"
-#include "vision/tag_detector.h"
+#include "vision/tags/detector.h"
 
 namespace flextip {
 namespace {
@@ -103,7 +103,7 @@ void WriteResults(const DetectOptions& options, std::vector<DetectedImage>& resu
   }
   WriteTextFile(output.folder() / "tags.csv", TagTable(results));
   output.WriteSummary({{"tags", tags}, {"images", images}});
-  WriteDetectReport(output.folder());
+  report::WriteDetectReport(output.folder());
   output.Commit();
 }
 

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "apps/closed_loop_gain.h"
-#include "apps/commands.h"
-#include "apps/output.h"
-#include "apps/recording_input.h"
+#include "apps/common/commands.h"
+#include "apps/common/output.h"
+#include "apps/common/recording_input.h"
 #include "core/error.h"
-#include "diagnosis/catalogue.h"
-#include "diagnosis/extended_model.h"
-#include "recording/text.h"
+#include "diagnosis/model/catalogue.h"
+#include "diagnosis/model/extended_model.h"
+#include "recording/text/text.h"
 #include "report/pages.h"
+#include "simulation/closed_loop/gain.h"
 
 namespace flextip {
 namespace {
@@ -32,18 +32,18 @@ nlohmann::json Deviations(double max_m, double rms_m) {
   return {{"max_deviation_m", max_m}, {"rms_deviation_m", rms_m}};
 }
 
-nlohmann::json Compared(const ControllerGain& gain) {
+nlohmann::json Compared(const simulation::ControllerGain& gain) {
   return {{"controller", Name(gain.kind)},
           {"before", Deviations(gain.base.max_m, gain.base.rms_m)},
           {"after", Deviations(gain.extended.max_m, gain.extended.rms_m)}};
 }
 
 /// The controllers with and without what was found, on a plant that has it.
-void AddClosedLoop(const Recording& recording, const ExtendedModel& model, OutputFolder& output,
-                   nlohmann::ordered_json& json) {
-  const ClosedLoopGain measured = MeasureClosedLoopGain(recording, model);
+void AddClosedLoop(const Recording& recording, const diagnosis::ExtendedModel& model,
+                   OutputFolder& output, nlohmann::ordered_json& json) {
+  const simulation::ClosedLoopGain measured = simulation::MeasureClosedLoopGain(recording, model);
   if (!measured.warning.empty()) output.Warn(measured.warning);
-  for (const ControllerGain& gain : measured.controllers) {
+  for (const simulation::ControllerGain& gain : measured.controllers) {
     if (!gain.ran) {
       output.Warn(fmt::format("closed loop: the simulated instrument lost its equilibrium under {}",
                               Name(gain.kind)));
@@ -54,12 +54,14 @@ void AddClosedLoop(const Recording& recording, const ExtendedModel& model, Outpu
   }
 }
 
-bool IsKnown(const DiagnosisResult& result) {
-  return result.verdict != Verdict{"none"} && result.verdict != Verdict{"unknown"};
+bool IsKnown(const diagnosis::DiagnosisResult& result) {
+  return result.verdict != diagnosis::Verdict{"none"} &&
+         result.verdict != diagnosis::Verdict{"unknown"};
 }
 
-void PrintAnswer(const DiagnosisResult& result, const Options& options) {
-  fmt::print("{} ({:.0f} %)", Joined(result.verdict), 100 * result.probabilities[0].probability);
+void PrintAnswer(const diagnosis::DiagnosisResult& result, const Options& options) {
+  fmt::print("{} ({:.0f} %)", diagnosis::Joined(result.verdict),
+             100 * result.probabilities[0].probability);
   for (std::size_t i = 0; i < result.indistinguishable.size(); ++i) {
     const auto& group = result.indistinguishable[i];
     if (group.size() > 1)
@@ -77,7 +79,7 @@ void PrintAnswer(const DiagnosisResult& result, const Options& options) {
 
 void CheckNames(const std::vector<std::string>& effects) {
   for (const std::string& name : effects)
-    if (!MakeEffect(name))
+    if (!diagnosis::MakeEffect(name))
       throw InputError(
           fmt::format("--without {}: no effect of that name is in the catalogue", name));
 }
@@ -89,22 +91,22 @@ void Run(const Options& options, bool quiet) {
   OutputFolder output(options.input.out, "diagnose",
                       {.force = options.force, .inputs = options.input.Files()});
   output.Warn(read.warnings);
-  const DiagnosisResult result =
-      Diagnose(recording, options.input.recording.string(), {.without = options.without});
+  const diagnosis::DiagnosisResult result = diagnosis::Diagnose(
+      recording, options.input.recording.string(), {.without = options.without});
   output.Warn(result.warnings);
-  nlohmann::ordered_json json = nlohmann::ordered_json::parse(DiagnosisJson(result));
-  const ExtendedModel model = FromResult(result);
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(diagnosis::DiagnosisJson(result));
+  const diagnosis::ExtendedModel model = diagnosis::FromResult(result);
   if (!options.no_closed_loop && IsKnown(result)) AddClosedLoop(recording, model, output, json);
   WriteTextFile(output.folder() / "diagnosis.json", json.dump(2) + "\n");
-  WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result));
-  WriteModel(output.folder() / "model.yaml", model);
+  WriteTextFile(output.folder() / "residuals.csv", diagnosis::ResidualsCsv(result));
+  diagnosis::WriteModel(output.folder() / "model.yaml", model);
   nlohmann::json summary = {{"verdicts", result.verdict},
                             {"samples", result.samples},
                             {"fits", result.fits},
                             {"converged", result.converged}};
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   output.WriteSummary(summary);
-  WriteDiagnoseReport(output.folder());
+  report::WriteDiagnoseReport(output.folder());
   output.Commit();
   if (!quiet) PrintAnswer(result, options);
 }

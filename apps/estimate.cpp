@@ -7,18 +7,18 @@
 #include <string>
 #include <vector>
 
-#include "apps/commands.h"
-#include "apps/output.h"
-#include "apps/progress.h"
-#include "apps/recorded_estimates.h"
-#include "apps/recorded_measurements.h"
-#include "apps/recording_input.h"
-#include "apps/tip_score.h"
+#include "apps/common/commands.h"
+#include "apps/common/output.h"
+#include "apps/common/progress.h"
+#include "apps/common/recording_input.h"
+#include "apps/track/score.h"
 #include "core/error.h"
-#include "diagnosis/model_at.h"
+#include "diagnosis/model/model_at.h"
 #include "estimation/shaft_estimator.h"
-#include "recording/csv.h"
-#include "recording/text.h"
+#include "pipeline/estimate_recording.h"
+#include "pipeline/measurements_at.h"
+#include "recording/text/csv.h"
+#include "recording/text/text.h"
 #include "report/pages.h"
 
 namespace flextip {
@@ -84,9 +84,9 @@ Estimates EstimateAll(const Recording& recording, const EstimateOptions& options
   Progress progress("estimate", EstimationTimes(recording).size(), quiet);
   const auto update = [&](std::size_t done, std::size_t) { progress.Update(done); };
   if (options.model.empty()) return EstimateRecording(recording, estimator, nullptr, update);
-  const ExtendedModel found = ReadModel(options.model);
-  ModelAt model(found, recording);
-  return EstimateRecording(WithoutLatency(recording, found), estimator, &model, update);
+  const diagnosis::ExtendedModel found = diagnosis::ReadModel(options.model);
+  diagnosis::ModelAt model(found, recording);
+  return EstimateRecording(diagnosis::WithoutLatency(recording, found), estimator, &model, update);
 }
 
 /// Scoring only, where the simulation left its truth: each sample's tip as an observation.
@@ -159,7 +159,7 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   nlohmann::json summary = Summary(options, recording, estimates);
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   output.WriteSummary(summary);
-  WriteEstimateReport(output.folder());
+  report::WriteEstimateReport(output.folder());
   output.Commit();
   if (!quiet) {
     fmt::print("{} samples in {}\n", estimates.size(),

@@ -5,7 +5,7 @@
 #include <exception>
 #include <string>
 
-#include "apps/commands.h"
+#include "apps/common/commands.h"
 #include "core/error.h"
 #include "core/version.h"
 

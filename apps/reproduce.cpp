@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/commands.h"
-#include "apps/output.h"
-#include "apps/progress.h"
-#include "recording/text.h"
+#include "apps/common/commands.h"
+#include "apps/common/output.h"
+#include "apps/common/progress.h"
+#include "recording/text/text.h"
 #include "report/figure.h"
 #include "report/pages.h"
 #include "reproduction/chapter.h"
@@ -24,17 +24,18 @@ struct Options {
   std::string chapters;
   std::filesystem::path out;
   bool force = false;
-  ReproduceOptions work;
+  reproduction::ReproduceOptions work;
 };
 
 struct Chapter {
   const char* name;
-  ChapterResult (*run)(const ReproduceOptions&, const ChapterProgress&);
+  reproduction::ChapterResult (*run)(const reproduction::ReproduceOptions&,
+                                     const reproduction::ChapterProgress&);
 };
-constexpr Chapter kChapters[] = {{"2", ReproduceChapter2},
-                                 {"3", ReproduceChapter3},
-                                 {"4", ReproduceChapter4},
-                                 {"5", ReproduceChapter5}};
+constexpr Chapter kChapters[] = {{"2", reproduction::ReproduceChapter2},
+                                 {"3", reproduction::ReproduceChapter3},
+                                 {"4", reproduction::ReproduceChapter4},
+                                 {"5", reproduction::ReproduceChapter5}};
 
 /// RFC 4180: in quotes where it has to be.
 std::string Cell(const std::string& text) {
@@ -51,7 +52,7 @@ std::string Cell(const std::optional<double>& number) {
   return number ? fmt::format("{:.6g}", *number) : "";
 }
 
-std::string TableText(const std::vector<TableRow>& rows) {
+std::string TableText(const std::vector<reproduction::TableRow>& rows) {
   std::string text = "quantity,thesis,flextip,unit,note\n";
   for (const auto& row : rows)
     text += fmt::format("{},{},{},{},{}\n", Cell(row.quantity), Cell(row.thesis), Cell(row.flextip),
@@ -59,13 +60,14 @@ std::string TableText(const std::vector<TableRow>& rows) {
   return text;
 }
 
-ChapterResult RunChapter(const Chapter& chapter, const ReproduceOptions& options, bool quiet) {
+reproduction::ChapterResult RunChapter(const Chapter& chapter,
+                                       const reproduction::ReproduceOptions& options, bool quiet) {
   constexpr double kSteps = 1000.0;
   Progress progress(fmt::format("chapter {}", chapter.name), std::size_t(kSteps), quiet);
   return chapter.run(options, [&](double done) { progress.Update(std::size_t(done * kSteps)); });
 }
 
-void PrintRows(const std::vector<TableRow>& rows) {
+void PrintRows(const std::vector<reproduction::TableRow>& rows) {
   fmt::print("{:>12} {:>12} {:<6} {}\n", "thesis", "flextip", "unit", "quantity");
   for (const auto& row : rows)
     fmt::print("{:>12} {:>12} {:<6} {}\n", Cell(row.thesis), Cell(row.flextip), row.unit,
@@ -74,12 +76,12 @@ void PrintRows(const std::vector<TableRow>& rows) {
 
 void RunReproduce(const Options& options, const AppContext& context) {
   OutputFolder output(options.out, "reproduce", {.force = options.force});
-  ChapterResult all;
+  reproduction::ChapterResult all;
   nlohmann::json chapters = nlohmann::json::array();
   for (const auto& chapter : kChapters) {
     if (options.chapters != "all" && options.chapters != chapter.name) continue;
     const auto start = std::chrono::steady_clock::now();
-    ChapterResult result = RunChapter(chapter, options.work, context.quiet);
+    reproduction::ChapterResult result = RunChapter(chapter, options.work, context.quiet);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     chapters.push_back({{"chapter", chapter.name},
                         {"seconds", seconds.count()},
@@ -90,9 +92,9 @@ void RunReproduce(const Options& options, const AppContext& context) {
   }
   if (options.work.quick) output.Warn("a quick run: coarse grids, few repetitions");
   WriteTextFile(output.folder() / "table.csv", TableText(all.rows));
-  WriteFigures(output.folder() / "figures.json", all.figures);
+  report::WriteFigures(output.folder() / "figures.json", all.figures);
   output.WriteSummary({{"chapters", chapters}});
-  WriteReproduceReport(output.folder());
+  report::WriteReproduceReport(output.folder());
   output.Commit();
   if (context.quiet) return;
   PrintRows(all.rows);

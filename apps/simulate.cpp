@@ -11,18 +11,18 @@
 #include <string>
 #include <vector>
 
-#include "apps/commands.h"
-#include "apps/output.h"
-#include "apps/progress.h"
+#include "apps/common/commands.h"
+#include "apps/common/output.h"
+#include "apps/common/progress.h"
 #include "core/error.h"
-#include "diagnosis/model_at.h"
-#include "recording/csv.h"
+#include "diagnosis/model/model_at.h"
 #include "recording/recording_writer.h"
-#include "recording/text.h"
+#include "recording/text/csv.h"
+#include "recording/text/text.h"
 #include "recording/truth.h"
 #include "report/pages.h"
-#include "simulation/camera_view.h"
-#include "simulation/scenario.h"
+#include "simulation/closed_loop/scenario.h"
+#include "simulation/sensors/camera_view.h"
 
 namespace flextip {
 namespace {
@@ -65,10 +65,10 @@ void SaveFrame(const fs::path& folder, TimeNs t_ns, const Image& image) {
   }
 }
 
-void WriteDeviation(const fs::path& file, const LoopResult& result) {
+void WriteDeviation(const fs::path& file, const simulation::LoopResult& result) {
   CsvWriter csv({"timestamp [ns]", "p_desired_x [m]", "p_desired_y [m]", "p_desired_z [m]",
                  "p_RE_x [m]", "p_RE_y [m]", "p_RE_z [m]", "deviation [m]"});
-  for (const LoopUpdate& update : result.updates) {
+  for (const simulation::LoopUpdate& update : result.updates) {
     csv.Add(update.t_ns);
     for (int i = 0; i < 3; ++i) csv.Add(update.p_RE_desired[i]);
     for (int i = 0; i < 3; ++i) csv.Add(update.p_RE[i]);
@@ -78,7 +78,7 @@ void WriteDeviation(const fs::path& file, const LoopResult& result) {
   WriteTextFile(file, csv.text());
 }
 
-nlohmann::json Figures(const LoopResult& result) {
+nlohmann::json Figures(const simulation::LoopResult& result) {
   return {
       {"max_deviation_m", result.max_deviation_m},   {"rms_deviation_m", result.rms_deviation_m},
       {"final_error_m", result.final_error_m},       {"updates", result.updates.size()},
@@ -87,28 +87,30 @@ nlohmann::json Figures(const LoopResult& result) {
 }
 
 /// One controller's run, written into `folder` as a recording.
-LoopResult RunOne(const Scenario& scenario, ControllerKind kind, const Laparoscope* laparoscope,
-                  const fs::path& folder, const std::function<void(int, int)>& progress) {
-  LoopSetup setup = scenario.loop;
+simulation::LoopResult RunOne(const simulation::Scenario& scenario, ControllerKind kind,
+                              const simulation::Laparoscope* laparoscope, const fs::path& folder,
+                              const std::function<void(int, int)>& progress) {
+  simulation::LoopSetup setup = scenario.loop;
   setup.controller.kind = kind;
-  std::optional<LoopCamera> camera;
+  std::optional<simulation::LoopCamera> camera;
   if (laparoscope != nullptr) {
     const fs::path frames = folder / "cam0" / "data";
     fs::create_directories(frames);
-    camera.emplace(
-        LoopCamera{*laparoscope, scenario.tracker,
-                   [frames](TimeNs t_ns, const Image& image) { SaveFrame(frames, t_ns, image); }});
+    camera.emplace(simulation::LoopCamera{
+        *laparoscope, scenario.tracker,
+        [frames](TimeNs t_ns, const Image& image) { SaveFrame(frames, t_ns, image); }});
   } else {
     fs::create_directories(folder);
   }
-  LoopResult result = RunClosedLoop(setup, camera ? &*camera : nullptr, progress);
+  simulation::LoopResult result =
+      simulation::RunClosedLoop(setup, camera ? &*camera : nullptr, progress);
   WriteRecording(folder, result.recording);
   WriteTruth(folder, result.truth);
   WriteDeviation(folder / "deviation.csv", result);
   return result;
 }
 
-void RefuseWhatIsNotRendered(const std::string& file, const LoopSetup& loop) {
+void RefuseWhatIsNotRendered(const std::string& file, const simulation::LoopSetup& loop) {
   const bool late = loop.sensor_effects.camera_latency_s != 0.0;
   if (!late && loop.plant.effects.tip_compliance_m_N == 0.0) return;
   throw InputError(fmt::format("{}: effects: {} is not rendered: run it without --render", file,
@@ -116,7 +118,7 @@ void RefuseWhatIsNotRendered(const std::string& file, const LoopSetup& loop) {
 }
 
 void RunSimulate(const SimulateOptions& options, bool quiet) {
-  Scenario scenario = ReadScenario(options.scenario);
+  simulation::Scenario scenario = simulation::ReadScenario(options.scenario);
   const std::string file = options.scenario.string();
   if (options.render && !scenario.has_camera) {
     throw InputError(file + ": --render needs a section camera");
@@ -128,20 +130,23 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
   std::vector<fs::path> inputs = {options.scenario};
   if (!options.model.empty()) {
     inputs.push_back(options.model);
-    const ExtendedModel model = ReadModel(options.model);
+    const diagnosis::ExtendedModel model = diagnosis::ReadModel(options.model);
     const Recording& base = scenario.loop.base;
-    scenario.loop.model = [model, &base] { return std::make_unique<ModelAt>(model, base); };
+    scenario.loop.model = [model, &base] {
+      return std::make_unique<diagnosis::ModelAt>(model, base);
+    };
   }
   OutputFolder output(options.out, "simulate", {.force = options.force, .inputs = inputs});
   output.Warn(scenario.warnings);
-  std::optional<Laparoscope> laparoscope;
+  std::optional<simulation::Laparoscope> laparoscope;
   if (options.render) {
-    const LoopSetup& loop = scenario.loop;
-    laparoscope.emplace(TrueCamera(loop.base.cam0->calibration, loop.sensor_effects),
-                        TrueCollar(*loop.base.tags0, loop.sensor_effects), scenario.laparoscope);
+    const simulation::LoopSetup& loop = scenario.loop;
+    laparoscope.emplace(simulation::TrueCamera(loop.base.cam0->calibration, loop.sensor_effects),
+                        simulation::TrueCollar(*loop.base.tags0, loop.sensor_effects),
+                        scenario.laparoscope);
   }
   const std::size_t runs = scenario.controllers.size();
-  std::vector<LoopResult> results(runs);
+  std::vector<simulation::LoopResult> results(runs);
   {
     SharedProgress progress(runs, quiet);
     tbb::parallel_for(std::size_t(0), runs, [&](std::size_t i) {
@@ -159,7 +164,7 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
                             {"controllers", controllers}};
   if (!options.model.empty()) summary["model"] = options.model.filename().string();
   output.WriteSummary(summary);
-  WriteSimulateReport(output.folder());
+  report::WriteSimulateReport(output.folder());
   output.Commit();
   if (quiet) return;
   fmt::print("{:<20} {:>12} {:>12}\n", "deviation (mm)", "max", "rms");

@@ -1,29 +1,57 @@
-# flextip_library(NAME SOURCES ... [PUBLIC targets...] [PRIVATE targets...]): one library a folder.
-# Targets are flextip_<name>, used and exported as flextip::<name>. What is PUBLIC shows in the
-# folder's headers; foreign libraries are PRIVATE.
+# How targets are made: one library a folder, one test program a folder, programs of bench/.
+#
+# flextip_library(NAME SOURCES ... [PUBLIC targets...] [PRIVATE targets...] [COLD]): a library, used
+# and exported as flextip::<name>. PUBLIC targets show in the folder's headers; foreign libraries are
+# PRIVATE. COLD: nothing in it runs often, so it is optimised less.
 set(FLEXTIP_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 # g++ 12 warns of overlapping copies inside std::string where there are none (GCC bug 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   list(APPEND FLEXTIP_WARNINGS -Wno-restrict)
 endif()
+# One setting for libraries and programs, so that they share their precompiled headers.
+add_compile_options(-fPIC)
 
+# flextip_pch(NAME HEADERS ... LIBS ... [OPTIONS ...]): headers compiled once, for all targets of a kind.
+# The warnings belong to it: -Wpedantic undefines macros, and the headers must agree on all of them.
+function(flextip_pch name)
+  cmake_parse_arguments(ARG "" "" "HEADERS;LIBS;OPTIONS" ${ARGN})
+  add_library(flextip_pch_${name} OBJECT ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)
+  target_link_libraries(flextip_pch_${name} PRIVATE ${ARG_LIBS})
+  target_compile_features(flextip_pch_${name} PRIVATE cxx_std_20)
+  target_compile_options(flextip_pch_${name} PRIVATE ${FLEXTIP_WARNINGS} ${ARG_OPTIONS})
+  target_precompile_headers(flextip_pch_${name} PRIVATE ${ARG_HEADERS})
+endfunction()
+
+# flextip_options(TARGET [COLD] [PCH kind]): what all our targets are compiled with.
 function(flextip_options target)
+  cmake_parse_arguments(ARG "COLD" "PCH" "" ${ARGN})
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_compile_options(${target} PRIVATE ${FLEXTIP_WARNINGS} $<$<BOOL:${FLEXTIP_WERROR}>:-Werror>)
+  target_compile_options(${target} PRIVATE ${FLEXTIP_WARNINGS} $<$<BOOL:${FLEXTIP_WERROR}>:-Werror>
+    $<$<AND:$<BOOL:${ARG_COLD}>,$<CONFIG:Release>>:-O1>)
+  if(NOT ARG_PCH)
+    set(ARG_PCH common)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM flextip_pch_${ARG_PCH})
 endfunction()
 
 function(flextip_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "COLD;INTERNAL" "PCH" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target flextip_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(flextip::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/flextip>)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
-  flextip_options(${target})
-  set_property(GLOBAL APPEND PROPERTY FLEXTIP_LIBRARIES ${target})
-  set_property(GLOBAL APPEND PROPERTY FLEXTIP_HEADER_FOLDERS ${CMAKE_CURRENT_SOURCE_DIR})
+  if(ARG_COLD)
+    flextip_options(${target} COLD PCH ${ARG_PCH})
+  else()
+    flextip_options(${target} PCH ${ARG_PCH})
+  endif()
+  if(NOT ARG_INTERNAL)
+    set_property(GLOBAL APPEND PROPERTY FLEXTIP_LIBRARIES ${target})
+    set_property(GLOBAL APPEND PROPERTY FLEXTIP_HEADER_FOLDERS ${CMAKE_CURRENT_SOURCE_DIR})
+  endif()
 endfunction()
 
 # flextip_tests(NAME SOURCES ... LIBS ...): one test program a folder, every case a ctest entry.
@@ -35,6 +63,6 @@ function(flextip_tests name)
   target_compile_definitions(${target} PRIVATE
     FLEXTIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     FLEXTIP_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
-  flextip_options(${target})
+  flextip_options(${target} COLD PCH test)
   gtest_discover_tests(${target} TEST_PREFIX "${name}." PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
 endfunction()

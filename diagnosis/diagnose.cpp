@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "diagnosis/ambiguity.h"
+#include "diagnosis/evidence/probabilities.h"
 #include "diagnosis/heldout.h"
-#include "diagnosis/probabilities.h"
+#include "diagnosis/search/ambiguity.h"
 #include "diagnosis/signature.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 /// What the stages work on. The layout refers to the samples, the replays to both.
@@ -175,4 +175,4 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
   return result;
 }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

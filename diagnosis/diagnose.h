@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/effect.h"
+#include "diagnosis/model/effect.h"
 #include "recording/recording.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 
 struct DiagnoseOptions {
   std::vector<std::string> without;  ///< effects left out of the catalogue
@@ -102,4 +102,4 @@ std::string DiagnosisJson(const DiagnosisResult& result);
 /// residuals.csv: the ResidualTable.
 std::string ResidualsCsv(const DiagnosisResult& result);
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 constexpr int kResamplings = 200;
@@ -166,4 +166,4 @@ HeldOut MeasureHeldOut(const Replay& base, const Replay& extended, const Selecti
   return result;
 }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

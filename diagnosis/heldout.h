@@ -2,9 +2,9 @@
 #pragma once
 
 #include "diagnosis/diagnose.h"
-#include "diagnosis/selection.h"
+#include "diagnosis/search/selection.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 
 struct HeldOut {
   ModelScore base, extended;
@@ -20,4 +20,4 @@ HeldOut MeasureHeldOut(const Replay& base, const Replay& extended, const Selecti
 /// The best parameters of the base simulation: the registration's alone, the rest zero.
 Eigen::VectorXd BaseParameters(const NormalSums& sums, const ParameterLayout& layout);
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

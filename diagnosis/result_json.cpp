@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "diagnosis/catalogue.h"
 #include "diagnosis/diagnose.h"
-#include "diagnosis/model_input.h"
+#include "diagnosis/model/catalogue.h"
+#include "diagnosis/replay/model_input.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -127,4 +127,4 @@ std::string ResidualsCsv(const DiagnosisResult& result) {
   return text;
 }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/generic_basis.h"
+#include "diagnosis/evidence/generic_basis.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 constexpr std::size_t kFewest = 30;
@@ -126,4 +126,4 @@ ResidualTable MakeResidualTable(const Replay& base, const Replay& extended) {
   return table;
 }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "recording/text.h"
-#include "recording/yaml_map.h"
+#include "recording/text/text.h"
+#include "recording/text/yaml_map.h"
 
 namespace flextip {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "recording/recording_file.h"
-#include "recording/sensor_streams.h"
+#include "recording/streams/sensor_streams.h"
 
 namespace flextip {
 namespace {

@@ -1,7 +1,7 @@
 #include "recording/recording_writer.h"
 
 #include "recording/recording_file.h"
-#include "recording/sensor_streams.h"
+#include "recording/streams/sensor_streams.h"
 
 namespace flextip {
 

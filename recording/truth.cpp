@@ -1,8 +1,8 @@
 #include "recording/truth.h"
 
-#include "recording/sensor_head.h"
-#include "recording/series_file.h"
-#include "recording/text.h"
+#include "recording/streams/sensor_head.h"
+#include "recording/streams/series_file.h"
+#include "recording/text/text.h"
 
 namespace flextip {
 namespace {

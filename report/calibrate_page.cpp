@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "report/diagnose_parts.h"
+#include "report/diagnose/parts.h"
 #include "report/page_parts.h"
 #include "report/pages.h"
 #include "report/report.h"
 #include "report/result_files.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +139,4 @@ void WriteCalibrateReport(const fs::path& folder) {
   report.Write(folder / "report.html");
 }
 
-}  // namespace flextip
+}  // namespace flextip::report

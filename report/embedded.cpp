@@ -21,7 +21,7 @@ FLEXTIP_EMBED(flextip_page_css, FLEXTIP_PAGE_CSS);
 FLEXTIP_EMBED(flextip_page_js, FLEXTIP_PAGE_JS);
 FLEXTIP_EMBED(flextip_figures_js, FLEXTIP_FIGURES_JS);
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 std::string_view Between(const char* begin, const char* end) {
@@ -38,4 +38,4 @@ std::string_view PageCss() { return Between(flextip_page_css_begin, flextip_page
 std::string_view PageJs() { return Between(flextip_page_js_begin, flextip_page_js_end); }
 std::string_view FiguresJs() { return Between(flextip_figures_js_begin, flextip_figures_js_end); }
 
-}  // namespace flextip
+}  // namespace flextip::report

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace flextip {
+namespace flextip::report {
 
 // The plotting library, of the version in package-lock.json: lines in the plane and in space, and
 // all that is flat (contours, bars).
@@ -13,4 +13,4 @@ std::string_view PageCss();    ///< report/page.css
 std::string_view PageJs();     ///< report/page.js
 std::string_view FiguresJs();  ///< report/figures.js
 
-}  // namespace flextip
+}  // namespace flextip::report

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 using Json = nlohmann::json;
@@ -98,4 +98,4 @@ void WriteFigures(const std::filesystem::path& file, const std::vector<Figure>& 
   if (!out.flush()) throw WorkError(file.string() + ": cannot be written");
 }
 
-}  // namespace flextip
+}  // namespace flextip::report

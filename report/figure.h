@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace flextip {
+namespace flextip::report {
 
 /// One curve, set of points or set of bars. A value that is not finite leaves a gap.
 struct FigureTrace {
@@ -52,4 +52,4 @@ FigureTrace Segments(const std::vector<double>& x, const std::vector<double>& y,
 /// Throws WorkError where the disk refuses.
 void WriteFigures(const std::filesystem::path& file, const std::vector<Figure>& figures);
 
-}  // namespace flextip
+}  // namespace flextip::report

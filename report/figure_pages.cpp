@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "core/error.h"
-#include "report/diagnose_parts.h"
+#include "report/diagnose/parts.h"
 #include "report/page_parts.h"
 #include "report/pages.h"
 #include "report/report.h"
 #include "report/result_files.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -71,4 +71,4 @@ void WriteMapReport(const fs::path& folder) {
   report.Write(folder / "report.html");
 }
 
-}  // namespace flextip
+}  // namespace flextip::report

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "core/error.h"
-#include "report/diagnose_parts.h"
+#include "report/diagnose/parts.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -254,4 +254,4 @@ void AddColumnsOverTime(Report& report, const ResultTable& table) {
   for (const auto& plot : plots) report.AddPlot(plot);
 }
 
-}  // namespace flextip
+}  // namespace flextip::report

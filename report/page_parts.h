@@ -10,7 +10,7 @@
 #include "report/report.h"
 #include "report/result_files.h"
 
-namespace flextip {
+namespace flextip::report {
 
 /// A page with the head that every command's page has: what was run, the figures of summary.json,
 /// its warnings, and a table for each list or map of alike things in it (controllers, views, ...).
@@ -43,4 +43,4 @@ PlotTrace PathTrace(const ResultTable& table, const std::string& prefix, const s
 /// "p_RE_y [m]", ... become one).
 void AddColumnsOverTime(Report& report, const ResultTable& table);
 
-}  // namespace flextip
+}  // namespace flextip::report

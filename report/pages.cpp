@@ -10,7 +10,7 @@
 #include "report/report.h"
 #include "report/result_files.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -181,4 +181,4 @@ void WriteDetectReport(const fs::path& folder) {
   WriteWithPictures(folder, "Tags found in pictures", "What was found");
 }
 
-}  // namespace flextip
+}  // namespace flextip::report

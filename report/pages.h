@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace flextip {
+namespace flextip::report {
 
 // Each reads FOLDER/summary.json and what else is there (docs/formats.md), and writes
 // FOLDER/report.html. What is absent is left out. They throw InputError where a file that is there
@@ -32,4 +32,4 @@ void WriteReproduceReport(const std::filesystem::path& folder);
 /// The figures of figures.json (which must be there) and table.csv.
 void WriteMapReport(const std::filesystem::path& folder);
 
-}  // namespace flextip
+}  // namespace flextip::report

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "report/embedded.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 constexpr std::size_t kWords = 40;  // a longer cell of a table is a sentence: its lines break
@@ -234,4 +234,4 @@ void Report::Write(const std::filesystem::path& path) const {
   }
 }
 
-}  // namespace flextip
+}  // namespace flextip::report

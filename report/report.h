@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace flextip {
+namespace flextip::report {
 
 /// One curve: y over x, or a path in space where `z` is not empty. A value that is not finite
 /// leaves a gap. All lists that are used have the same length.
@@ -76,4 +76,4 @@ std::string EscapeHtml(const std::string& text);
 /// RFC 4648 with padding.
 std::string Base64(const std::string& bytes);
 
-}  // namespace flextip
+}  // namespace flextip::report

@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "report/unit_suffix.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 std::string Trimmed(std::string_view text) {
@@ -185,4 +185,4 @@ std::string SpokenValue(const std::string& key, double value) {
                                 : fmt::format("{:.1f} {}", shown, unit->shown);
 }
 
-}  // namespace flextip
+}  // namespace flextip::report

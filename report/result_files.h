@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace flextip {
+namespace flextip::report {
 
 /// A CSV file by columns. The header's leading '#' and spaces around names are dropped. A cell that
 /// is empty or not a number is NaN in `numbers`.
@@ -51,4 +51,4 @@ std::string SpokenName(const std::string& key);
 /// The number behind `key` in the unit people read: metres as mm, N, px, s.
 std::string SpokenValue(const std::string& key, double value);
 
-}  // namespace flextip
+}  // namespace flextip::report

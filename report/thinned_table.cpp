@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "report/result_files.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -146,4 +146,4 @@ ThinnedTable ReadThinned(const std::filesystem::path& file,
   return thinner.Take();
 }
 
-}  // namespace flextip
+}  // namespace flextip::report

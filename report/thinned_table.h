@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace flextip {
+namespace flextip::report {
 
 /// A number of each row, made from the cells of some columns.
 struct ThinnedColumn {
@@ -41,4 +41,4 @@ ThinnedTable ReadThinned(const std::filesystem::path& file,
                          const std::vector<ThinnedColumn>& columns, const std::string& text_column,
                          const std::vector<std::string>& by_worth, std::size_t max_buckets);
 
-}  // namespace flextip
+}  // namespace flextip::report

@@ -9,7 +9,7 @@
 #include "report/pages.h"
 #include "report/thinned_table.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ void WriteTrackReport(const fs::path& folder) {
   report.Write(folder / "report.html");
 }
 
-}  // namespace flextip
+}  // namespace flextip::report

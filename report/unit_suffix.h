@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace flextip {
+namespace flextip::report {
 
 struct UnitSuffix {
   std::string_view ending;  ///< "_Nm"
@@ -21,4 +21,4 @@ inline const UnitSuffix* SuffixOf(const std::string& name, std::span<const UnitS
   return it == suffixes.end() ? nullptr : &*it;
 }
 
-}  // namespace flextip
+}  // namespace flextip::report

@@ -2,7 +2,7 @@
 
 #include <iterator>
 
-namespace flextip {
+namespace flextip::reproduction {
 
 ChapterResult InParts(const std::vector<ChapterPart>& parts, const ReproduceOptions& options,
                       const ChapterProgress& progress) {
@@ -18,4 +18,4 @@ ChapterResult InParts(const std::vector<ChapterPart>& parts, const ReproduceOpti
   return all;
 }
 
-}  // namespace flextip
+}  // namespace flextip::reproduction

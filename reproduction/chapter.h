@@ -10,7 +10,7 @@
 
 #include "report/figure.h"
 
-namespace flextip {
+namespace flextip::reproduction {
 
 /// One line of table.csv.
 struct TableRow {
@@ -23,7 +23,7 @@ struct TableRow {
 
 struct ChapterResult {
   std::vector<TableRow> rows;
-  std::vector<Figure> figures;
+  std::vector<report::Figure> figures;
 };
 
 struct ReproduceOptions {
@@ -52,4 +52,4 @@ ChapterResult ReproduceChapter4(const ReproduceOptions& options, const ChapterPr
 /// Ten operators in three dimensions, and what other sensors give.
 ChapterResult ReproduceChapter5(const ReproduceOptions& options, const ChapterProgress& progress);
 
-}  // namespace flextip
+}  // namespace flextip::reproduction

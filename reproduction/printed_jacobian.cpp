@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace flextip {
+namespace flextip::reproduction {
 
 Eigen::Matrix2d PrintedPlaneJacobian(double a, double y_a, double length_m, double phi,
                                      const Eigen::Vector2d& wrist_to_port) {
@@ -21,4 +21,4 @@ Eigen::Matrix2d PrintedPlaneJacobian(double a, double y_a, double length_m, doub
   return J;
 }
 
-}  // namespace flextip
+}  // namespace flextip::reproduction

@@ -5,7 +5,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # Compiler, libraries and tools as Debian 12 names them.
 BUILD_PACKAGES=(
   cmake ninja-build g++ libopencv-dev libapriltag-dev libeigen3-dev libceres-dev libcli11-dev
-  libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libtbb-dev libgtest-dev libgmock-dev
+  libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libgtest-dev libgmock-dev
   libbenchmark-dev libgeos-dev libboost-dev
 )
 # What the tests and checks need beside these; opencv-doc holds real chessboard pictures.

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "recording/yaml_map.h"
+#include "recording/text/yaml_map.h"
 
 namespace flextip {
 namespace {

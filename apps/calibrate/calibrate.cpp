@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/commands.h"
+#include "apps/common/commands.h"
 
 namespace flextip {
 

@@ -5,10 +5,10 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "calibration/boards/board_saddles.h"
+#include "calibration/boards/saddles.h"
 #include "core/error.h"
-#include "vision/edge_refiner.h"
-#include "vision/tag_detector.h"
+#include "vision/tags/detector.h"
+#include "vision/tags/edge_refiner.h"
 
 namespace flextip {
 

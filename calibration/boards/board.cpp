@@ -4,7 +4,7 @@
 #include "calibration/boards/charuco.h"
 #include "calibration/boards/chessboard.h"
 #include "core/error.h"
-#include "vision/tag_detector.h"
+#include "vision/tags/detector.h"
 
 namespace flextip {
 

@@ -6,7 +6,7 @@
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 
-#include "calibration/boards/board_saddles.h"
+#include "calibration/boards/saddles.h"
 #include "core/error.h"
 #include "core/median.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
-#include "calibration/boards/board_saddles.h"
+#include "calibration/boards/saddles.h"
 
 namespace flextip {
 namespace {

@@ -5,9 +5,9 @@
 #include <set>
 #include <utility>
 
-#include "calibration/camera/camera_board_shape.h"
-#include "calibration/camera/camera_bundle.h"
-#include "calibration/camera/camera_start.h"
+#include "calibration/camera/board_shape.h"
+#include "calibration/camera/bundle.h"
+#include "calibration/camera/start.h"
 #include "core/error.h"
 
 namespace flextip {

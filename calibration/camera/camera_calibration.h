@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "calibration/boards/board.h"
-#include "calibration/camera/camera_choice.h"
-#include "calibration/camera/camera_outliers.h"
-#include "calibration/camera/camera_solution.h"
+#include "calibration/camera/choice.h"
+#include "calibration/camera/outliers.h"
+#include "calibration/camera/solution.h"
 
 namespace flextip {
 

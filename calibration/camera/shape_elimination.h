@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <map>
 
-#include "calibration/camera/camera_solution.h"
+#include "calibration/camera/solution.h"
 
 namespace flextip {
 

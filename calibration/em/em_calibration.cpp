@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "calibration/em/em_coverage.h"
+#include "calibration/em/coverage.h"
 #include "calibration/residual_statistics.h"
 #include "core/median.h"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "calibration/em/em_choice.h"
-#include "calibration/em/em_lag.h"
-#include "recording/calibration_file.h"
+#include "calibration/em/choice.h"
+#include "calibration/em/lag.h"
+#include "recording/calibrations/file.h"
 
 namespace flextip {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/hand_eye/hand_eye_work.h"
+#include "calibration/hand_eye/work.h"
 #include "core/median.h"
 
 namespace flextip {

@@ -10,7 +10,7 @@
 #include "core/camera.h"
 #include "core/pose.h"
 #include "core/time_series.h"
-#include "recording/calibration_file.h"
+#include "recording/calibrations/file.h"
 #include "recording/recording.h"
 
 namespace flextip {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calibration/shaft/known_loads.h"
-#include "recording/calibration_file.h"
+#include "recording/calibrations/file.h"
 
 namespace flextip {
 

@@ -7,7 +7,7 @@
 
 #include "calibration/shaft/strain_fit.h"
 #include "calibration/shaft/strain_moments.h"
-#include "recording/calibration_file.h"
+#include "recording/calibrations/file.h"
 
 namespace flextip {
 

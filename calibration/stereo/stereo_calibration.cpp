@@ -6,10 +6,10 @@
 #include <cmath>
 #include <map>
 
-#include "calibration/camera/camera_board_shape.h"
-#include "calibration/camera/camera_choice.h"
-#include "calibration/stereo/stereo_bundle.h"
-#include "calibration/stereo/stereo_heldout.h"
+#include "calibration/camera/board_shape.h"
+#include "calibration/camera/choice.h"
+#include "calibration/stereo/bundle.h"
+#include "calibration/stereo/heldout.h"
 #include "core/median.h"
 #include "core/rotation.h"
 

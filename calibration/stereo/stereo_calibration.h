@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calibration/camera/camera_calibration.h"
-#include "calibration/stereo/stereo_solution.h"
+#include "calibration/stereo/solution.h"
 
 namespace flextip {
 

@@ -6,7 +6,7 @@
 
 #include "calibration/tip/pivot.h"
 #include "recording/recording.h"
-#include "vision/tip_tracker.h"
+#include "vision/tracking/tip_tracker.h"
 
 namespace flextip {
 

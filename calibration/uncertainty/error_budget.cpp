@@ -6,7 +6,7 @@
 #include "calibration/camera/projection_derivative.h"
 #include "core/rotation.h"
 #include "kinematics/tip_bending.h"
-#include "vision/collar_pose.h"
+#include "vision/tags/collar_pose.h"
 
 namespace flextip {
 namespace {

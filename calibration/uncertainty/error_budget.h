@@ -8,7 +8,7 @@
 
 #include "core/camera.h"
 #include "core/tag_collar.h"
-#include "vision/tag_detector.h"
+#include "vision/tags/detector.h"
 
 namespace flextip {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "calibration/camera/camera_solution.h"
-#include "calibration/stereo/stereo_solution.h"
+#include "calibration/camera/solution.h"
+#include "calibration/stereo/solution.h"
 
 namespace flextip {
 

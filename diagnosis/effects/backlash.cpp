@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 /// The play operator on each axis: the true wrist rests until the measured one is half the width
@@ -58,4 +58,4 @@ class Backlash : public DirectEffect {
 
 std::unique_ptr<Effect> MakeBacklash() { return std::make_unique<Backlash>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

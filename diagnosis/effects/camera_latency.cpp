@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class CameraLatency : public DirectEffect {
@@ -25,4 +25,4 @@ class CameraLatency : public DirectEffect {
 
 std::unique_ptr<Effect> MakeCameraLatency() { return std::make_unique<CameraLatency>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 /// A bias that grows linearly across the workspace. Where it is zero is not known: an offset is
@@ -44,4 +44,4 @@ class EmDistortion : public Effect {
 
 std::unique_ptr<Effect> MakeEmDistortion() { return std::make_unique<EmDistortion>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class EmLatency : public DirectEffect {
@@ -25,4 +25,4 @@ class EmLatency : public DirectEffect {
 
 std::unique_ptr<Effect> MakeEmLatency() { return std::make_unique<EmLatency>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 /// Fitted as the logarithm of the scale, which moves the tip in depth, and beside it as what the
@@ -37,4 +37,4 @@ class FocalLength : public Effect {
 
 std::unique_ptr<Effect> MakeFocalLength() { return std::make_unique<FocalLength>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class HandEye : public DirectEffect {
@@ -29,4 +29,4 @@ class HandEye : public DirectEffect {
 
 std::unique_ptr<Effect> MakeHandEye() { return std::make_unique<HandEye>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

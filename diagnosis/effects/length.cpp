@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class Length : public DirectEffect {
@@ -23,4 +23,4 @@ class Length : public DirectEffect {
 
 std::unique_ptr<Effect> MakeLength() { return std::make_unique<Length>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 constexpr double kConstant = 1.0, kWave = 0.5;  // prior standard deviations
@@ -35,4 +35,4 @@ std::vector<DirectEffect::Named> MeanLoad::Names() const {
   return {{"constant", 3}, {"along", kWaves}};
 }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

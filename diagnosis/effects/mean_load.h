@@ -3,9 +3,9 @@
 // zero, a thousand small pulls would add up to a bias of whatever stiffens or bends the shaft.
 #pragma once
 
-#include "diagnosis/effect.h"
+#include "diagnosis/model/effect.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 
 /// In units of the shaft's EI / L^2: a constant in R, and slow waves along the shaft.
 class MeanLoad : public DirectEffect {
@@ -21,4 +21,4 @@ class MeanLoad : public DirectEffect {
   std::vector<Named> Names() const override;
 };
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class PortCompliance : public DirectEffect {
@@ -23,4 +23,4 @@ class PortCompliance : public DirectEffect {
 
 std::unique_ptr<Effect> MakePortCompliance() { return std::make_unique<PortCompliance>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 /// Coulomb friction that sticks. While it sticks the port stays at its place on the shaft: the
@@ -46,4 +46,4 @@ class PortFriction : public DirectEffect {
 
 std::unique_ptr<Effect> MakePortFriction() { return std::make_unique<PortFriction>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

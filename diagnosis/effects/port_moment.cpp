@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 /// Fitted as stiffness times rest axis, which the couple is linear in.
@@ -46,4 +46,4 @@ class PortMoment : public Effect {
 
 std::unique_ptr<Effect> MakePortMoment() { return std::make_unique<PortMoment>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

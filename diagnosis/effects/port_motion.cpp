@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
@@ -113,4 +113,4 @@ Eigen::VectorXd PortMotion::FromReported(const std::vector<std::vector<double>>&
 
 std::unique_ptr<Effect> MakePortMotion() { return std::make_unique<PortMotion>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -2,9 +2,9 @@
 // pure sine.
 #pragma once
 
-#include "diagnosis/effect.h"
+#include "diagnosis/model/effect.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 
 class PortMotion : public Effect {
  public:
@@ -27,4 +27,4 @@ class PortMotion : public Effect {
   double frequency_hz_ = 0.25;
 };
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class PortOffset : public DirectEffect {
@@ -23,4 +23,4 @@ class PortOffset : public DirectEffect {
 
 std::unique_ptr<Effect> MakePortOffset() { return std::make_unique<PortOffset>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

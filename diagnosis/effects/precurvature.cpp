@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class Precurvature : public DirectEffect {
@@ -23,4 +23,4 @@ class Precurvature : public DirectEffect {
 
 std::unique_ptr<Effect> MakePrecurvature() { return std::make_unique<Precurvature>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

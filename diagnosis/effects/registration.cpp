@@ -1,6 +1,6 @@
 #include "diagnosis/effects/registration.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 
 bool Registration::Applies(const SampleSet& samples) const {
   const SensorNoises& n = samples.noise;
@@ -29,4 +29,4 @@ std::vector<DirectEffect::Named> Registration::Names() const {
           {"vision_translation_m", 3}};
 }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

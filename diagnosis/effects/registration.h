@@ -2,9 +2,9 @@
 // the uncertainty that the recording states.
 #pragma once
 
-#include "diagnosis/effect.h"
+#include "diagnosis/model/effect.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 
 class Registration : public DirectEffect {
  public:
@@ -19,4 +19,4 @@ class Registration : public DirectEffect {
   std::vector<Named> Names() const override;
 };
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class SelfWeight : public Effect {
@@ -33,4 +33,4 @@ class SelfWeight : public Effect {
 
 std::unique_ptr<Effect> MakeSelfWeight() { return std::make_unique<SelfWeight>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class ShaftLoad : public DirectEffect {
@@ -23,4 +23,4 @@ class ShaftLoad : public DirectEffect {
 
 std::unique_ptr<Effect> MakeShaftLoad() { return std::make_unique<ShaftLoad>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 /// Fitted as the logarithm of the scale: positive whatever the step, and nearer to linear.
@@ -31,4 +31,4 @@ class Stiffness : public Effect {
 
 std::unique_ptr<Effect> MakeStiffness() { return std::make_unique<Stiffness>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

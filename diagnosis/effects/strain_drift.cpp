@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class StrainDrift : public DirectEffect {
@@ -25,4 +25,4 @@ class StrainDrift : public DirectEffect {
 
 std::unique_ptr<Effect> MakeStrainDrift() { return std::make_unique<StrainDrift>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

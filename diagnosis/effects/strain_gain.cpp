@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class StrainGain : public DirectEffect {
@@ -23,4 +23,4 @@ class StrainGain : public DirectEffect {
 
 std::unique_ptr<Effect> MakeStrainGain() { return std::make_unique<StrainGain>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

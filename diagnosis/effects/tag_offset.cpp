@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class TagOffset : public DirectEffect {
@@ -23,4 +23,4 @@ class TagOffset : public DirectEffect {
 
 std::unique_ptr<Effect> MakeTagOffset() { return std::make_unique<TagOffset>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

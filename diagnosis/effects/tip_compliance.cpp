@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class TipCompliance : public DirectEffect {
@@ -23,4 +23,4 @@ class TipCompliance : public DirectEffect {
 
 std::unique_ptr<Effect> MakeTipCompliance() { return std::make_unique<TipCompliance>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,6 +1,6 @@
-#include "diagnosis/catalogue.h"
+#include "diagnosis/model/catalogue.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 class WristCompliance : public DirectEffect {
@@ -23,4 +23,4 @@ class WristCompliance : public DirectEffect {
 
 std::unique_ptr<Effect> MakeWristCompliance() { return std::make_unique<WristCompliance>(); }
 
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -10,7 +10,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "core/rotation.h"
-#include "recording/calibration_file.h"
+#include "recording/calibrations/file.h"
 #include "recording/recording_writer.h"
 #include "tests/apps/run_program.h"
 

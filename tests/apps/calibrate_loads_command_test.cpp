@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "recording/calibration_file.h"
+#include "recording/calibrations/file.h"
 #include "recording/recording_writer.h"
 #include "run_program.h"
 #include "tests/calibration/hung_masses.h"

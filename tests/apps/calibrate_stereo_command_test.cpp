@@ -7,8 +7,8 @@
 #include <random>
 
 #include "core/rotation.h"
-#include "recording/calibration_file.h"
-#include "recording/camera_file.h"
+#include "recording/calibrations/file.h"
+#include "recording/cameras/camera_file.h"
 #include "tests/apps/run_program.h"
 #include "tests/calibration/board_drawn.h"
 

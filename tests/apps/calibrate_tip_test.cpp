@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/rotation.h"
-#include "recording/calibration_file.h"
+#include "recording/calibrations/file.h"
 #include "recording/recording_writer.h"
 #include "tests/apps/run_program.h"
 

@@ -7,10 +7,10 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/rotation.h"
-#include "recording/calibration_file.h"
+#include "recording/calibrations/file.h"
 #include "recording/recording_writer.h"
-#include "recording/sensor_streams.h"
-#include "simulation/laparoscope.h"
+#include "recording/streams/sensor_streams.h"
+#include "simulation/render/laparoscope.h"
 #include "tests/apps/run_program.h"
 #include "tests/simulation/render_test_scene.h"
 
@@ -56,14 +56,14 @@ class CalibrationUsed : public testing::Test {
   }
 
   static void SetUpTestSuite() {
-    LaparoscopeOptions options = render_test::PlainOptions();
+    simulation::LaparoscopeOptions options = render_test::PlainOptions();
     options.tissue.point_R = kT_RC * options.tissue.point_R;
     options.tissue.normal_R = kT_RC.R * options.tissue.normal_R;
     options.blur_sigma_px = 0.7;
     options.exposure = 0.2;
     options.exposure_distance_m = 0.06;
     for (int eye = 0; eye < 2; ++eye) {
-      Laparoscope scope(TrueCamera(eye), render_test::HexagonCollar(), options);
+      simulation::Laparoscope scope(TrueCamera(eye), render_test::HexagonCollar(), options);
       for (int i = 0; i < kFrames; ++i) {
         const Image image = scope.Render(render_test::ArcShaft(TruePose(i), 0.1, 0.9, 0.005), i);
         pictures_.push_back(cv::Mat(image.height_px, image.width_px, CV_8UC3,

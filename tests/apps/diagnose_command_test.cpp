@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "simulation/hidden_recording.h"
+#include "testdata/hidden/recording.h"
 #include "tests/apps/run_program.h"
 
 namespace flextip {
@@ -16,17 +16,18 @@ using testing::Not;
 using testing::StartsWith;
 
 /// Tags that are off by millimetres, a known load, 8 s.
-HiddenRecording Hide(double duration_s) {
-  HiddenOptions options{.effects = {"tag_offset"}, .size = EffectSize::kStrong, .exact = true};
+hidden::HiddenRecording Hide(double duration_s) {
+  hidden::HiddenOptions options{
+      .effects = {"tag_offset"}, .size = hidden::EffectSize::kStrong, .exact = true};
   options.scene.duration_s = duration_s;
-  options.scene.motion = MotionKind::kSines;
-  options.scene.load = LoadKind::kVarying;
-  return MakeHidden(options, 71);
+  options.scene.motion = hidden::MotionKind::kSines;
+  options.scene.load = hidden::LoadKind::kVarying;
+  return hidden::MakeHidden(options, 71);
 }
 
 class DiagnoseCommand : public testing::Test {
  protected:
-  void Write(double duration_s) const { WriteHidden(folder_ / "rec", Hide(duration_s)); }
+  void Write(double duration_s) const { hidden::WriteHidden(folder_ / "rec", Hide(duration_s)); }
 
   ProgramResult Run(std::vector<std::string> more = {}) const {
     std::vector<std::string> command{"diagnose", (folder_ / "rec").string(), "-o",

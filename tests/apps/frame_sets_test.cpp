@@ -1,5 +1,5 @@
 // Frames of two cameras by their times.
-#include "apps/frame_sets.h"
+#include "recording/frames/frame_sets.h"
 
 #include <gtest/gtest.h>
 

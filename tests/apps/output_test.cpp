@@ -1,4 +1,4 @@
-#include "apps/output.h"
+#include "apps/common/output.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

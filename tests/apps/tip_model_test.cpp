@@ -1,6 +1,6 @@
 // The predicted tip against the truth of simulated recordings, whose plant shares no code with the
 // model and is a little off its data sheet in everything.
-#include "apps/tip_model.h"
+#include "pipeline/tip_predictor.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/rotation.h"
-#include "simulation/hidden_recording.h"
+#include "testdata/hidden/recording.h"
 
 namespace flextip {
 namespace {
@@ -18,18 +18,18 @@ using Matrix6 = TipModel::Matrix6;
 
 constexpr std::size_t kTick_ms = 20;  // of the wrist and of the truth
 
-HiddenRecording Make(LoadKind load, std::uint64_t seed, bool orientation) {
-  HiddenOptions options;
+hidden::HiddenRecording Make(hidden::LoadKind load, std::uint64_t seed, bool orientation) {
+  hidden::HiddenOptions options;
   options.with_load = false;
   options.left_out = {"em0", "strain0", "vision0"};
   if (!orientation) options.left_out.emplace_back("wrist0_orientation");
   options.scene.load = load;
   options.scene.duration_s = 8.0;
   options.tick_rate_hz = 50;
-  return MakeHidden(options, seed);
+  return hidden::MakeHidden(options, seed);
 }
 
-Pose Truth(const HiddenRecording& hidden, std::size_t i) {
+Pose Truth(const hidden::HiddenRecording& hidden, std::size_t i) {
   return Pose::FromQuaternion(hidden.truth[i].value.q_RE, hidden.truth[i].value.p_RE);
 }
 
@@ -37,7 +37,7 @@ Pose Truth(const HiddenRecording& hidden, std::size_t i) {
 class Tracker {
  public:
   Tracker() { sd_ << 0.002, 0.002, 0.002, 1e-4, 1e-4, 3e-4; }
-  void Show(const HiddenRecording& hidden, std::size_t i, TipModel& model) {
+  void Show(const hidden::HiddenRecording& hidden, std::size_t i, TipModel& model) {
     Vector6 e;
     for (int k = 0; k < 6; ++k) e[k] = sd_[k] * normal_(random_);
     const Pose truth = Truth(hidden, i);
@@ -67,7 +67,7 @@ struct Sum {
   double Stated() const { return std::sqrt(stated_m2 / n); }
 };
 
-class TipModelUnder : public testing::TestWithParam<LoadKind> {};
+class TipModelUnder : public testing::TestWithParam<hidden::LoadKind> {};
 
 // Six components: 6 on the average where the covariance is right. Under loads that stay it is too
 // wide, for the load might change; it must not be too narrow under those that do.
@@ -103,12 +103,12 @@ TEST_P(TipModelUnder, AHiddenTipStaysWithinTheStatedErrors) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Loads, TipModelUnder,
-                         testing::Values(LoadKind::kNone, LoadKind::kHungMass, LoadKind::kTissue,
-                                         LoadKind::kVarying),
+                         testing::Values(hidden::LoadKind::kNone, hidden::LoadKind::kHungMass,
+                                         hidden::LoadKind::kTissue, hidden::LoadKind::kVarying),
                          [](const auto& load) { return std::string(Name(load.param)); });
 
 TEST(TipModel, SaysNothingWhereTheWristIsNotKnown) {
-  auto hidden = Make(LoadKind::kNone, 2, true);
+  auto hidden = Make(hidden::LoadKind::kNone, 2, true);
   TipModel model(hidden.recording);
   const TimeNs first = hidden.recording.wrist0->samples.front().t_ns;
   EXPECT_FALSE(model.Predict(first - 1));
@@ -122,7 +122,7 @@ TEST(TipModel, SaysNothingWhereTheWristIsNotKnown) {
 
 // A collar turns with the instrument: a full turn of the shaft is in the wrist's quaternion only.
 TEST(TipModel, TheRollFollowsTheWrist) {
-  auto hidden = Make(LoadKind::kNone, 2, true);
+  auto hidden = Make(hidden::LoadKind::kNone, 2, true);
   auto& samples = hidden.recording.wrist0->samples;
   const std::size_t i = 20, j = 30;
   const auto time = [&](std::size_t k) { return samples[k].t_ns; };

@@ -11,8 +11,8 @@
 #include "core/rotation.h"
 #include "recording/recording_reader.h"
 #include "recording/recording_writer.h"
-#include "recording/sensor_streams.h"
-#include "simulation/laparoscope.h"
+#include "recording/streams/sensor_streams.h"
+#include "simulation/render/laparoscope.h"
 #include "tests/apps/run_program.h"
 #include "tests/simulation/render_test_scene.h"
 
@@ -28,7 +28,7 @@ constexpr int kPictures = 5;
 class TrackCommand : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    Laparoscope scope(Camera(), Collar(), Options());
+    simulation::Laparoscope scope(Camera(), Collar(), Options());
     for (int i = 0; i < kPictures; ++i) {
       const Image image = scope.Render(render_test::ArcShaft(Tip(i), 0.1, 0.9, 0.005), i);
       pictures_.push_back(cv::Mat(image.height_px, image.width_px, CV_8UC3,
@@ -65,8 +65,8 @@ class TrackCommand : public testing::Test {
     T_CE.p = {0.03 + 0.0005 * i, 0.002, 0.055};
     return T_CE;
   }
-  static LaparoscopeOptions Options() {
-    LaparoscopeOptions o = render_test::PlainOptions();
+  static simulation::LaparoscopeOptions Options() {
+    simulation::LaparoscopeOptions o = render_test::PlainOptions();
     o.blur_sigma_px = 0.7;
     o.exposure = 0.2;
     o.exposure_distance_m = 0.06;

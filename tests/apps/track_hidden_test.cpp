@@ -9,7 +9,7 @@
 #include "core/rotation.h"
 #include "recording/recording_reader.h"
 #include "recording/recording_writer.h"
-#include "simulation/laparoscope.h"
+#include "simulation/render/laparoscope.h"
 #include "tests/apps/run_program.h"
 #include "tests/simulation/render_test_scene.h"
 
@@ -48,11 +48,11 @@ class TrackHidden : public testing::Test {
   }
 
   static std::vector<cv::Mat> Render(const CameraCalibration& camera, bool hidden) {
-    LaparoscopeOptions o = render_test::PlainOptions();
+    simulation::LaparoscopeOptions o = render_test::PlainOptions();
     o.blur_sigma_px = 0.7;
     o.exposure = 0.2;
     o.exposure_distance_m = 0.06;
-    Laparoscope scope(camera, render_test::HexagonCollar(), o);
+    simulation::Laparoscope scope(camera, render_test::HexagonCollar(), o);
     std::vector<cv::Mat> pictures;
     for (int i = 0; i < kFrames; ++i) {
       if (hidden && IsHidden(i)) {

@@ -7,7 +7,7 @@
 
 #include "core/rotation.h"
 #include "recording/recording_writer.h"
-#include "simulation/laparoscope.h"
+#include "simulation/render/laparoscope.h"
 #include "tests/apps/run_program.h"
 #include "tests/simulation/render_test_scene.h"
 
@@ -35,13 +35,13 @@ class TrackOutline : public testing::Test {
             {-0.028 + 0.001 * std::sin(u), -0.002 + 0.0015 * std::sin(1.3 * u), 0.09}};
   }
   void SetUp() override {
-    LaparoscopeOptions o = render_test::PlainOptions();
+    simulation::LaparoscopeOptions o = render_test::PlainOptions();
     o.tissue.texture_contrast = 1;
     o.blur_sigma_px = 0.7;
     o.full_well_electrons = 15000;
     o.exposure = 0.3;
     o.exposure_distance_m = 0.09;
-    Occluder other;  // across the middle, where the collar is
+    simulation::Occluder other;  // across the middle, where the collar is
     other.a_R = {0.001, -0.05, 0.06};
     other.b_R = {0.001, 0.05, 0.06};
     other.radius_m = 0.005;
@@ -50,7 +50,7 @@ class TrackOutline : public testing::Test {
     other.first_frame = kFirstCovered;
     other.last_frame = kFirstBack - 1;
     o.occluders = {other};
-    const Laparoscope scope(Camera(), render_test::HexagonCollar(), o);
+    const simulation::Laparoscope scope(Camera(), render_test::HexagonCollar(), o);
     Recording recording;
     recording.instrument = {0.6, 0.005, 0.3, 0.0};
     recording.cam0.emplace().calibration = Camera();

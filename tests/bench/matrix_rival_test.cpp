@@ -1,5 +1,5 @@
 // Rivals of one and of two effects, on columns made by hand.
-#include "bench/matrix_rival.h"
+#include "bench/diagnosis_matrix/rival.h"
 
 #include <gtest/gtest.h>
 
@@ -9,24 +9,24 @@
 namespace flextip {
 namespace {
 
-enum : int { kStiffness, kLength, kEmLatency, kTipCompliance };
+enum : int { kStiffness, kLength, kEmLatency, diagnosis::kTipCompliance };
 
 /// Four effects of one parameter each; only the last cannot be negative.
-ParameterLayout FourEffects() {
-  SampleSet samples;
+diagnosis::ParameterLayout FourEffects() {
+  diagnosis::SampleSet samples;
   samples.has_load = true;  // no mean of an unknown force
-  Catalogue catalogue;
-  catalogue.push_back(MakeStiffness());
-  catalogue.push_back(MakeLength());
-  catalogue.push_back(MakeEmLatency());
-  catalogue.push_back(MakeTipCompliance());
+  diagnosis::Catalogue catalogue;
+  catalogue.push_back(diagnosis::MakeStiffness());
+  catalogue.push_back(diagnosis::MakeLength());
+  catalogue.push_back(diagnosis::MakeEmLatency());
+  catalogue.push_back(diagnosis::MakeTipCompliance());
   return {samples, std::move(catalogue)};
 }
 
 /// Every effect ten tolerances beyond nominal, and columns that say what one tolerance of each does
 /// to four measured rows.
 struct Toy {
-  ParameterLayout layout = FourEffects();
+  diagnosis::ParameterLayout layout = FourEffects();
   Eigen::VectorXd theta = 10.0 * layout.Tolerances();
   Eigen::Matrix4d columns = 5.0 * Eigen::Matrix4d::Identity();
 
@@ -92,9 +92,9 @@ TEST(MatrixRival, AnotherPairWithATwinIsTheRival) {
 
 TEST(MatrixRival, WhatCannotBeNegativeIsNoRivalWhereItWouldHaveToBe) {
   Toy toy;
-  toy.columns.col(kTipCompliance) = -toy.columns.col(kLength);
+  toy.columns.col(diagnosis::kTipCompliance) = -toy.columns.col(kLength);
   EXPECT_GT(toy.Rival({kStiffness, kLength}).value, kSeparable);
-  toy.columns.col(kTipCompliance) *= -1.0;
+  toy.columns.col(diagnosis::kTipCompliance) *= -1.0;
   const Separation separation = toy.Rival({kStiffness, kLength});
   EXPECT_LT(separation.value, 1.0);
   EXPECT_EQ(separation.rival, "stiffness+tip_compliance");
@@ -104,17 +104,17 @@ TEST(MatrixRival, PairsAreNoRivalsOfASingleEffect) {
   Toy toy;
   toy.columns.col(kLength) = toy.columns.col(kStiffness) + toy.columns.col(kEmLatency);
   EXPECT_GT(toy.Rival({kLength}).value, kSeparable);
-  const Separation pair = toy.Rival({kLength, kTipCompliance});
+  const Separation pair = toy.Rival({kLength, diagnosis::kTipCompliance});
   EXPECT_GT(pair.value, kSeparable);
   EXPECT_NE(pair.rival, "none");
 }
 
 /// One parameter and one generic term with correlated columns.
 TEST(MatrixRival, GenericTermsTakeWhatTheirPriorAllows) {
-  LinearProblem problem;
+  diagnosis::LinearProblem problem;
   problem.parameters = 1;
   problem.generic_row = {0};
-  problem.total = NormalSums(2);
+  problem.total = diagnosis::NormalSums(2);
   problem.total.H << 4.0, 2.0, 2.0, 3.0;
   const auto left = [&](double sd) {
     return WithoutGeneric(problem, Eigen::VectorXd::Constant(1, sd))(0, 0);

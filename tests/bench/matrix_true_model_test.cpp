@@ -1,38 +1,39 @@
 // The model with the label's parameters: what it names, what it could know at best, what it leaves.
-#include "bench/matrix_true_model.h"
+#include "bench/diagnosis_matrix/true_model.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "bench/matrix_bound.h"
-#include "bench/matrix_heldout.h"
-#include "diagnosis/linear_problem.h"
+#include "bench/diagnosis_matrix/bound.h"
+#include "bench/diagnosis_matrix/heldout.h"
+#include "diagnosis/evidence/linear_problem.h"
 
 namespace flextip {
 namespace {
 
-std::array<double, kChannelCount> StatedNoise() {
-  std::array<double, kChannelCount> scale;
+std::array<double, diagnosis::kChannelCount> StatedNoise() {
+  std::array<double, diagnosis::kChannelCount> scale;
   scale.fill(1.0);
   return scale;
 }
 
-HiddenRecording Hidden(const std::string& effect, EffectSize size, bool with_load = true) {
-  HiddenOptions options;
+hidden::HiddenRecording Hidden(const std::string& effect, hidden::EffectSize size,
+                               bool with_load = true) {
+  hidden::HiddenOptions options;
   options.effects = {effect};
   options.size = size;
   options.exact = true;
   options.with_load = with_load;
-  options.scene.load = LoadKind::kVarying;
+  options.scene.load = hidden::LoadKind::kVarying;
   options.scene.duration_s = 8.0;
   options.links_per_side = 30;
-  return MakeHidden(options, 31);
+  return hidden::MakeHidden(options, 31);
 }
 
 TEST(TrueModel, KnowsWhatTheLabelNamesAndWhatNot) {
-  const HiddenRecording hidden = Hidden("port_motion", EffectSize::kPlain, false);
+  const hidden::HiddenRecording hidden = Hidden("port_motion", hidden::EffectSize::kPlain, false);
   const TrueModel truth(hidden.recording, hidden);
   const auto unnamed_of = [&](const std::string& effect) {
     const auto& block = truth.layout.Blocks()[truth.layout.Find(effect)];
@@ -66,9 +67,9 @@ TEST(CramerRaoBound, IsTheInverseOfWhatDataAndPriorSay) {
   EXPECT_NEAR(held(1, 1), 1e-12, 1e-15);
 }
 
-double BoundOn(const HiddenRecording& hidden, const std::string& effect) {
+double BoundOn(const hidden::HiddenRecording& hidden, const std::string& effect) {
   TrueModel truth(hidden.recording, hidden);
-  for (const EffectFit& bound : CramerRaoBounds(truth))
+  for (const diagnosis::EffectFit& bound : CramerRaoBounds(truth))
     if (bound.effect == effect) return bound.parameters.at(0).sd.at(0);
   ADD_FAILURE() << effect << " has no bound";
   return 0.0;
@@ -76,7 +77,7 @@ double BoundOn(const HiddenRecording& hidden, const std::string& effect) {
 
 /// Who must learn how the EM field is bent knows less of the length.
 TEST(CramerRaoBound, OfAPairIsLargerThanOfOneAlone) {
-  HiddenRecording hidden = Hidden("length", EffectSize::kPlain);
+  hidden::HiddenRecording hidden = Hidden("length", hidden::EffectSize::kPlain);
   const double alone = BoundOn(hidden, "length");
   hidden.label.present = {"em_distortion", "length"};
   EXPECT_GT(BoundOn(hidden, "length"), 1.01 * alone);
@@ -85,14 +86,14 @@ TEST(CramerRaoBound, OfAPairIsLargerThanOfOneAlone) {
 
 /// Reported is the scale, fitted its logarithm.
 TEST(CramerRaoBound, IsInTheTermsOfTheReport) {
-  const HiddenRecording hidden = Hidden("stiffness", EffectSize::kStrong);
+  const hidden::HiddenRecording hidden = Hidden("stiffness", hidden::EffectSize::kStrong);
   TrueModel truth(hidden.recording, hidden);
   const auto bounds = CramerRaoBounds(truth);
   const double scale = hidden.label.parameters.at("stiffness").at("scale").at(0);
   ASSERT_EQ(bounds.size(), 1u);
   EXPECT_NEAR(bounds[0].parameters.at(0).value.at(0), scale, 1e-12);
   const Eigen::MatrixXd C =
-      PosteriorCovariance(MakeLinearProblem(truth.replay, {}, 1).total.H,
+      PosteriorCovariance(diagnosis::MakeLinearProblem(truth.replay, {}, 1).total.H,
                           truth.layout.Widened({truth.layout.Find("stiffness")}, {3.0}));
   const int j = truth.layout.Blocks()[truth.layout.Find("stiffness")].first;
   EXPECT_NEAR(bounds[0].parameters.at(0).sd.at(0), scale * std::sqrt(C(j, j)), 1e-12);
@@ -102,7 +103,7 @@ TEST(TrueHeldOut, FitsOnlyWhatIsFree) {
   Eigen::Matrix2d X;
   X << 1.0, 0.0, 1.0, 2.0;
   const Eigen::Vector2d z(1.0, 7.0);
-  NormalSums sums(2);
+  diagnosis::NormalSums sums(2);
   sums.H = X.transpose() * X;
   sums.g = X.transpose() * z;
   const Eigen::VectorXd wide = Eigen::VectorXd::Constant(2, 1e6);
@@ -116,11 +117,11 @@ TEST(TrueHeldOut, FitsOnlyWhatIsFree) {
 }
 
 /// Of all rows, with parameters as the replay has them, in standard deviations.
-double WeightedRms(const Replay& replay) {
+double WeightedRms(const diagnosis::Replay& replay) {
   const auto residuals = replay.ForceFreeResiduals();
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < residuals.size(); ++k) {
-    const Rows sd = replay.RowNoise(k);
+    const diagnosis::Rows sd = replay.RowNoise(k);
     for (int r = 0; r < row::kCount; ++r) {
       if (!replay.Set().samples[k].present[r]) continue;
       sum += std::pow(residuals[k][r] / sd[r], 2);
@@ -131,7 +132,7 @@ double WeightedRms(const Replay& replay) {
 }
 
 TEST(TrueHeldOut, TheTrueModelLeavesNoiseAndTheBaseDoesNot) {
-  const HiddenRecording hidden = Hidden("length", EffectSize::kPlain, false);
+  const hidden::HiddenRecording hidden = Hidden("length", hidden::EffectSize::kPlain, false);
   TrueModel truth(hidden.recording, hidden);
   const double error = TrueHeldOutError(truth, StatedNoise());
   EXPECT_GT(error, 0.8);  // unknown forces take up some of the noise
@@ -145,7 +146,7 @@ TEST(TrueHeldOut, TheTrueModelLeavesNoiseAndTheBaseDoesNot) {
 
 /// A breath is no pure sine, and the label says nothing of its overtone.
 TEST(TrueHeldOut, WhatTheLabelDoesNotNameIsFitted) {
-  const HiddenRecording hidden = Hidden("port_motion", EffectSize::kStrong);
+  const hidden::HiddenRecording hidden = Hidden("port_motion", hidden::EffectSize::kStrong);
   TrueModel truth(hidden.recording, hidden);
   const double error = TrueHeldOutError(truth, StatedNoise());
   ASSERT_TRUE(truth.StandAtTruth());

@@ -1,17 +1,17 @@
 // The bound is what an estimate that knows everything else attains on noisy frames.
 #include <gtest/gtest.h>
 
-#include "bench/tip_bound_fisher.h"
-#include "simulation/render_film.h"
-#include "vision/reprojection.h"
+#include "bench/tip_bound/fisher.h"
+#include "simulation/render/film.h"
+#include "vision/tags/reprojection.h"
 
 namespace flextip {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-LaparoscopeOptions Scope() {
-  LaparoscopeOptions options = BoundScope(0.7);
+simulation::LaparoscopeOptions Scope() {
+  simulation::LaparoscopeOptions options = BoundScope(0.7);
   options.parts_per_px = 1;  // nothing here depends on how a lens is drawn
   return options;
 }
@@ -19,8 +19,8 @@ LaparoscopeOptions Scope() {
 struct Bounded {
   TagCollar collar = BoundCollar(0.005);
   TubeShape tube = BoundTube(collar);
-  LaparoscopeOptions options = Scope();
-  Laparoscope laparoscope{BoundCamera(), collar, options};
+  simulation::LaparoscopeOptions options = Scope();
+  simulation::Laparoscope laparoscope{BoundCamera(), collar, options};
   BoundScene scene = DrawScenes(1, 5).front();
   PixelModels models = ModelPixels(laparoscope, options, collar, tube, scene);
 };
@@ -33,8 +33,8 @@ const Bounded& OneScene() {
 TEST(TipBound, IsAttainedFromTheTrueDerivatives) {
   constexpr int kFrames = 16;
   const Bounded& b = OneScene();
-  const LinearImage light = b.laparoscope.RenderLight(CurveOf(b.scene, b.tube), 0);
-  const render::Film film(b.options, b.laparoscope.Gamma());
+  const simulation::LinearImage light = b.laparoscope.RenderLight(CurveOf(b.scene, b.tube), 0);
+  const simulation::render::Film film(b.options, b.laparoscope.Gamma());
   double collar = 0, all = 0;
   for (int i = 0; i < kFrames; ++i) {
     const Image frame = film.Develop(light, i);
@@ -54,13 +54,13 @@ TEST(TipBound, IsAttainedFromTheTrueDerivatives) {
 // pixel) say, up to rounding to 8 bit.
 TEST(TipBound, DerivativesFollowTheFrame) {
   const Bounded& b = OneScene();
-  LaparoscopeOptions noise_free = b.options;
+  simulation::LaparoscopeOptions noise_free = b.options;
   noise_free.full_well_electrons = 0;
-  const render::Film film(noise_free, b.laparoscope.Gamma());
+  const simulation::render::Film film(noise_free, b.laparoscope.Gamma());
   const PixelModel& model = b.models.all;
   const auto frame_at = [&](const Vector6& move) {
     const BoundScene moved = {MovePose(b.scene.T_CE, move), b.scene.bend};
-    LinearImage light = b.laparoscope.RenderLight(CurveOf(moved, b.tube), 0);
+    simulation::LinearImage light = b.laparoscope.RenderLight(CurveOf(moved, b.tube), 0);
     const Image frame = film.Develop(light, 0);
     Eigen::VectorXd value(model.mean.size());
     for (Eigen::Index r = 0; r < value.size(); ++r) {

@@ -1,4 +1,4 @@
-#include "bench/vision_clip.h"
+#include "bench/vision/clip.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
-#include "bench/vision_rows.h"
+#include "bench/vision/rows.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <fstream>
 
-#include "bench/vision_scene.h"
+#include "bench/vision/scene.h"
 #include "core/error.h"
 #include "core/rotation.h"
-#include "recording/text.h"
+#include "recording/text/text.h"
 
 namespace flextip {
 namespace {

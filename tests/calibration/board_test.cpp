@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/rotation.h"
 #include "tests/calibration/board_drawn.h"
-#include "vision/tag_cells.h"
+#include "vision/tags/cells.h"
 
 namespace flextip {
 namespace {

@@ -1,6 +1,6 @@
 // Boards that are not as they are described: found, told from true ones, and paid for in the
 // covariance.
-#include "calibration/camera/camera_board_shape.h"
+#include "calibration/camera/board_shape.h"
 
 #include <ceres/cost_function.h>
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@
 #include <fstream>
 #include <map>
 
-#include "calibration/camera/camera_bundle.h"
-#include "calibration/camera/camera_corner_error.h"
-#include "calibration/camera/camera_start.h"
+#include "calibration/camera/bundle.h"
+#include "calibration/camera/corner_error.h"
+#include "calibration/camera/start.h"
 #include "core/derivative_check.h"
 #include "tests/calibration/camera_synthetic.h"
 

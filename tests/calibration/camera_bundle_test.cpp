@@ -1,9 +1,9 @@
 // Bundle adjustment against known truth: what it finds, and how sure it says it is.
-#include "calibration/camera/camera_bundle.h"
+#include "calibration/camera/bundle.h"
 
 #include <gtest/gtest.h>
 
-#include "calibration/camera/camera_start.h"
+#include "calibration/camera/start.h"
 #include "tests/calibration/camera_synthetic.h"
 
 namespace flextip {

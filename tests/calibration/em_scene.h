@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "calibration/em/em_pairs.h"
+#include "calibration/em/pairs.h"
 #include "core/rotation.h"
 
 namespace flextip {

@@ -8,8 +8,8 @@
 #include "calibration/camera/projection_derivative.h"
 #include "core/rotation.h"
 #include "kinematics/tip_bending.h"
-#include "vision/collar_pose.h"
-#include "vision/reprojection.h"
+#include "vision/tags/collar_pose.h"
+#include "vision/tags/reprojection.h"
 
 namespace flextip {
 namespace {

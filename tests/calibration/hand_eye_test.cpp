@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "calibration/hand_eye/hand_eye_fit.h"
+#include "calibration/hand_eye/fit.h"
 #include "core/derivative_check.h"
 #include "core/error.h"
 #include "tests/calibration/hand_eye_scene.h"

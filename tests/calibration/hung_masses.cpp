@@ -5,7 +5,7 @@
 #include <random>
 
 #include "core/rotation.h"
-#include "simulation/plant.h"
+#include "simulation/plant/plant.h"
 
 namespace flextip::testing {
 namespace {
@@ -25,7 +25,7 @@ class Noise {
   std::normal_distribution<double> normal_;
 };
 
-Eigen::Vector4d LocalMoments(const PlantShape& shape) {
+Eigen::Vector4d LocalMoments(const simulation::PlantShape& shape) {
   Eigen::Vector4d m;
   const double stations[] = {0.12, 0.5};
   for (int i = 0; i < 2; ++i) {
@@ -63,16 +63,16 @@ void Describe(const Bench& bench, Recording& r) {
 
 }  // namespace
 
-std::vector<PlantShape> Hang(const Bench& bench, const std::vector<HungMass>& masses) {
-  PlantSetup setup;
+std::vector<simulation::PlantShape> Hang(const Bench& bench, const std::vector<HungMass>& masses) {
+  simulation::PlantSetup setup;
   setup.instrument = bench.instrument;
   setup.p_RP = bench.p_RP;
   setup.gravity_m_s2.setZero();
   setup.effects = bench.effects;
-  Plant plant(setup);
-  std::vector<PlantShape> shapes;
+  simulation::Plant plant(setup);
+  std::vector<simulation::PlantShape> shapes;
   for (const HungMass& mass : masses) {
-    TipLoad load;
+    simulation::TipLoad load;
     load.constant_N = mass.f_N;
     plant.SetLoad(load);
     plant.SetRoll(mass.roll_rad);
@@ -83,7 +83,7 @@ std::vector<PlantShape> Hang(const Bench& bench, const std::vector<HungMass>& ma
 }
 
 Recording RecordBench(const Bench& bench, const std::vector<HungMass>& masses,
-                      const std::vector<PlantShape>& shapes, std::uint64_t seed) {
+                      const std::vector<simulation::PlantShape>& shapes, std::uint64_t seed) {
   Noise noise(seed);
   const BenchNoise& n = bench.noise;
   Recording r;
@@ -92,7 +92,7 @@ Recording RecordBench(const Bench& bench, const std::vector<HungMass>& masses,
   r.p_RP = bench.p_RP + noise.Of<3>(n.port_m);
   TimeNs t_ns = 1'700'000'000'000'000'000;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const PlantShape& shape = shapes[i];
+    const simulation::PlantShape& shape = shapes[i];
     const Eigen::Vector3d stated_N = masses[i].f_N + noise.Of<3>(n.force_N);
     const Pose T_RW = shape.T_RW(), T_RE = shape.T_RE(),
                T_RS = shape.Frame(shape.length_m - bench.em_from_tip_m);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "recording/recording.h"
-#include "simulation/plant_effects.h"
-#include "simulation/plant_shape.h"
+#include "simulation/plant/effects.h"
+#include "simulation/plant/shape.h"
 
 namespace flextip::testing {
 
@@ -27,7 +27,7 @@ struct BenchNoise {
 struct Bench {
   Instrument instrument{0.6, 0.00238, 0.304, 0.0};
   Eigen::Vector3d p_RP{0.28, 0.0, 0.0};  ///< the true one
-  PlantEffects effects;
+  simulation::PlantEffects effects;
   int samples = 10;                                     ///< in each hold
   Eigen::Matrix4d gains = Eigen::Matrix4d::Identity();  ///< readings per Nm
   Eigen::Vector4d offset = Eigen::Vector4d::Zero();     ///< readings
@@ -36,12 +36,12 @@ struct Bench {
 };
 
 /// The plant's equilibria, one a mass.
-std::vector<PlantShape> Hang(const Bench& bench, const std::vector<HungMass>& masses);
+std::vector<simulation::PlantShape> Hang(const Bench& bench, const std::vector<HungMass>& masses);
 
 /// What the sensors say of them: wrist0, load0 (stated once a hold), strain0, vision0 and em0, with
 /// noise of `seed`, and a port that is registered as badly as stated.
 Recording RecordBench(const Bench& bench, const std::vector<HungMass>& masses,
-                      const std::vector<PlantShape>& shapes, std::uint64_t seed);
+                      const std::vector<simulation::PlantShape>& shapes, std::uint64_t seed);
 
 /// Both masses each way across the shaft at each wrist place along x, and the unloaded shaft.
 std::vector<HungMass> AllWays(const std::vector<double>& wrist_x_m,

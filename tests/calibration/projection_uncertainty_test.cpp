@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/camera/camera_bundle.h"
+#include "calibration/camera/bundle.h"
 #include "calibration/camera/projection_derivative.h"
-#include "calibration/stereo/stereo_bundle.h"
+#include "calibration/stereo/bundle.h"
 #include "calibration/uncertainty/next_view.h"
 #include "core/derivative_check.h"
 #include "tests/calibration/stereo_scene.h"

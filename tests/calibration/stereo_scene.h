@@ -5,9 +5,9 @@
 
 #include "calibration/boards/board.h"
 #include "calibration/boards/chessboard.h"
-#include "calibration/camera/camera_solution.h"
+#include "calibration/camera/solution.h"
+#include "calibration/stereo/solution.h"
 #include "calibration/stereo/stereo_calibration.h"
-#include "calibration/stereo/stereo_solution.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 

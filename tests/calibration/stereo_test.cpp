@@ -5,14 +5,14 @@
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 
-#include "calibration/stereo/stereo_bundle.h"
+#include "calibration/stereo/bundle.h"
+#include "calibration/stereo/heldout.h"
+#include "calibration/stereo/rectification.h"
 #include "calibration/stereo/stereo_calibration.h"
-#include "calibration/stereo/stereo_heldout.h"
-#include "calibration/stereo/stereo_rectification.h"
 #include "core/derivative_check.h"
 #include "core/error.h"
 #include "tests/calibration/stereo_scene.h"
-#include "vision/reprojection.h"
+#include "vision/tags/reprojection.h"
 
 namespace flextip {
 namespace {

@@ -25,7 +25,7 @@ TEST(TipCollar, TheHiddenOffsetIsFoundInTheFrames) {
   const Eigen::Vector3d p_E(0.0023, -0.0011, 0.0007);
   const CameraCalibration camera = ScopeCamera();
   const TagCollar collar = ScopeCollar();
-  Laparoscope scope(camera, collar, ScopeOptions(camera));
+  simulation::Laparoscope scope(camera, collar, ScopeOptions(camera));
   TipTracker tracker(camera, collar);
   std::vector<PivotPose> poses;
   for (int i = 0; i < kFrames; ++i) {

@@ -1,5 +1,5 @@
 // Evidence from normal equations against Gaussian integrals over the measurements themselves.
-#include "diagnosis/evidence.h"
+#include "diagnosis/evidence/evidence.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "tests/diagnosis/small_recording.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 constexpr int kRows = 90, kGeneric = 7;
@@ -231,4 +231,4 @@ TEST_F(EvidenceTest, KeepsTheBestWidths) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

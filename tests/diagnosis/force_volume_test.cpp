@@ -1,6 +1,6 @@
 // How much noise an unknown force takes up, against draws of that noise; and that a known load
 // takes up the same for all hypotheses.
-#include "diagnosis/force_volume.h"
+#include "diagnosis/evidence/force_volume.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "tests/diagnosis/small_recording.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 constexpr double kCompliance_m_N = 0.001;
@@ -93,10 +93,11 @@ int FirstOf(const ParameterLayout& layout, const std::string& name) {
 
 // What is known of the mean needs no room along the shaft.
 TEST(ForcePrior, IsNarrowAlongTheShaftUnderAConstantLoad) {
-  HiddenOptions options{.exact = true};
+  hidden::HiddenOptions options{.exact = true};
   options.with_load = false;
-  options.scene = {.motion = MotionKind::kSines, .load = LoadKind::kHungMass, .duration_s = 3.0};
-  const SampleSet samples = MakeSampleSet(MakeHidden(options, 62).recording, "small");
+  options.scene = {
+      .motion = hidden::MotionKind::kSines, .load = hidden::LoadKind::kHungMass, .duration_s = 3.0};
+  const SampleSet samples = MakeSampleSet(hidden::MakeHidden(options, 62).recording, "small");
   ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
   const auto share = [&](const Eigen::VectorXd& theta) {
@@ -150,4 +151,4 @@ TEST(KnownLoad, TakesUpTheSameNoiseWhateverYields) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

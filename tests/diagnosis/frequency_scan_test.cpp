@@ -1,5 +1,5 @@
 // The breathing frequency of hidden recordings, whose breath is no pure sine.
-#include "diagnosis/frequency_scan.h"
+#include "diagnosis/search/frequency_scan.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "tests/diagnosis/small_recording.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 constexpr double kDuration_s = 20.0;
@@ -24,7 +24,8 @@ class Breathing : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(Breathing, IsFoundWithinTheResolution) {
   for (const bool with_load : {true, false}) {
-    const HiddenRecording hidden = SmallHidden(kDuration_s, with_load, GetParam(), {"port_motion"});
+    const hidden::HiddenRecording hidden =
+        SmallHidden(kDuration_s, with_load, GetParam(), {"port_motion"});
     const double truth_hz = hidden.label.parameters.at("port_motion").at("frequency_hz")[0];
     EXPECT_NEAR(FoundIn(MakeSampleSet(hidden.recording, "small")), truth_hz, 0.5 / kDuration_s)
         << (with_load ? "with" : "without") << " load";
@@ -51,4 +52,4 @@ TEST(FrequencyScan, FindsASineOf031Hz) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,12 +1,12 @@
 // Normal vectors that cannot be negative, against sampling and long double arithmetic.
-#include "diagnosis/half_normal.h"
+#include "diagnosis/evidence/half_normal.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 TEST(HalfNormal, LogPhiIsRightFarOut) {
@@ -71,4 +71,4 @@ TEST(HalfNormal, ModeIsTheBestPointOfTheQuadrant) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -13,20 +13,20 @@
 
 #include "diagnosis/diagnose.h"
 #include "recording/recording_reader.h"
-#include "recording/text.h"
-#include "simulation/hidden_recording.h"
+#include "recording/text/text.h"
+#include "testdata/hidden/recording.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 struct HiddenCase {
   const char* name;
   std::vector<std::string> effects;  // of the catalogue or not; none
-  EffectSize size;
+  hidden::EffectSize size;
   bool with_load;
   std::uint64_t seed;
   Verdict answer;
-  std::optional<LoadKind> load = {};  // drawn where empty
+  std::optional<hidden::LoadKind> load = {};  // drawn where empty
 };
 
 void PrintTo(const HiddenCase& hidden, std::ostream* out) { *out << hidden.name; }
@@ -53,13 +53,13 @@ class HiddenEffects : public testing::TestWithParam<HiddenCase> {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  HiddenLabel Hide() const {
-    HiddenOptions options{.effects = GetParam().effects, .size = GetParam().size};
+  hidden::HiddenLabel Hide() const {
+    hidden::HiddenOptions options{.effects = GetParam().effects, .size = GetParam().size};
     options.with_load = GetParam().with_load;
     options.scene.duration_s = 12.0;
     options.scene.load = GetParam().load;
-    const HiddenRecording hidden = MakeHidden(options, GetParam().seed);
-    WriteHidden(folder_, hidden);
+    const hidden::HiddenRecording hidden = hidden::MakeHidden(options, GetParam().seed);
+    hidden::WriteHidden(folder_, hidden);
     return hidden.label;
   }
 
@@ -86,7 +86,7 @@ std::string Answers(const DiagnosisResult& result) {
 }
 
 /// Every number of every effect in the label within four of its stated standard deviations.
-void ExpectParameters(const HiddenLabel& label, const DiagnosisResult& result) {
+void ExpectParameters(const hidden::HiddenLabel& label, const DiagnosisResult& result) {
   for (const std::string& effect : label.present) {
     const auto fit = std::find_if(result.parameters.begin(), result.parameters.end(),
                                   [&](const EffectFit& f) { return f.effect == effect; });
@@ -107,7 +107,7 @@ void ExpectParameters(const HiddenLabel& label, const DiagnosisResult& result) {
 }
 
 TEST_P(HiddenEffects, AreNamedMeasuredAndWorthKnowing) {
-  const HiddenLabel label = Hide();
+  const hidden::HiddenLabel label = Hide();
   ExpectNoLabelInFolder();
   const DiagnosisResult result = Diagnose(ReadRecording(folder_).recording, "recording");
   Verdict verdict = result.verdict;
@@ -123,8 +123,8 @@ TEST_P(HiddenEffects, AreNamedMeasuredAndWorthKnowing) {
   EXPECT_LT(result.gain.heldout_error_ratio, 1.0);
 }
 
-constexpr auto kPlain = EffectSize::kPlain;
-constexpr auto kStrong = EffectSize::kStrong;
+constexpr auto kPlain = hidden::EffectSize::kPlain;
+constexpr auto kStrong = hidden::EffectSize::kStrong;
 
 INSTANTIATE_TEST_SUITE_P(
     Matrix, HiddenEffects,
@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(
                    true,
                    113,
                    {"tip_compliance"},
-                   LoadKind::kVarying},
+                   hidden::LoadKind::kVarying},
         HiddenCase{"pair",
                    {"precurvature", "camera_latency"},
                    kStrong,
@@ -157,4 +157,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,5 +1,5 @@
 // Readings that stand apart are found, steps, ramps and noise are not taken for them.
-#include "diagnosis/outliers.h"
+#include "diagnosis/samples/outliers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,10 +10,10 @@
 #include <random>
 
 #include "diagnosis/diagnose.h"
-#include "diagnosis/noise_level.h"
-#include "simulation/hidden_recording.h"
+#include "diagnosis/samples/noise_level.h"
+#include "testdata/hidden/recording.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 constexpr double kNoise = 0.1;
@@ -58,9 +58,9 @@ TEST(StandApart, TooFewToSay) {
 TEST(WithoutOutliers, LeavesARecordingWithoutAnyAsItIs) {
   for (const unsigned seed : {11U, 12U, 13U}) {
     std::vector<std::string> warnings;
-    HiddenOptions options;
+    hidden::HiddenOptions options;
     options.drawn_effects = 2;
-    const Recording recording = MakeHidden(options, seed).recording;
+    const Recording recording = hidden::MakeHidden(options, seed).recording;
     const Recording same = WithoutOutliers(recording, warnings);
     EXPECT_THAT(warnings, testing::IsEmpty());
     EXPECT_EQ(same.em0->samples.size(), recording.em0->samples.size());
@@ -70,7 +70,7 @@ TEST(WithoutOutliers, LeavesARecordingWithoutAnyAsItIs) {
 
 /// One reading in fifty of every sensor says something else.
 TEST(WithoutOutliers, OfAHealthyRecordingItStaysHealthy) {
-  Recording recording = MakeHidden({}, 31).recording;
+  Recording recording = hidden::MakeHidden({}, 31).recording;
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   const auto spoil = [&](auto& series, const auto& add) {
@@ -91,7 +91,7 @@ TEST(WithoutOutliers, OfAHealthyRecordingItStaysHealthy) {
 
 /// Five readings in a row are off together: too many for a filter that looks at neighbours.
 TEST(FarSamples, AreFoundAndLeftOutWhereTheyAreFew) {
-  Recording recording = MakeHidden({.with_load = false}, 31).recording;
+  Recording recording = hidden::MakeHidden({.with_load = false}, 31).recording;
   for (auto& em : recording.em0->samples)
     if (em.t_ns >= recording.em0->samples[400].t_ns && em.t_ns < recording.em0->samples[405].t_ns)
       em.value.p_RS.y() += 0.05;
@@ -102,7 +102,8 @@ TEST(FarSamples, AreFoundAndLeftOutWhereTheyAreFew) {
 }
 
 TEST(FarSamples, AreNoneWhereTheyAreMany) {
-  const SampleSet samples = MakeSampleSet(MakeHidden({.with_load = false}, 31).recording, "hidden");
+  const SampleSet samples =
+      MakeSampleSet(hidden::MakeHidden({.with_load = false}, 31).recording, "hidden");
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(layout.Size());
@@ -115,4 +116,4 @@ TEST(FarSamples, AreNoneWhereTheyAreMany) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,11 +1,11 @@
 // How the whole recording and its parts are brought together.
-#include "diagnosis/probabilities.h"
+#include "diagnosis/evidence/probabilities.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/diagnosis/small_recording.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 using Shares = std::map<Verdict, double>;
@@ -53,4 +53,4 @@ TEST(MakeProbabilities, WhereNothingKnownIsAdequateTheAnswerIsUnknown) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

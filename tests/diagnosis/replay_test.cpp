@@ -1,5 +1,5 @@
 // Derivatives of the replay's residuals against differences, and their size against the noise.
-#include "diagnosis/replay.h"
+#include "diagnosis/replay/replay.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/diagnosis/small_recording.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 /// All samples' rows in standard deviations; absent ones zero.
@@ -372,7 +372,7 @@ TEST(ReplayForces, AreMendedFromTheNeighbours) {
 
 /// What a known effect adds to the residuals is what its derivative says, in whitened rows too.
 TEST(ReplayResiduals, AreFreeOfAnEffectThatIsSwitchedOn) {
-  const HiddenRecording hidden = SmallHidden(8.0, true, 43, {"tag_offset"});
+  const hidden::HiddenRecording hidden = SmallHidden(8.0, true, 43, {"tag_offset"});
   const SampleSet samples = WithRawInputs(hidden.recording);
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
@@ -387,4 +387,4 @@ TEST(ReplayResiduals, AreFreeOfAnEffectThatIsSwitchedOn) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

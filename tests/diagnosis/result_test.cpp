@@ -8,7 +8,7 @@
 #include "diagnosis/diagnose.h"
 #include "tests/diagnosis/small_recording.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 using testing::Contains;
@@ -37,17 +37,17 @@ std::vector<std::string> Cells(const std::string& line) {
 class ResultTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    recording_ = new HiddenRecording(SmallHidden(10.0, true, 61, {"tag_offset"}));
+    recording_ = new hidden::HiddenRecording(SmallHidden(10.0, true, 61, {"tag_offset"}));
     result_ = new DiagnosisResult(Diagnose(recording_->recording, "small"));
   }
   static void TearDownTestSuite() {
     delete result_;
     delete recording_;
   }
-  static HiddenRecording* recording_;
+  static hidden::HiddenRecording* recording_;
   static DiagnosisResult* result_;
 };
-HiddenRecording* ResultTest::recording_ = nullptr;
+hidden::HiddenRecording* ResultTest::recording_ = nullptr;
 DiagnosisResult* ResultTest::result_ = nullptr;
 
 TEST_F(ResultTest, JsonHasEveryKeyOfTheInterface) {
@@ -176,4 +176,4 @@ TEST(Result, NoneHasNoParametersAndAGainOnlyWhereMeasured) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,12 +1,12 @@
 // Late sensors read at the time they speak of, against the undelayed signal.
-#include "diagnosis/retiming.h"
+#include "diagnosis/samples/retiming.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 constexpr double kPeriod_s = 0.02, kOmega = 2.0 * std::numbers::pi * 0.5, kAmplitude_m = 0.05;
@@ -114,4 +114,4 @@ TEST(Retiming, SamplesThatDoNotResolveTheMotionAreLeftAlone) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,5 +1,5 @@
 // From recordings to the diagnosis's samples: what is refused, left out, thinned and dropped.
-#include "diagnosis/sample_set.h"
+#include "diagnosis/samples/sample_set.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "simulation/hidden_recording.h"
+#include "testdata/hidden/recording.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 using testing::ElementsAre;
@@ -20,10 +20,10 @@ using testing::StartsWith;
 
 /// 3 s at 50 Hz, the tip at 25 Hz.
 Recording MakeRecording() {
-  HiddenOptions options{.exact = true};
+  hidden::HiddenOptions options{.exact = true};
   options.scene.duration_s = 3.0;
-  options.scene.load = LoadKind::kVarying;
-  return MakeHidden(options, 21).recording;
+  options.scene.load = hidden::LoadKind::kVarying;
+  return hidden::MakeHidden(options, 21).recording;
 }
 
 std::string RefusalOf(const Recording& recording) {
@@ -189,4 +189,4 @@ TEST_F(SampleSetTest, DropsTheStartAndWhatLateSensorsSayOfTheEnd) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,5 +1,5 @@
 // Derivatives of what each sensor says against differences, with every effect large.
-#include "diagnosis/sensor_model.h"
+#include "diagnosis/replay/sensor_model.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/rotation.h"
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 using namespace model_input;
@@ -66,4 +66,4 @@ TEST_F(SensorDerivatives, OfAllInputs) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

@@ -1,12 +1,12 @@
 // Smoothing of the wrist's path: what it leaves, what it takes, and what it says is left.
-#include "diagnosis/smoothing.h"
+#include "diagnosis/samples/smoothing.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-namespace flextip {
+namespace flextip::diagnosis {
 namespace {
 
 constexpr double kNoise_m = 1e-4, kPeriod_s = 0.02;
@@ -91,4 +91,4 @@ TEST(Smoothing, NothingIsDoneToExactValues) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::diagnosis

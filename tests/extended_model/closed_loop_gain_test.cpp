@@ -1,26 +1,26 @@
 // The closed loop on a plant with one effect, controlled with the base model and with the right
 // one.
-#include "apps/closed_loop_gain.h"
+#include "simulation/closed_loop/gain.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 
-#include "diagnosis/model_at.h"
-#include "simulation/scenario.h"
+#include "diagnosis/model/model_at.h"
+#include "simulation/closed_loop/scenario.h"
 #include "tests/extended_model/model_of_label.h"
 
 namespace flextip {
 namespace {
 
-HiddenRecording Hidden(const std::string& effect) {
-  HiddenOptions options;
+hidden::HiddenRecording Hidden(const std::string& effect) {
+  hidden::HiddenOptions options;
   options.effects = {effect};
   options.exact = true;
   options.noise_free = true;  // its noises are stated, and the loop's sensors have them
   options.scene.duration_s = 2.0;
   options.links_per_side = 30;
-  return MakeHidden(options, 21);
+  return hidden::MakeHidden(options, 21);
 }
 
 struct Case {
@@ -33,10 +33,11 @@ class KnownEffectInLoop : public testing::TestWithParam<Case> {};
 
 TEST_P(KnownEffectInLoop, DeviationFalls) {
   const Case& c = GetParam();
-  const HiddenRecording hidden = Hidden(c.effect);
-  const ClosedLoopGain gain = MeasureClosedLoopGain(hidden.recording, ModelOfLabel(hidden));
+  const hidden::HiddenRecording hidden = Hidden(c.effect);
+  const simulation::ClosedLoopGain gain =
+      simulation::MeasureClosedLoopGain(hidden.recording, ModelOfLabel(hidden));
   ASSERT_EQ(gain.controllers.size(), 2u);
-  for (const ControllerGain& controller : gain.controllers) {
+  for (const simulation::ControllerGain& controller : gain.controllers) {
     ASSERT_TRUE(controller.ran);
     // What is left is the sensors' noise.
     EXPECT_LT(controller.extended.rms_m, 0.25e-3) << Name(controller.kind);
@@ -58,18 +59,18 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// Sensors without noise leave the first fit, which has no past, a narrow valley to go along.
 TEST(ClosedLoopGain, StartsWithoutNoiseAndUnderALargeLoad) {
-  Scenario scenario =
-      ReadScenario(std::string(FLEXTIP_SOURCE_DIR) + "/testdata/scenarios/chapter4_up.yaml");
-  LoopSetup& setup = scenario.loop;
+  simulation::Scenario scenario = simulation::ReadScenario(std::string(FLEXTIP_SOURCE_DIR) +
+                                                           "/testdata/scenarios/chapter4_up.yaml");
+  simulation::LoopSetup& setup = scenario.loop;
   setup.plant.effects.curvature_1_m = {0.05, 0.04};
-  ExtendedModel model;
+  diagnosis::ExtendedModel model;
   model.effects = {{"precurvature", {{"curvature_1_m", {0.05, 0.04}, {}}}}};
   for (const ControllerKind kind : {kCalculate, kTrack}) {
     setup.controller.kind = kind;
     setup.model = {};
-    const double without = RunClosedLoop(setup, nullptr).rms_deviation_m;
-    setup.model = [&] { return std::make_unique<ModelAt>(model, setup.base); };
-    const double with = RunClosedLoop(setup, nullptr).rms_deviation_m;
+    const double without = simulation::RunClosedLoop(setup, nullptr).rms_deviation_m;
+    setup.model = [&] { return std::make_unique<diagnosis::ModelAt>(model, setup.base); };
+    const double with = simulation::RunClosedLoop(setup, nullptr).rms_deviation_m;
     EXPECT_LT(with, 0.2 * without) << Name(kind);
     // Where the tip is calculated, the first estimates are not at the bottom yet: 0.13 mm.
     EXPECT_LT(with, kind == kTrack ? 2e-5 : 2e-4) << Name(kind);
@@ -77,24 +78,27 @@ TEST(ClosedLoopGain, StartsWithoutNoiseAndUnderALargeLoad) {
 }
 
 TEST(ClosedLoopGain, SaysNothingOfAnInstrumentThatCannotRun) {
-  HiddenRecording hidden = Hidden("stiffness");
-  ExtendedModel model = ModelOfLabel(hidden);
+  hidden::HiddenRecording hidden = Hidden("stiffness");
+  diagnosis::ExtendedModel model = ModelOfLabel(hidden);
   model.effects[0].parameters[0].value[0] = 1e-4;  // as soft as thread
-  for (const ControllerGain& c : MeasureClosedLoopGain(hidden.recording, model).controllers)
+  for (const simulation::ControllerGain& c :
+       simulation::MeasureClosedLoopGain(hidden.recording, model).controllers)
     EXPECT_FALSE(c.ran);
   hidden.recording.wrist0.reset();
-  EXPECT_TRUE(MeasureClosedLoopGain(hidden.recording, model).controllers.empty());
+  EXPECT_TRUE(simulation::MeasureClosedLoopGain(hidden.recording, model).controllers.empty());
 }
 
 /// Left out of plant and controller, so the figures are those of the model without it.
 TEST(ClosedLoopGain, LeavesOutWhatTheSimulationDoesNotKnow) {
-  const HiddenRecording hidden = Hidden("length");
-  const ClosedLoopGain without = MeasureClosedLoopGain(hidden.recording, ModelOfLabel(hidden));
+  const hidden::HiddenRecording hidden = Hidden("length");
+  const simulation::ClosedLoopGain without =
+      simulation::MeasureClosedLoopGain(hidden.recording, ModelOfLabel(hidden));
   EXPECT_EQ(without.warning, "");
-  ExtendedModel model = ModelOfLabel(hidden);
+  diagnosis::ExtendedModel model = ModelOfLabel(hidden);
   model.effects.push_back({"rust", {{"depth_m", {0.1}, {}}}});
   model.within_tolerance.push_back({"moss", {{"depth_m", {0.1}, {}}}});
-  const ClosedLoopGain with = MeasureClosedLoopGain(hidden.recording, model);
+  const simulation::ClosedLoopGain with =
+      simulation::MeasureClosedLoopGain(hidden.recording, model);
   EXPECT_NE(with.warning.find("rust, moss"), std::string::npos) << with.warning;
   ASSERT_EQ(with.controllers.size(), 2u);
   for (std::size_t c = 0; c < 2; ++c) {
@@ -105,12 +109,14 @@ TEST(ClosedLoopGain, LeavesOutWhatTheSimulationDoesNotKnow) {
 }
 
 TEST(ClosedLoopGain, IsQuickAndTheSameAgain) {
-  const HiddenRecording hidden = Hidden("port_friction");
+  const hidden::HiddenRecording hidden = Hidden("port_friction");
   const auto start = std::chrono::steady_clock::now();
-  const ClosedLoopGain a = MeasureClosedLoopGain(hidden.recording, ModelOfLabel(hidden));
+  const simulation::ClosedLoopGain a =
+      simulation::MeasureClosedLoopGain(hidden.recording, ModelOfLabel(hidden));
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   EXPECT_LT(seconds.count(), 3.0);
-  const ClosedLoopGain b = MeasureClosedLoopGain(hidden.recording, ModelOfLabel(hidden));
+  const simulation::ClosedLoopGain b =
+      simulation::MeasureClosedLoopGain(hidden.recording, ModelOfLabel(hidden));
   EXPECT_EQ(a.controllers[1].extended.rms_m, b.controllers[1].extended.rms_m);
 }
 

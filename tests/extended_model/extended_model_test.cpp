@@ -1,5 +1,5 @@
 // model.yaml: what is written is read, and what means nothing is refused in one line.
-#include "diagnosis/extended_model.h"
+#include "diagnosis/model/extended_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,11 +10,11 @@
 
 #include "core/error.h"
 #include "core/rotation.h"
-#include "diagnosis/catalogue.h"
-#include "diagnosis/extended_effect.h"
-#include "diagnosis/model_at.h"
+#include "diagnosis/model/catalogue.h"
+#include "diagnosis/model/extended_effect.h"
+#include "diagnosis/model/model_at.h"
 #include "estimation/shaft_rod.h"
-#include "simulation/hidden_draw.h"
+#include "testdata/hidden/draw.h"
 
 namespace flextip {
 namespace {
@@ -25,9 +25,9 @@ using testing::HasSubstr;
 class ModelFile : public testing::Test {
  protected:
   ~ModelFile() override { fs::remove(file_); }
-  ExtendedModel Read(const std::string& text) {
+  diagnosis::ExtendedModel Read(const std::string& text) {
     std::ofstream(file_) << text;
-    return ReadModel(file_);
+    return diagnosis::ReadModel(file_);
   }
   std::string Complaint(const std::string& text) {
     try {
@@ -44,22 +44,22 @@ class ModelFile : public testing::Test {
 };
 
 /// Every effect of the catalogue once, with numbers that have no short decimal form.
-ExtendedModel Everything() {
-  ExtendedModel model;
+diagnosis::ExtendedModel Everything() {
+  diagnosis::ExtendedModel model;
   double x = 0.1;
   int count = 0;
-  std::vector<std::string> names = CatalogueEffects();
+  std::vector<std::string> names = hidden::CatalogueEffects();
   std::sort(names.begin(), names.end());
   for (const std::string& name : names) {
-    EffectFit fit{name, ParametersOf(*MakeEffect(name))};
-    for (ReportedParameter& parameter : fit.parameters)
+    diagnosis::EffectFit fit{name, diagnosis::ParametersOf(*diagnosis::MakeEffect(name))};
+    for (diagnosis::ReportedParameter& parameter : fit.parameters)
       for (double& value : parameter.value) {
         value = (x += 1.0 / 3.0);
         parameter.sd.push_back(x / 7.0);
       }
     (count++ < 4 ? model.effects : model.within_tolerance).push_back(fit);
   }
-  const auto n = static_cast<Eigen::Index>(NumberNames(model.effects).size());
+  const auto n = static_cast<Eigen::Index>(diagnosis::NumberNames(model.effects).size());
   model.covariance = Eigen::MatrixXd::Identity(n, n) / 3.0;
   model.covariance(0, 1) = model.covariance(1, 0) = 1.0 / 7.0;
   model.centre_m = {0.1, 1.0 / 3.0, -2.0};
@@ -67,7 +67,8 @@ ExtendedModel Everything() {
   return model;
 }
 
-void ExpectSame(const std::vector<EffectFit>& a, const std::vector<EffectFit>& b) {
+void ExpectSame(const std::vector<diagnosis::EffectFit>& a,
+                const std::vector<diagnosis::EffectFit>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].effect, b[i].effect);
@@ -83,18 +84,18 @@ void ExpectSame(const std::vector<EffectFit>& a, const std::vector<EffectFit>& b
 const std::string kHead = "format: flextip-model\nversion: 1\ncentre_m: [0, 0, 0]\nstart_ns: 0\n";
 
 TEST_F(ModelFile, RoundTripIsExact) {
-  const ExtendedModel model = Everything();
-  const ExtendedModel read = Read(ModelYaml(model));
+  const diagnosis::ExtendedModel model = Everything();
+  const diagnosis::ExtendedModel read = Read(diagnosis::ModelYaml(model));
   ExpectSame(read.effects, model.effects);
   ExpectSame(read.within_tolerance, model.within_tolerance);
   EXPECT_EQ(read.covariance, model.covariance);
   EXPECT_EQ(read.centre_m, model.centre_m);
   EXPECT_EQ(read.start_ns, model.start_ns);
-  EXPECT_EQ(ModelYaml(read), ModelYaml(model));
+  EXPECT_EQ(diagnosis::ModelYaml(read), diagnosis::ModelYaml(model));
 }
 
 TEST_F(ModelFile, CovarianceKeepsItsRowsInAnyOrder) {
-  const ExtendedModel read =
+  const diagnosis::ExtendedModel read =
       Read(kHead +
            "effects:\n  stiffness: {scale: 1.1}\n  length: {delta_m: 0.1}\n"
            "covariance: {parameters: [\"stiffness.scale[0]\", \"length.delta_m[0]\"], "
@@ -107,7 +108,7 @@ TEST_F(ModelFile, CovarianceKeepsItsRowsInAnyOrder) {
 
 /// Parameters reported since: of no effect.
 TEST_F(ModelFile, OlderFilesLackSomeParameters) {
-  const ExtendedModel read =
+  const diagnosis::ExtendedModel read =
       Read(kHead +
            "effects:\n  focal_length: {scale: 1.1}\nwithin_tolerance:\n"
            "  port_motion: {amplitude_m: [1, 2, 3], frequency_hz: 0.3, phase_rad: 1}\n"
@@ -127,9 +128,9 @@ TEST_F(ModelFile, OlderFilesLackSomeParameters) {
 /// What is fitted comes back from what is reported, all of it.
 TEST(ExtendedEffect, ReportedParametersHoldTheFittedOnes) {
   double x = 0.01;
-  for (const std::string& name : CatalogueEffects()) {
-    const auto effect = MakeEffect(name);
-    Eigen::VectorXd theta(effect->Parameters(SampleSet{}).size());
+  for (const std::string& name : hidden::CatalogueEffects()) {
+    const auto effect = diagnosis::MakeEffect(name);
+    Eigen::VectorXd theta(effect->Parameters(diagnosis::SampleSet{}).size());
     for (double& value : theta) value = (x += 0.003);
     if (name == "port_motion") theta.segment<3>(3) = 0.7 * theta.head<3>();  // one phase for all
     const Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(theta.size(), theta.size());
@@ -143,7 +144,7 @@ TEST(ExtendedEffect, ReportedParametersHoldTheFittedOnes) {
 }
 
 TEST_F(ModelFile, NothingFoundIsAModelToo) {
-  const ExtendedModel read = Read(ModelYaml(ExtendedModel{}));
+  const diagnosis::ExtendedModel read = Read(diagnosis::ModelYaml(diagnosis::ExtendedModel{}));
   EXPECT_TRUE(read.effects.empty() && read.within_tolerance.empty());
   EXPECT_EQ(read.covariance.size(), 0);
 }
@@ -186,7 +187,7 @@ TEST_F(ModelFile, BadFilesAreRefusedInOneLine) {
     EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
     for (const std::string& part : c.says) EXPECT_THAT(complaint, HasSubstr(part)) << c.text;
   }
-  EXPECT_THROW(ReadModel("/no/such/model.yaml"), InputError);
+  EXPECT_THROW(diagnosis::ReadModel("/no/such/model.yaml"), InputError);
 }
 
 TEST(ModelAt, LatenciesMoveTheirStreamsOnly) {
@@ -194,10 +195,10 @@ TEST(ModelAt, LatenciesMoveTheirStreamsOnly) {
   recording.wrist0.emplace().samples = {{100, {}}};
   recording.em0.emplace().samples = {{1'000'000'000, {}}};
   recording.vision0.emplace().tips = {{1'000'000'000, {}}};
-  ExtendedModel model;
+  diagnosis::ExtendedModel model;
   model.effects = {{"camera_latency", {{"delay_s", {0.02}, {}}}}};
   model.within_tolerance = {{"em_latency", {{"delay_s", {0.003}, {}}}}};
-  const Recording moved = WithoutLatency(recording, model);
+  const Recording moved = diagnosis::WithoutLatency(recording, model);
   EXPECT_EQ(moved.wrist0->samples[0].t_ns, 100);
   EXPECT_EQ(moved.em0->samples[0].t_ns, 997'000'000);
   EXPECT_EQ(moved.vision0->tips[0].t_ns, 980'000'000);
@@ -207,7 +208,7 @@ TEST(ModelAt, AnEmptyModelChangesNothing) {
   Recording base;
   base.instrument = {0.5, 0.003, 0.3, 0.0};
   base.p_RP = {0.25, 0.0, 0.0};
-  ModelAt model(ExtendedModel{}, base);
+  diagnosis::ModelAt model(diagnosis::ExtendedModel{}, base);
   Measurements z;
   z.em = EmMeasurement{{ExpRotation({0.1, 0.2, 0.3}), {0.4, 0.01, 0.02}}, 0.02, 1e-4, 1e-3};
   z.tip = TipObservation{TipStatus::kOk,

@@ -4,21 +4,21 @@
 
 #include <cmath>
 
-#include "apps/recorded_estimates.h"
-#include "diagnosis/model_at.h"
+#include "diagnosis/model/model_at.h"
+#include "pipeline/estimate_recording.h"
 #include "tests/extended_model/model_of_label.h"
 
 namespace flextip {
 namespace {
 
-HiddenRecording Hidden(const std::string& effect, std::uint64_t seed) {
-  HiddenOptions options;
+hidden::HiddenRecording Hidden(const std::string& effect, std::uint64_t seed) {
+  hidden::HiddenOptions options;
   options.effects = {effect};
   options.exact = true;
   options.noise_free = true;
   options.scene.duration_s = 6.0;
   options.links_per_side = 40;
-  return MakeHidden(options, seed);
+  return hidden::MakeHidden(options, seed);
 }
 
 /// Root mean square of the tip's error over samples at the truth's own times.
@@ -42,7 +42,7 @@ struct Errors {
   double before_m = 0.0, after_m = 0.0;
 };
 
-Errors Compare(const HiddenRecording& hidden, bool use_positions) {
+Errors Compare(const hidden::HiddenRecording& hidden, bool use_positions) {
   const Recording& recording = hidden.recording;
   EstimatorOptions options;
   options.instrument = recording.instrument;
@@ -50,11 +50,11 @@ Errors Compare(const HiddenRecording& hidden, bool use_positions) {
   options.gravity_m_s2 = recording.gravity_m_s2;
   options.use_positions = use_positions;
   options.estimate_tissue = false;
-  const ExtendedModel found = ModelOfLabel(hidden);
-  ModelAt model(found, recording);
-  return {
-      TipError(EstimateRecording(recording, options), hidden.truth),
-      TipError(EstimateRecording(WithoutLatency(recording, found), options, &model), hidden.truth)};
+  const diagnosis::ExtendedModel found = ModelOfLabel(hidden);
+  diagnosis::ModelAt model(found, recording);
+  return {TipError(EstimateRecording(recording, options), hidden.truth),
+          TipError(EstimateRecording(diagnosis::WithoutLatency(recording, found), options, &model),
+                   hidden.truth)};
 }
 
 struct Case {

@@ -2,15 +2,15 @@
 
 #include <cmath>
 
-#include "diagnosis/catalogue.h"
-#include "diagnosis/extended_effect.h"
-#include "simulation/sensors.h"
+#include "diagnosis/model/catalogue.h"
+#include "diagnosis/model/extended_effect.h"
+#include "simulation/sensors/sensors.h"
 
 namespace flextip {
 
-ExtendedModel ModelOfLabel(const HiddenRecording& hidden) {
-  ExtendedModel model;
-  model.start_ns = kSimulationStart_ns;
+diagnosis::ExtendedModel ModelOfLabel(const hidden::HiddenRecording& hidden) {
+  diagnosis::ExtendedModel model;
+  model.start_ns = simulation::kSimulationStart_ns;
   int count = 0;
   if (hidden.recording.em0) {  // measured with less bias than matters
     for (const auto& sample : hidden.recording.em0->samples) {
@@ -20,9 +20,9 @@ ExtendedModel ModelOfLabel(const HiddenRecording& hidden) {
     model.centre_m /= count;
   }
   for (const std::string& name : hidden.label.present) {
-    EffectFit fit{name, ParametersOf(*MakeEffect(name))};
-    const EffectParameters& label = hidden.label.parameters.at(name);
-    for (ReportedParameter& parameter : fit.parameters) {
+    diagnosis::EffectFit fit{name, diagnosis::ParametersOf(*diagnosis::MakeEffect(name))};
+    const hidden::EffectParameters& label = hidden.label.parameters.at(name);
+    for (diagnosis::ReportedParameter& parameter : fit.parameters) {
       // A pose found from tags keeps its attitude to the line of sight, which the scale moves.
       if (parameter.name == "turn") parameter.value[0] = std::log(label.at("scale").at(0));
       if (!label.contains(parameter.name)) continue;  // none in the simulation

@@ -1,12 +1,12 @@
 // The extended model that a perfect diagnosis would have found.
 #pragma once
 
-#include "diagnosis/extended_model.h"
-#include "simulation/hidden_recording.h"
+#include "diagnosis/model/extended_model.h"
+#include "testdata/hidden/recording.h"
 
 namespace flextip {
 
 /// Of the effects present in `hidden`, with the label's parameters.
-ExtendedModel ModelOfLabel(const HiddenRecording& hidden);
+diagnosis::ExtendedModel ModelOfLabel(const hidden::HiddenRecording& hidden);
 
 }  // namespace flextip

@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "core/rotation.h"
-#include "recording/calibration_apply.h"
+#include "recording/calibrations/apply.h"
 #include "sample_recording.h"
 
 namespace flextip::testing {

@@ -1,5 +1,5 @@
 // calibration.yaml written, read again, and refused where it is broken.
-#include "recording/calibration_file.h"
+#include "recording/calibrations/file.h"
 
 #include <gtest/gtest.h>
 

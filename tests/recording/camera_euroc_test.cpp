@@ -1,5 +1,5 @@
 // EuRoC's sensor.yaml.
-#include "recording/camera_file.h"
+#include "recording/cameras/camera_file.h"
 #include "tests/recording/camera_format_test.h"
 
 namespace flextip {

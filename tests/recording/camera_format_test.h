@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "recording/camera_formats.h"
+#include "recording/cameras/camera_formats.h"
 #include "tests/recording/sample_recording.h"
 
 namespace flextip::testing {

@@ -1,4 +1,4 @@
-#include "recording/csv.h"
+#include "recording/text/csv.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <clocale>
 #include <random>
 
-#include "recording/text.h"
+#include "recording/text/text.h"
 #include "tests/recording/sample_recording.h"
 
 namespace flextip {

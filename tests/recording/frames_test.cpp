@@ -4,7 +4,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "core/error.h"
-#include "recording/image_head.h"
+#include "recording/frames/image_head.h"
 #include "recording/recording_reader.h"
 #include "recording/recording_writer.h"
 #include "tests/recording/sample_recording.h"

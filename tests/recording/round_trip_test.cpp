@@ -4,7 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
-#include "recording/camera_file.h"
+#include "recording/cameras/camera_file.h"
 #include "recording/recording_reader.h"
 #include "recording/recording_writer.h"
 #include "tests/recording/sample_recording.h"

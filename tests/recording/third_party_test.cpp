@@ -4,7 +4,7 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
-#include "recording/image_head.h"
+#include "recording/frames/image_head.h"
 #include "recording/recording_reader.h"
 #include "recording/recording_writer.h"
 #include "tests/recording/sample_recording.h"

@@ -13,7 +13,7 @@
 #include "report/pages.h"
 #include "report/result_files.h"
 
-namespace flextip {
+namespace flextip::report {
 
 class DiagnosePage : public testing::Test {
  protected:
@@ -79,4 +79,4 @@ class DiagnosePage : public testing::Test {
   std::filesystem::path folder_;
 };
 
-}  // namespace flextip
+}  // namespace flextip::report

@@ -1,7 +1,7 @@
-#include "report/diagnose_words.h"
+#include "report/diagnose/words.h"
 #include "tests/report/diagnose_fixture.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 using testing::ElementsAre;
@@ -135,4 +135,4 @@ TEST(DiagnoseWords, SayNumbersAsPeopleReadThem) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::report

@@ -6,11 +6,11 @@
 #include <regex>
 
 #include "core/error.h"
-#include "report/diagnose_residuals.h"
+#include "report/diagnose/residuals.h"
 #include "report/embedded.h"
 #include "tests/report/diagnose_fixture.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 using testing::HasSubstr;
@@ -180,4 +180,4 @@ TEST(ResidualMemory, TellsNoiseThatRemembersFromWhite) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::report

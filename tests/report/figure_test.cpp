@@ -14,7 +14,7 @@
 #include "report/pages.h"
 #include "report/result_files.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,4 +103,4 @@ TEST_F(FigureFiles, WithoutAFolderAreRefused) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::report

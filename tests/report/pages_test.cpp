@@ -11,7 +11,7 @@
 #include "report/report.h"
 #include "report/result_files.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 using testing::ElementsAre;
@@ -184,4 +184,4 @@ TEST(ResultFiles, SayNumbersInTheUnitsPeopleRead) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::report

@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "report/embedded.h"
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 using testing::HasSubstr;
@@ -109,4 +109,4 @@ TEST(Report, SaysWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::report

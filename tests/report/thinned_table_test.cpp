@@ -10,7 +10,7 @@
 #include <fstream>
 #include <random>
 
-namespace flextip {
+namespace flextip::report {
 namespace {
 
 const ThinnedColumn kValue{{"v"}, [](const std::vector<double>& v) { return 2 * v[0]; }};
@@ -73,4 +73,4 @@ TEST_P(Thinned, KeepsExtremesTimesAndTheWorstStatus) {
 INSTANTIATE_TEST_SUITE_P(Rows, Thinned, testing::Values(1, 14, 64, 65, 128, 129, 5000));
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::report

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <set>
 
-#include "reproduction/ch2_map_figures.h"
-#include "reproduction/ch2_map_pictures.h"
-#include "reproduction/ch2_map_statistics.h"
-#include "reproduction/ch2_parts.h"
+#include "reproduction/chapter2/maps/figures.h"
+#include "reproduction/chapter2/maps/pictures.h"
+#include "reproduction/chapter2/maps/statistics.h"
+#include "reproduction/chapter2/parts.h"
 
-namespace flextip {
+namespace flextip::reproduction {
 namespace {
 
 const ChapterResult& Quick() {
@@ -98,4 +98,4 @@ TEST(Statistics, AreThoseOfTheTextbook) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::reproduction

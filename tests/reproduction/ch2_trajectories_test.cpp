@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "reproduction/ch2_traj_paths.h"
+#include "reproduction/chapter2/paths/paths.h"
 
-namespace flextip {
+namespace flextip::reproduction {
 namespace {
 
 TrajectoryMove Move(double start_z, double goal_z, double goal_y) {
@@ -102,4 +102,4 @@ TEST(TrajectoryPaths, MeasuresOnPathsByHand) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::reproduction

@@ -6,12 +6,12 @@
 
 #include "control/motion_error.h"
 #include "kinematics/plane_beam.h"
-#include "reproduction/ch3_noise.h"
-#include "reproduction/ch3_rod.h"
 #include "reproduction/chapter.h"
+#include "reproduction/chapter3/noise.h"
+#include "reproduction/chapter3/rod.h"
 #include "tests/kinematics/printed_jacobian.h"
 
-namespace flextip {
+namespace flextip::reproduction {
 namespace {
 
 constexpr double kL = 0.355;
@@ -122,9 +122,9 @@ TEST(Chapter3, HasEveryFigureAndTheTextsNumbers) {
       ReproduceChapter3({.quick = true}, [&](double part) { done = part; });
   EXPECT_NEAR(done, 1.0, 1e-9);
   std::set<std::string> names;
-  for (const Figure& figure : result.figures) {
+  for (const report::Figure& figure : result.figures) {
     names.insert(figure.name);
-    for (const FigureTrace& trace : figure.traces) {
+    for (const report::FigureTrace& trace : figure.traces) {
       EXPECT_EQ(trace.x.size(), trace.y.size()) << figure.name;
       EXPECT_TRUE(
           std::any_of(trace.y.begin(), trace.y.end(), [](double y) { return std::isfinite(y); }))
@@ -151,4 +151,4 @@ TEST(Chapter3, HasEveryFigureAndTheTextsNumbers) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::reproduction

@@ -5,18 +5,18 @@
 #include <filesystem>
 #include <string>
 
-#include "reproduction/ch4_parts.h"
-#include "reproduction/ch4_press.h"
+#include "reproduction/chapter4/parts.h"
+#include "reproduction/chapter4/press.h"
 #include "reproduction/printed_jacobian.h"
-#include "simulation/scenario.h"
+#include "simulation/closed_loop/scenario.h"
 
-namespace flextip {
+namespace flextip::reproduction {
 namespace {
 
 const Eigen::Vector3d kPort(0.28, 0.0, 0.0);
 
 Ch4Plant Hung() {
-  PlantSetup setup;
+  simulation::PlantSetup setup;
   setup.instrument = Ch4Rod();
   setup.p_RP = kPort;
   setup.load.constant_N = {0.0, -2.0, 0.0};
@@ -65,9 +65,9 @@ TEST(Ch4Steps, GiveWhatTheClosedLoopGives) {
   const std::array<const char*, 4> files = {"chapter4_away.yaml", "chapter4_toward.yaml",
                                             "chapter4_up.yaml", "chapter4_down.yaml"};
   for (int direction = 0; direction < 4; ++direction) {
-    Scenario scenario = ReadScenario(scenarios + files[direction]);
+    simulation::Scenario scenario = simulation::ReadScenario(scenarios + files[direction]);
     scenario.loop.controller.kind = ControllerKind::kStraightTrack;
-    const LoopResult loop = RunClosedLoop(scenario.loop, nullptr);
+    const simulation::LoopResult loop = simulation::RunClosedLoop(scenario.loop, nullptr);
     const Ch4Run run = RunCh4Move(Move(Ch4Kind::kStraight, direction), Hung());
     EXPECT_NEAR(run.max_m, loop.max_deviation_m, 2e-5) << files[direction];
   }
@@ -127,4 +127,4 @@ TEST(Ch4Press, ReachesItsDepthAgainstTheBlock) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::reproduction

@@ -5,12 +5,12 @@
 #include <random>
 #include <set>
 
-#include "reproduction/ch5_groups.h"
-#include "reproduction/ch5_statistics.h"
-#include "reproduction/ch5_study.h"
-#include "reproduction/ch5_wrist.h"
+#include "reproduction/chapter5/groups.h"
+#include "reproduction/chapter5/statistics.h"
+#include "reproduction/chapter5/study.h"
+#include "reproduction/chapter5/wrist.h"
 
-namespace flextip {
+namespace flextip::reproduction {
 namespace {
 
 using Eigen::Vector3d;
@@ -207,4 +207,4 @@ TEST(Ch5Groups, NamesAreUniqueAndFound) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::reproduction

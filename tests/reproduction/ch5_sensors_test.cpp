@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "reproduction/ch5_sensor_loop.h"
+#include "reproduction/chapter5/sensor_loop.h"
 
-namespace flextip {
+namespace flextip::reproduction {
 namespace {
 
 constexpr SensorSet kAll{.name = "all",
@@ -62,4 +62,4 @@ TEST(SensorLoop, AWindowMakesUpForAWrongPort) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::reproduction

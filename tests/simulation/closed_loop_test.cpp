@@ -1,14 +1,14 @@
 // The closed loop: controllers that know only what the sensors say, on a plant of another method.
-#include "simulation/closed_loop.h"
+#include "simulation/closed_loop/closed_loop.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 
-#include "simulation/scenario.h"
+#include "simulation/closed_loop/scenario.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 const std::string kScenarios = std::string(FLEXTIP_SOURCE_DIR) + "/testdata/scenarios/";
@@ -116,4 +116,4 @@ TEST(ClosedLoop, ThroughTheLaparoscope) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

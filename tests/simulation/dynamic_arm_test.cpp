@@ -1,12 +1,12 @@
 // The arm with inertia: Newton's law where it can be written by hand, energy, and friction that
 // stops as Coulomb's does.
-#include "simulation/dynamic_arm.h"
+#include "simulation/arm/dynamic_arm.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 // At home the shaft lies along z: turning the second motor slides it, and all of it moves alike.
@@ -126,4 +126,4 @@ TEST(JointPid, AnswersEachPartOfTheError) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -1,6 +1,6 @@
 // Simulated operators: they cover the outline, press past the wall, tremble in their band, put
 // right what they see, and differ.
-#include "simulation/operator.h"
+#include "simulation/arm/operator.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <complex>
 #include <numbers>
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector3d;
@@ -153,4 +153,4 @@ TEST(Operator, SeedsMakePeople) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

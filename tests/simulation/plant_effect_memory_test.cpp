@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "simulation/plant.h"
+#include "simulation/plant/plant.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector3d;
@@ -210,4 +210,4 @@ TEST(PlantTissue, TinyStiffnessDragsAsABeamSays) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "kinematics/effect_rod.h"
-#include "simulation/plant.h"
+#include "simulation/plant/plant.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector3d;
@@ -159,4 +159,4 @@ TEST(PlantAgainstRod, AllEffectsTogether) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -9,10 +9,10 @@
 
 #include "core/derivative_check.h"
 #include "core/rotation.h"
-#include "simulation/chain.h"
-#include "simulation/plant.h"
+#include "simulation/plant/chain.h"
+#include "simulation/plant/plant.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector3d;
@@ -308,4 +308,4 @@ TEST(PlantEffects, BadEffectsAreRefused) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "simulation/plant.h"
+#include "simulation/plant/plant.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector3d;
@@ -117,4 +117,4 @@ TEST(PlantReference, ConvergesWithSecondOrderToEveryRow) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -8,9 +8,9 @@
 
 #include "core/rotation.h"
 #include "recording/recording_reader.h"
-#include "simulation/plant.h"
+#include "simulation/plant/plant.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector3d;
@@ -100,4 +100,4 @@ TEST(PlantReplay, HealthyRecordingIsReproducedToItsNoise) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -1,5 +1,5 @@
 // The plant against closed forms, energy differences and the conventions of others.
-#include "simulation/plant.h"
+#include "simulation/plant/plant.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "core/derivative_check.h"
 #include "core/rotation.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector3d;
@@ -152,4 +152,4 @@ TEST(Plant, RecoversAfterAFailure) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -7,11 +7,11 @@
 #include <random>
 
 #include "core/rotation.h"
-#include "simulation/render_face.h"
-#include "simulation/tag_pattern.h"
+#include "simulation/render/face.h"
+#include "simulation/render/tag_pattern.h"
 #include "tests/simulation/render_test_scene.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector2d;
@@ -261,4 +261,4 @@ TEST(RenderEdges, AreaOfTagCellsAgreesWithManyPoints) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

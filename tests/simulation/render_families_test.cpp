@@ -4,9 +4,9 @@
 
 #include "core/rotation.h"
 #include "tests/simulation/render_test_scene.h"
-#include "vision/collar_pose.h"
+#include "vision/tags/collar_pose.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using namespace render_test;
@@ -109,4 +109,4 @@ INSTANTIATE_TEST_SUITE_P(Families, RenderFamilies, testing::ValuesIn(kFamilies),
                          [](const auto& family) { return std::string(family.param.name); });
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -7,11 +7,11 @@
 
 #include "core/error.h"
 #include "core/rotation.h"
-#include "simulation/tag_pattern.h"
+#include "simulation/render/tag_pattern.h"
 #include "tests/simulation/render_test_scene.h"
-#include "vision/tag_detector.h"
+#include "vision/tags/detector.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector2d;
@@ -281,4 +281,4 @@ TEST(RenderHazards, OptionsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -11,7 +11,7 @@
 #include "core/rotation.h"
 #include "tests/simulation/render_test_scene.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector3d;
@@ -347,4 +347,4 @@ TEST(RenderLens, BlursBeforeThePixelsTakeTheirMeans) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -14,7 +14,7 @@ extern "C" {
 #include <apriltag/tag36h11.h>
 }
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector2d;
@@ -175,4 +175,4 @@ TEST(RenderTags, CornersOfBlurredFramesAreOffByTheLibrarysBias) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

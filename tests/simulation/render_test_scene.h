@@ -10,8 +10,8 @@
 #include "core/camera.h"
 #include "core/pose.h"
 #include "core/tag_collar.h"
-#include "simulation/laparoscope.h"
-#include "simulation/shaft_curve.h"
+#include "simulation/plant/shaft_curve.h"
+#include "simulation/render/laparoscope.h"
 
 namespace flextip::render_test {
 

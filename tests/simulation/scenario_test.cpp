@@ -1,4 +1,4 @@
-#include "simulation/scenario.h"
+#include "simulation/closed_loop/scenario.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "simulation/tip_path.h"
+#include "simulation/closed_loop/tip_path.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,4 +163,4 @@ TEST(TipPath, StepsWaitAtTheEndUntilTheTipIsThere) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

@@ -7,11 +7,11 @@
 
 #include "core/derivative_check.h"
 #include "core/rotation.h"
-#include "simulation/camera_view.h"
-#include "simulation/plant.h"
-#include "simulation/sensors.h"
+#include "simulation/plant/plant.h"
+#include "simulation/sensors/camera_view.h"
+#include "simulation/sensors/sensors.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 Eigen::Vector3d RandomVector(std::mt19937_64& rng, double size) {
@@ -298,4 +298,4 @@ TEST_F(SensorsTest, TipNoiseIsTheStatedCovariance) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

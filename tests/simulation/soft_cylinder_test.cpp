@@ -1,15 +1,15 @@
 // The silicone's force law: its derivative, what it does to a tip that is pushed and dragged, and
 // that the plant finds its equilibria in it.
-#include "simulation/soft_cylinder.h"
+#include "simulation/tissue/soft_cylinder.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "simulation/plant.h"
+#include "simulation/plant/plant.h"
 
-namespace flextip {
+namespace flextip::simulation {
 namespace {
 
 using Eigen::Vector3d;
@@ -180,4 +180,4 @@ TEST(SoftCylinder, ThePlantFindsItsEquilibriaInIt) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::simulation

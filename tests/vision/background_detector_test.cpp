@@ -1,5 +1,5 @@
 // The detector on its thread against the detector.
-#include "vision/background_detector.h"
+#include "vision/tags/background_detector.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 Image Picture() {
   const CameraCalibration camera = ScopeCamera();
-  const Laparoscope scope(camera, ScopeCollar(), ScopeOptions(camera));
+  const simulation::Laparoscope scope(camera, ScopeCollar(), ScopeOptions(camera));
   return scope.Render(ScopeShaft(ScopePose(0.1, 0.25)), 0);
 }
 

@@ -1,5 +1,5 @@
 // The blurred pattern against integration of the cells under the normal distribution.
-#include "vision/blurred_pattern.h"
+#include "vision/photometric/blurred_pattern.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "core/derivative_check.h"
 #include "core/rotation.h"
 #include "tests/vision/optics_reference.h"
-#include "vision/tag_blur.h"
+#include "vision/photometric/tag_blur.h"
 
 namespace flextip {
 namespace {

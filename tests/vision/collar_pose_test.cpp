@@ -1,5 +1,5 @@
 // The collar's pose from corners that are known, exactly and with known noise.
-#include "vision/collar_pose.h"
+#include "vision/tags/collar_pose.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "core/derivative_check.h"
 #include "core/rotation.h"
 #include "tests/vision/synthetic_tag.h"
-#include "vision/reprojection.h"
+#include "vision/tags/reprojection.h"
 
 namespace flextip {
 namespace {

@@ -1,5 +1,5 @@
 // Shifts of the collar found in rendered frames.
-#include "vision/collar_search.h"
+#include "vision/tags/collar_search.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ TEST(CollarSearch, FindsShiftsOf30Pixels) {
   const CameraCalibration camera = ScopeCamera();
   const CameraModel model(camera);
   const CollarSearch search(model, ScopeCollar());
-  const Laparoscope scope(camera, ScopeCollar(), ScopeOptions(camera));
+  const simulation::Laparoscope scope(camera, ScopeCollar(), ScopeOptions(camera));
   const Pose T_CR = camera.T_RC.Inverse();
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -57,7 +57,7 @@ TEST(CollarSearch, NothingIsFoundWhereNothingIs) {
   Pose behind = T_CE;
   behind.p.z() = -0.1;
   EXPECT_EQ(search.Find(Image(320, 240, 1), behind, 30).correlation, 0);
-  const Laparoscope scope(camera, ScopeCollar(), ScopeOptions(camera));
+  const simulation::Laparoscope scope(camera, ScopeCollar(), ScopeOptions(camera));
   const Image empty = scope.Render(ScopeShaft(ScopePose(0, 0, {0.5, 0, 0})), 0);
   EXPECT_LT(search.Find(empty, T_CE, 30).correlation, 0.35);
 }

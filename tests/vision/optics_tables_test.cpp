@@ -5,10 +5,10 @@
 
 #include "core/derivative_check.h"
 #include "tests/vision/optics_reference.h"
-#include "vision/lens_map.h"
-#include "vision/normal_table.h"
-#include "vision/photometric_sums.h"
-#include "vision/tone_curve.h"
+#include "vision/photometric/lens_map.h"
+#include "vision/photometric/normal_table.h"
+#include "vision/photometric/sums.h"
+#include "vision/photometric/tone_curve.h"
 
 namespace flextip {
 namespace {

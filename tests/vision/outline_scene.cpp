@@ -12,8 +12,8 @@ TubeShape ScopeTube() {
   return tube;
 }
 
-ShaftCurve BentScopeShaft(const Pose& T_RE, const Eigen::Vector2d& bend) {
-  ShaftCurve curve;
+simulation::ShaftCurve BentScopeShaft(const Pose& T_RE, const Eigen::Vector2d& bend) {
+  simulation::ShaftCurve curve;
   curve.diameter_m = ScopeTube().diameter_m;
   curve.T_RE = T_RE;
   constexpr int kPieces = 100;
@@ -23,9 +23,9 @@ ShaftCurve BentScopeShaft(const Pose& T_RE, const Eigen::Vector2d& bend) {
   return curve;
 }
 
-Occluder CoverOfTheCollar(int first, int last) {
+simulation::Occluder CoverOfTheCollar(int first, int last) {
   const Pose& T_RC = ScopeCamera().T_RC;
-  Occluder other;
+  simulation::Occluder other;
   other.a_R = T_RC * Eigen::Vector3d(0.004, -0.05, 0.06);
   other.b_R = T_RC * Eigen::Vector3d(-0.002, 0.05, 0.06);
   other.radius_m = 0.0042;

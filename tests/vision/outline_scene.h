@@ -7,9 +7,9 @@
 #include "core/image.h"
 #include "core/pose.h"
 #include "core/tag_collar.h"
-#include "simulation/laparoscope.h"
-#include "vision/tip_prediction.h"
-#include "vision/tube_geometry.h"
+#include "simulation/render/laparoscope.h"
+#include "vision/outline/tube_geometry.h"
+#include "vision/tracking/tip_prediction.h"
 
 namespace flextip {
 
@@ -17,11 +17,11 @@ namespace flextip {
 TubeShape ScopeTube();
 
 /// A shaft that bends as one loaded at its tip (`bend` as in TubeCentre).
-ShaftCurve BentScopeShaft(const Pose& T_RE, const Eigen::Vector2d& bend);
+simulation::ShaftCurve BentScopeShaft(const Pose& T_RE, const Eigen::Vector2d& bend);
 
 /// A metal shaft nearer to the camera that covers all tags of a collar at ScopePose and leaves the
 /// tip and the shaft behind the collar free; in the frames [first, last].
-Occluder CoverOfTheCollar(int first, int last);
+simulation::Occluder CoverOfTheCollar(int first, int last);
 
 /// The squared error of the tip's position over its covariance: 3 in the mean.
 double PositionNees(const Eigen::Vector3d& p_RE, const Eigen::Matrix3d& covariance_m2,

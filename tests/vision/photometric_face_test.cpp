@@ -1,11 +1,11 @@
 // The predicted grey values of a tag's pixels and their derivatives.
-#include "vision/photometric_face.h"
+#include "vision/photometric/face.h"
 
 #include <gtest/gtest.h>
 
 #include "core/derivative_check.h"
 #include "core/rotation.h"
-#include "vision/collar_faces.h"
+#include "vision/tags/collar_faces.h"
 
 namespace flextip {
 namespace {

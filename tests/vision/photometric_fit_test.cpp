@@ -1,5 +1,5 @@
 // The photometric fit on rendered frames beside the truth.
-#include "vision/photometric_fit.h"
+#include "vision/photometric/fit.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "core/rotation.h"
 #include "tests/vision/scope_scene.h"
-#include "vision/reprojection.h"
+#include "vision/tags/reprojection.h"
 
 namespace flextip {
 namespace {
@@ -37,8 +37,8 @@ struct Scatter {
 
 // Frames of one pose that differ by their noise. `bias_nees`: the mean error, squared, over the
 // mean covariance; 6 / frames where it is nothing but noise.
-Scatter Scattered(const LinearImage& light, double gamma, const Pose& T_RE, PhotometricFit& fit,
-                  const OpticsPrior& prior, int frames) {
+Scatter Scattered(const simulation::LinearImage& light, double gamma, const Pose& T_RE,
+                  PhotometricFit& fit, const OpticsPrior& prior, int frames) {
   Scatter s;
   Vector6 mean = Vector6::Zero();
   Matrix6 covariance = Matrix6::Zero();
@@ -77,7 +77,7 @@ TEST(PhotometricFit, CovarianceIsThatOfTheScatter) {
   const CameraCalibration camera = ScopeCamera();
   for (const auto& [lean, roll] : {std::pair{0.1, 0.25}, {-0.5, 0.1}}) {
     const Pose T_RE = ScopePose(lean, roll);
-    const LinearImage light = LightThroughLens(camera, ScopeCollar(), T_RE, kBlur_px);
+    const simulation::LinearImage light = LightThroughLens(camera, ScopeCollar(), T_RE, kBlur_px);
     PhotometricFit fit({camera}, ScopeCollar(), OnlyNoise());
     const Scatter s = Scattered(light, 2.2, T_RE, fit, KnownGamma(), kFrames);
     EXPECT_EQ(s.ok, kFrames);
@@ -95,7 +95,7 @@ TEST(PhotometricFit, AWideBlurLeavesNoBias) {
   const CameraCalibration camera = ScopeCamera();
   for (const double lean : {-0.5, 0.1, 0.3}) {
     const Pose T_RE = ScopePose(lean, 0.25);
-    const LinearImage light = LightThroughLens(camera, ScopeCollar(), T_RE, 1.6);
+    const simulation::LinearImage light = LightThroughLens(camera, ScopeCollar(), T_RE, 1.6);
     PhotometricFit fit({camera}, ScopeCollar(), OnlyNoise());
     const Scatter s = Scattered(light, 2.2, T_RE, fit, KnownGamma(), kFrames);
     EXPECT_EQ(s.ok, kFrames);
@@ -133,7 +133,7 @@ TEST(PhotometricFit, CovarianceKnowsOfResidualsThatGoTogether) {
   constexpr int kFrames = 40;
   const Pose T_RE = ScopePose(0.1, 0.25);
   const CameraCalibration camera = ScopeCamera();
-  const LinearImage light = LightThroughLens(camera, ScopeCollar(), T_RE, kBlur_px);
+  const simulation::LinearImage light = LightThroughLens(camera, ScopeCollar(), T_RE, kBlur_px);
   PhotometricFit fit({camera}, ScopeCollar(), OnlyNoise());
   double nees = 0;
   for (int i = 0; i < kFrames; ++i) {
@@ -150,7 +150,8 @@ TEST(PhotometricFit, CovarianceKnowsOfResidualsThatGoTogether) {
 TEST(PhotometricFit, FindsTheGamma) {
   constexpr int kFrames = 40;
   const Pose T_RE = ScopePose(0.4, 0.5);
-  const LinearImage light = LightThroughLens(ScopeCamera(), ScopeCollar(), T_RE, kBlur_px);
+  const simulation::LinearImage light =
+      LightThroughLens(ScopeCamera(), ScopeCollar(), T_RE, kBlur_px);
   PhotometricFit fit({ScopeCamera()}, ScopeCollar(), OnlyNoise());
   OpticsPrior prior = KnownGamma();
   prior.gamma_sd = 0.4;
@@ -165,10 +166,10 @@ TEST(PhotometricFit, FindsTheGamma) {
 const Pose kSeen = ScopePose(0.1, 0.25);
 
 Image Frame(const CameraCalibration& camera, const TagCollar& collar, const Pose& T_RE,
-            const std::function<void(LaparoscopeOptions&)>& change = {}) {
-  LaparoscopeOptions options = ScopeOptions(ScopeCamera());
+            const std::function<void(simulation::LaparoscopeOptions&)>& change = {}) {
+  simulation::LaparoscopeOptions options = ScopeOptions(ScopeCamera());
   if (change) change(options);
-  return Laparoscope(camera, collar, options).Render(ScopeShaft(T_RE), 0);
+  return simulation::Laparoscope(camera, collar, options).Render(ScopeShaft(T_RE), 0);
 }
 
 // A pose from which the tags are seen `shift_px` away and turned by `turn_deg`.
@@ -224,8 +225,8 @@ TEST(PhotometricFit, AStartOnTheWrongPlaceIsNotOk) {
 
 TEST(PhotometricFit, ATagHalfCoveredDoesNotMoveThePose) {
   const CameraCalibration camera = ScopeCamera();
-  const auto cover = [](LaparoscopeOptions& o) {
-    Stain stain;
+  const auto cover = [](simulation::LaparoscopeOptions& o) {
+    simulation::Stain stain;
     stain.tag_id = 0;
     stain.centre_m = {0.0025, 0.0};
     stain.radius_m = 0.0025;

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "recording/recording_reader.h"
-#include "vision/tip_tracker.h"
+#include "vision/tracking/tip_tracker.h"
 
 namespace flextip {
 namespace {

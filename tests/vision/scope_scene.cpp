@@ -52,8 +52,8 @@ Pose ScopePose(double lean, double roll, const Eigen::Vector3d& offset_C) {
   return ScopeCamera().T_RC * T_CE;
 }
 
-LaparoscopeOptions ScopeOptions(const CameraCalibration& camera) {
-  LaparoscopeOptions options;
+simulation::LaparoscopeOptions ScopeOptions(const CameraCalibration& camera) {
+  simulation::LaparoscopeOptions options;
   options.tissue.point_R = camera.T_RC * Eigen::Vector3d(0, 0, 0.16);
   options.tissue.normal_R = camera.T_RC.R * Eigen::Vector3d(0.2, -0.3, -1);
   options.exposure_distance_m = 0.1;
@@ -63,17 +63,19 @@ LaparoscopeOptions ScopeOptions(const CameraCalibration& camera) {
   return options;
 }
 
-ShaftCurve ScopeShaft(const Pose& T_RE) { return render_test::ArcShaft(T_RE, 0.3, 0.8, 0.005); }
-
-LinearImage LightThroughLens(const CameraCalibration& camera, const TagCollar& collar,
-                             const Pose& T_RE, double blur_px) {
-  LaparoscopeOptions options = ScopeOptions(camera);
-  options.blur_sigma_px = blur_px;
-  options.parts_per_px = 3;
-  return Laparoscope(camera, collar, options).RenderLight(ScopeShaft(T_RE), 0);
+simulation::ShaftCurve ScopeShaft(const Pose& T_RE) {
+  return render_test::ArcShaft(T_RE, 0.3, 0.8, 0.005);
 }
 
-Image Film(const LinearImage& light, double gamma, unsigned seed) {
+simulation::LinearImage LightThroughLens(const CameraCalibration& camera, const TagCollar& collar,
+                                         const Pose& T_RE, double blur_px) {
+  simulation::LaparoscopeOptions options = ScopeOptions(camera);
+  options.blur_sigma_px = blur_px;
+  options.parts_per_px = 3;
+  return simulation::Laparoscope(camera, collar, options).RenderLight(ScopeShaft(T_RE), 0);
+}
+
+Image Film(const simulation::LinearImage& light, double gamma, unsigned seed) {
   constexpr double kFullWell = 15000, kRead = 15;
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;

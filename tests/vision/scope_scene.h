@@ -5,7 +5,7 @@
 
 #include "core/camera.h"
 #include "core/tag_collar.h"
-#include "simulation/laparoscope.h"
+#include "simulation/render/laparoscope.h"
 
 namespace flextip {
 
@@ -23,18 +23,18 @@ TagCollar ScopeCollar(double outward_m = 0, int first_id = 0);
 Pose ScopePose(double lean, double roll, const Eigen::Vector3d& offset_C = Eigen::Vector3d::Zero());
 
 /// Tissue behind, grey.
-LaparoscopeOptions ScopeOptions(const CameraCalibration& camera);
+simulation::LaparoscopeOptions ScopeOptions(const CameraCalibration& camera);
 
 /// A slightly bent shaft that ends at T_RE.
-ShaftCurve ScopeShaft(const Pose& T_RE);
+simulation::ShaftCurve ScopeShaft(const Pose& T_RE);
 
 /// Linear light of a frame behind a lens, blurred on a grid of a third of a pixel. (On a grid of
 /// whole pixels 1.5 grey levels remain beside a Gaussian at 0.7 px.)
-LinearImage LightThroughLens(const CameraCalibration& camera, const TagCollar& collar,
-                             const Pose& T_RE, double blur_px);
+simulation::LinearImage LightThroughLens(const CameraCalibration& camera, const TagCollar& collar,
+                                         const Pose& T_RE, double blur_px);
 
 /// Shot and read noise as the renderer's defaults, gamma, 8 bit.
-Image Film(const LinearImage& light, double gamma, unsigned seed);
+Image Film(const simulation::LinearImage& light, double gamma, unsigned seed);
 
 /// A collar with one tag of another.
 TagCollar OnlyTag(const TagCollar& collar, int id);

@@ -1,5 +1,5 @@
 // The shaft's outline found in rendered frames, the pose beside the truth.
-#include "vision/shaft_contour.h"
+#include "vision/outline/contour.h"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@
 #include "core/error.h"
 #include "core/rotation.h"
 #include "recording/recording_reader.h"
-#include "simulation/laparoscope.h"
+#include "simulation/render/laparoscope.h"
 #include "tests/simulation/render_test_scene.h"
-#include "vision/reprojection.h"
+#include "vision/tags/reprojection.h"
 
 namespace flextip {
 namespace {
@@ -38,8 +38,8 @@ CameraCalibration HalfCamera() {
   return camera;
 }
 
-LaparoscopeOptions Scope() {
-  LaparoscopeOptions options;
+simulation::LaparoscopeOptions Scope() {
+  simulation::LaparoscopeOptions options;
   options.tissue.point_R = {0, 0, 0.17};
   options.tissue.normal_R = {0.2, -0.3, -1};
   options.grey = true;
@@ -72,8 +72,8 @@ Draw DrawTube(std::mt19937& random) {
   return draw;
 }
 
-ShaftCurve CurveOf(const Draw& draw) {
-  ShaftCurve curve;
+simulation::ShaftCurve CurveOf(const Draw& draw) {
+  simulation::ShaftCurve curve;
   curve.diameter_m = Tube().diameter_m;
   curve.T_RE = draw.T_CE;
   constexpr int kPieces = 150;
@@ -152,9 +152,9 @@ struct Tally {
   double Rms(double squares) const { return std::sqrt(squares / (usable - wrong)); }
 };
 
-Tally FitRenders(const LaparoscopeOptions& scope, const ContourOptions& options, int frames,
-                 double off_px) {
-  const Laparoscope laparoscope(HalfCamera(), render_test::HexagonCollar(), scope);
+Tally FitRenders(const simulation::LaparoscopeOptions& scope, const ContourOptions& options,
+                 int frames, double off_px) {
+  const simulation::Laparoscope laparoscope(HalfCamera(), render_test::HexagonCollar(), scope);
   const ShaftContour contour(CameraModel(HalfCamera()), Tube(), options);
   std::mt19937 random(11);
   Tally tally;
@@ -182,8 +182,8 @@ TEST(ShaftContour, FindsBentShaftsAndKnowsHowWell) {
 }
 
 TEST(ShaftContour, AnOccluderIsSeenThroughOrAdmitted) {
-  LaparoscopeOptions scope = Scope();
-  Occluder other;
+  simulation::LaparoscopeOptions scope = Scope();
+  simulation::Occluder other;
   other.a_R = {-0.02, -0.05, 0.07};
   other.b_R = {0.0, 0.05, 0.07};
   other.radius_m = 0.0015;
@@ -203,7 +203,7 @@ TEST(ShaftContour, CatchesTwentyPixelsOfMotion) {
 }
 
 TEST(ShaftContour, WithoutAShaftNothingIsFound) {
-  const Laparoscope laparoscope(HalfCamera(), {}, Scope());
+  const simulation::Laparoscope laparoscope(HalfCamera(), {}, Scope());
   const ShaftContour contour(CameraModel(HalfCamera()), Tube());
   std::mt19937 random(2);
   const Image empty = laparoscope.Render(render_test::HiddenShaft(), 0);
@@ -214,7 +214,7 @@ TEST(ShaftContour, WithoutAShaftNothingIsFound) {
 }
 
 TEST(ShaftContour, LinearisationPointsBackFromASmallMove) {
-  const Laparoscope laparoscope(HalfCamera(), render_test::HexagonCollar(), Scope());
+  const simulation::Laparoscope laparoscope(HalfCamera(), render_test::HexagonCollar(), Scope());
   const ShaftContour contour(CameraModel(HalfCamera()), Tube(), LightAtLens());
   std::mt19937 random(5);
   const Draw draw = DrawTube(random);

@@ -9,7 +9,7 @@
 #include "core/image.h"
 #include "core/pose.h"
 #include "core/tag_collar.h"
-#include "vision/tag_detector.h"
+#include "vision/tags/detector.h"
 
 namespace flextip {
 

@@ -1,5 +1,5 @@
 // Every family's cells against the AprilTag library's own picture.
-#include "vision/tag_cells.h"
+#include "vision/tags/cells.h"
 
 #include <apriltag/common/image_u8.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <apriltag/apriltag.h>
 #include "core/error.h"
 
-#include "vision/tag_families.h"
+#include "vision/tags/families.h"
 
 namespace flextip {
 namespace {

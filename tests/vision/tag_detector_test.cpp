@@ -1,5 +1,5 @@
 // The AprilTag adapter: the library's own corners on photographs, and corners known exactly.
-#include "vision/tag_detector.h"
+#include "vision/tags/detector.h"
 
 #include <gtest/gtest.h>
 

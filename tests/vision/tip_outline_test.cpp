@@ -1,5 +1,5 @@
 // The outline beside the tags and alone, the pose beside the truth of rendered frames.
-#include "vision/tip_outline.h"
+#include "vision/outline/tip_outline.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include "core/rotation.h"
 #include "tests/vision/outline_scene.h"
 #include "tests/vision/scope_scene.h"
-#include "vision/reprojection.h"
-#include "vision/shaft_contour.h"
+#include "vision/outline/contour.h"
+#include "vision/tags/reprojection.h"
 
 namespace flextip {
 namespace {
@@ -56,7 +56,7 @@ class Outline : public testing::Test {
  protected:
   static Image Render(const CameraCalibration& camera, const Pose& T_RE,
                       const Eigen::Vector2d& bend, int frame) {
-    return Laparoscope(camera, ScopeCollar(), ScopeOptions(ScopeCamera()))
+    return simulation::Laparoscope(camera, ScopeCollar(), ScopeOptions(ScopeCamera()))
         .Render(BentScopeShaft(T_RE, bend), frame);
   }
   static Pose DrawPose(std::mt19937& random) {
@@ -70,7 +70,7 @@ class Outline : public testing::Test {
 TEST_F(Outline, MakesTheDirectionBetterAndThePositionNoWorse) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
-  const Laparoscope scope(ScopeCamera(), ScopeCollar(), ScopeOptions(ScopeCamera()));
+  const simulation::Laparoscope scope(ScopeCamera(), ScopeCollar(), ScopeOptions(ScopeCamera()));
   TipOutline outline({ScopeCamera()}, ScopeTube(), RingLight());
   Vector6 sd;
   sd << 0.006, 0.006, 0.006, 6e-5, 6e-5, 3e-4;
@@ -171,9 +171,9 @@ TEST_F(Outline, TheBendsStepFollowsThePose) {
 
 TEST_F(Outline, AloneFindsTheTipWhileTheTagsAreCovered) {
   std::mt19937 random(6);
-  LaparoscopeOptions covered = ScopeOptions(ScopeCamera());
+  simulation::LaparoscopeOptions covered = ScopeOptions(ScopeCamera());
   covered.occluders = {CoverOfTheCollar(0, 1000)};
-  const Laparoscope scope(ScopeCamera(), ScopeCollar(), covered);
+  const simulation::Laparoscope scope(ScopeCamera(), ScopeCollar(), covered);
   TipOutline outline({ScopeCamera()}, ScopeTube(), RingLight());
   Vector6 sd;  // some 7 px
   sd << 0.02, 0.02, 0.02, 0.0012, 0.0012, 0.0012;

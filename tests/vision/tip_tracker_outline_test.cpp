@@ -5,8 +5,8 @@
 
 #include "tests/vision/outline_scene.h"
 #include "tests/vision/scope_scene.h"
-#include "vision/tip_outline.h"
-#include "vision/tip_tracker.h"
+#include "vision/outline/tip_outline.h"
+#include "vision/tracking/tip_tracker.h"
 
 namespace flextip {
 namespace {
@@ -23,9 +23,9 @@ Pose PoseAt(int i) {
 }
 
 std::vector<Image> Pictures() {
-  LaparoscopeOptions options = ScopeOptions(ScopeCamera());
+  simulation::LaparoscopeOptions options = ScopeOptions(ScopeCamera());
   options.occluders = {CoverOfTheCollar(kFirstCovered, kFirstBack - 1)};
-  const Laparoscope scope(ScopeCamera(), ScopeCollar(), options);
+  const simulation::Laparoscope scope(ScopeCamera(), ScopeCollar(), options);
   std::vector<Image> pictures;
   for (int i = 0; i < kFrames; ++i) {
     pictures.push_back(scope.Render(BentScopeShaft(PoseAt(i), {10, -15}), i));
@@ -85,9 +85,9 @@ TEST_F(TipTrackerOutline, CarriesATipWhoseTagsAreCovered) {
 // Sixty frames of a tip that stands still say no more of its depth than one: the errors (width,
 // light) are the same in all. Taken as independent they would make it eight times surer.
 TEST_F(TipTrackerOutline, DoesNotGrowSureByRepetition) {
-  LaparoscopeOptions options = ScopeOptions(ScopeCamera());
+  simulation::LaparoscopeOptions options = ScopeOptions(ScopeCamera());
   options.occluders = {CoverOfTheCollar(2, 1000)};
-  const Laparoscope scope(ScopeCamera(), ScopeCollar(), options);
+  const simulation::Laparoscope scope(ScopeCamera(), ScopeCollar(), options);
   std::vector<Image> pictures;
   for (int i = 0; i < 10; ++i)
     pictures.push_back(scope.Render(BentScopeShaft(PoseAt(8), {10, -15}), i));

@@ -1,5 +1,5 @@
 // The tracker on pictures and corners with known truth.
-#include "vision/tip_tracker.h"
+#include "vision/tracking/tip_tracker.h"
 
 #include <gtest/gtest.h>
 

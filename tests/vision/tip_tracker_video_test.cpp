@@ -7,8 +7,8 @@
 
 #include "core/rotation.h"
 #include "tests/vision/scope_scene.h"
-#include "vision/reprojection.h"
-#include "vision/tip_tracker.h"
+#include "vision/tags/reprojection.h"
+#include "vision/tracking/tip_tracker.h"
 
 namespace flextip {
 namespace {
@@ -24,7 +24,7 @@ class Scene {
   Image At(const Pose& T_RE, int frame) const { return scope_.Render(ScopeShaft(T_RE), frame); }
 
  private:
-  Laparoscope scope_;
+  simulation::Laparoscope scope_;
 };
 
 double Error_mm(const TipTrack& track, const Pose& T_RE) {

@@ -1,5 +1,5 @@
 // The tube's outline against its surface, point by point, and its derivatives against differences.
-#include "vision/tube_geometry.h"
+#include "vision/outline/tube_geometry.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "core/rotation.h"
 #include "tests/simulation/render_test_scene.h"
-#include "vision/reprojection.h"
+#include "vision/tags/reprojection.h"
 
 namespace flextip {
 namespace {
@@ -184,11 +184,12 @@ TEST(TubeOutlineCollar, KnowsTheBodyFromTheTags) {
     collar.family = family;
     const TubeShape tube = TubeOf(collar, 0.005, true);
     EXPECT_EQ(tube.diameter_m, 0.005);
-    const Laparoscope with(camera, collar, render_test::PlainOptions());
-    const Laparoscope without(camera, {}, render_test::PlainOptions());
+    const simulation::Laparoscope with(camera, collar, render_test::PlainOptions());
+    const simulation::Laparoscope without(camera, {}, render_test::PlainOptions());
     const Pose T_CE{ExpRotation({0, M_PI + 0.3, 0}), {-0.02, 0.002, 0.06}};
-    const ShaftCurve shaft = render_test::ArcShaft(T_CE, 0.15, 1e3, 0.005);
-    const LinearImage a = with.RenderLinear(shaft, 0), b = without.RenderLinear(shaft, 0);
+    const simulation::ShaftCurve shaft = render_test::ArcShaft(T_CE, 0.15, 1e3, 0.005);
+    const simulation::LinearImage a = with.RenderLinear(shaft, 0),
+                                  b = without.RenderLinear(shaft, 0);
     std::vector<Vector2d> collar_px;
     for (int y = 0; y < a.height_px; ++y) {
       for (int x = 0; x < a.width_px; ++x) {

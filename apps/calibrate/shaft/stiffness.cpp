@@ -1,0 +1,213 @@
+// flextip calibrate stiffness: how stiff the shaft is, from known loads on the tip.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/calibrate/calibrate.h"
+#include "apps/calibrate/shaft/verdict.h"
+#include "apps/common/output.h"
+#include "apps/common/recording_input.h"
+#include "calibration/shaft/stiffness_calibration.h"
+#include "recording/text/csv.h"
+#include "recording/text/text.h"
+#include "report/figure.h"
+#include "report/pages.h"
+
+namespace flextip {
+namespace {
+
+struct Options {
+  RecordingInput input;
+  StiffnessCalibrationOptions stiffness;
+  std::string model = "auto";
+  bool force = false;
+};
+
+nlohmann::json ModelJson(const StiffnessModel& m) {
+  return {{"converged", m.converged},
+          {"bending_stiffness_Nm2", m.stiffness_Nm2},
+          {"bending_stiffness_sd_Nm2", m.stiffness_sd_Nm2},
+          {"taper", m.taper},
+          {"taper_sd", m.taper_sd},
+          {"chi2_per_dof", m.chi2_per_dof},
+          {"tip_rms_m", m.tip_rms_m},
+          {"heldout_tip_rms_m", m.heldout_tip_rms_m},
+          {"heldout_chi2_per_measurement", m.heldout_chi2}};
+}
+
+nlohmann::json Summary(const StiffnessCalibration& result) {
+  const TimeNs start_ns = result.holds.front().hold.first_ns;
+  int used = 0;
+  nlohmann::json rejected = nlohmann::json::array();
+  for (const auto& h : result.holds) {
+    used += h.used;
+    if (!h.used) rejected.push_back({{"hold", SpanOf(h.hold, start_ns)}, {"reason", h.reason}});
+  }
+  nlohmann::json unobservable = nlohmann::json::array();
+  for (const auto& u : result.found.unobservable) {
+    unobservable.push_back({{"parameter", u.parameter}, {"reason", u.reason}});
+  }
+  nlohmann::json bins = nlohmann::json::array();
+  for (const auto& bin : result.by_insertion) {
+    bins.push_back({{"inserted_m", bin.inserted_m},
+                    {"holds", bin.holds},
+                    {"tip_rms_m", bin.tip_rms_m},
+                    {"along_load_m_N", bin.along_load_m_N}});
+  }
+  const auto& port = result.port_shift_m;
+  nlohmann::json models = nlohmann::json::object();
+  if (result.constant) models["constant"] = ModelJson(*result.constant);
+  if (result.tapered) models["taper"] = ModelJson(*result.tapered);
+  return {{"status", Name(result.status)},
+          {"model", result.taper_chosen ? "taper" : "constant"},
+          {"models", models},
+          {"holds_used", used},
+          {"holds_rejected", rejected},
+          {"unobservable", unobservable},
+          {"largest_bend_m", result.bend_m},
+          {"port_shift_m", {port.x(), port.y(), port.z()}},
+          {"by_insertion", bins},
+          {"advice", result.advice}};
+}
+
+std::string ResidualsText(const StiffnessCalibration& result) {
+  const TimeNs start_ns = result.holds.front().hold.first_ns;
+  CsvWriter csv({"t_s", "samples []", "f_x [N]", "f_y [N]", "f_z [N]", "s_port [m]", "e_x [m]",
+                 "e_y [m]", "e_z [m]", "chi2 []", "measurements []", "used []", "reason"});
+  for (const auto& h : result.holds) {
+    csv.Add(1e-9 * static_cast<double>(h.hold.first_ns - start_ns));
+    csv.Add(static_cast<double>(h.hold.samples));
+    for (const double f : h.hold.f_tip_N) csv.Add(f);
+    csv.Add(h.s_port_m);
+    for (const double e : h.place_residual_m) csv.Add(e);
+    csv.Add(h.chi2).Add(static_cast<double>(h.measurements)).Add(h.used ? 1.0 : 0.0);
+    csv.Add("\"" + h.reason + "\"");
+    csv.EndRow();
+  }
+  return csv.text();
+}
+
+report::Figure InsertionFigure(const StiffnessCalibration& result) {
+  report::Figure figure;
+  figure.name = "by-insertion";
+  figure.title = "What is left, by insertion";
+  figure.caption =
+      "Tip measured less predicted: RMS, and per newton along the load. A level line per newton is "
+      "a compliance that does not depend on depth, one that rises is stiffness or the port.";
+  figure.x_label = "inserted (mm)";
+  figure.y_label = "residual (mm, mm/N)";
+  report::FigureTrace rms{.name = "RMS (mm)"}, along{.name = "along the load (mm/N)"};
+  for (const auto& bin : result.by_insertion) {
+    rms.x.push_back(1e3 * bin.inserted_m);
+    rms.y.push_back(1e3 * bin.tip_rms_m);
+    along.x.push_back(1e3 * bin.inserted_m);
+    along.y.push_back(1e3 * bin.along_load_m_N);
+  }
+  figure.traces = {rms, along};
+  return figure;
+}
+
+/// The load's part of each hold's residual, over the load.
+report::Figure LoadFigure(const StiffnessCalibration& result) {
+  report::Figure figure;
+  figure.name = "by-load";
+  figure.title = "What is left, by load";
+  figure.caption = "Tip measured less predicted along the load, of each hold used.";
+  figure.x_label = "load (N)";
+  figure.y_label = "residual along the load (mm)";
+  report::FigureTrace trace{.kind = report::FigureTrace::Kind::kPoints};
+  for (const auto& h : result.holds) {
+    const double force_N = h.hold.f_tip_N.norm();
+    if (!h.used || force_N == 0) continue;
+    trace.x.push_back(force_N);
+    trace.y.push_back(1e3 * h.place_residual_m.dot(h.hold.f_tip_N) / force_N);
+  }
+  figure.traces = {trace};
+  return figure;
+}
+
+void Warn(const StiffnessCalibration& result, OutputFolder& output) {
+  const TimeNs start_ns = result.holds.front().hold.first_ns;
+  for (const auto& h : result.holds) {
+    if (!h.used) output.Warn(SpanOf(h.hold, start_ns) + ": " + h.reason);
+  }
+  for (const auto& u : result.found.unobservable) output.Warn(u.parameter + ": " + u.reason);
+  output.Warn(StiffnessDoubts(result));
+}
+
+void Print(const StiffnessCalibration& result) {
+  const auto& m = result.chosen();
+  fmt::print("{}: E I {:.5g} +- {:.2g} Nm2", Name(result.status), m.stiffness_Nm2,
+             m.stiffness_sd_Nm2);
+  if (result.taper_chosen) fmt::print(", taper {:.3f} +- {:.3f}", m.taper, m.taper_sd);
+  fmt::print("; tip {:.3f} mm RMS ({:.3f} mm held out)\n", 1e3 * m.tip_rms_m,
+             1e3 * m.heldout_tip_rms_m);
+}
+
+void Run(Options options, bool quiet) {
+  static const std::map<std::string, StiffnessChoice> choices{
+      {"auto", StiffnessChoice::kByHeldoutError},
+      {"constant", StiffnessChoice::kConstant},
+      {"taper", StiffnessChoice::kTaper}};
+  options.stiffness.choice = choices.at(options.model);
+  const InputRead read = ReadInput(options.input);
+  OutputFolder output(options.input.out, "calibrate stiffness",
+                      {.force = options.force, .inputs = options.input.Files()});
+  output.Warn(read.warnings);
+  const StiffnessCalibration result =
+      CalibrateStiffness(read.recording, options.input.recording.string(), options.stiffness);
+  Warn(result, output);
+  WriteCalibration(output.folder() / "calibration.yaml", result.found);
+  WriteTextFile(output.folder() / "residuals.csv", ResidualsText(result));
+  report::WriteFigures(output.folder() / "figures.json",
+                       {InsertionFigure(result), LoadFigure(result)});
+  nlohmann::json summary = Summary(result);
+  summary["verdict"] = VerdictJson(StiffnessVerdict(result));
+  if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
+  output.WriteSummary(summary);
+  report::WriteCalibrateReport(output.folder());
+  output.Commit();
+  if (quiet) return;
+  Print(result);
+  for (const std::string& warning : output.warnings()) fmt::print("beware: {}\n", warning);
+  if (!result.advice.empty()) fmt::print("next, this would help most: {}\n", result.advice);
+  fmt::print("{}\n", (options.input.out / "calibration.yaml").string());
+}
+
+}  // namespace
+
+void AddCalibrateStiffness(CLI::App& calibrate, AppContext& context) {
+  auto* command = calibrate.add_subcommand(
+      "stiffness", "The shaft's bending stiffness and its taper from known loads");
+  auto options = std::make_shared<Options>();
+  AddRecordingInput(*command, options->input);
+  command
+      ->add_option("--model", options->model,
+                   "constant, taper, or auto: whichever predicts better what it was not fitted to")
+      ->check(CLI::IsMember({"auto", "constant", "taper"}))
+      ->capture_default_str();
+  command
+      ->add_option("--port-noise", options->stiffness.port_noise_m,
+                   "How well the port is registered: standard deviation per axis (m)")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--most-holds", options->stiffness.most_holds,
+                   "Of longer recordings every n-th load is taken")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_flag("--force", options->force, "Replace the folder of an earlier run");
+  command->footer(
+      "RECORDING has the loads in load0, wrist0, and the tip in vision0 or em0.\n"
+      "Example:\n  flextip calibrate stiffness masses -o stiffness\n"
+      "  flextip estimate recording --calibration stiffness/calibration.yaml -o estimate\n");
+  OnRun(*command, context, [options, &context] { Run(*options, context.quiet); });
+}
+
+}  // namespace flextip

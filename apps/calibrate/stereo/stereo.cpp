@@ -1,0 +1,110 @@
+// flextip calibrate stereo: two cameras fixed to each other, from pictures of a board.
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/calibrate/calibrate.h"
+#include "apps/calibrate/camera/board_pictures.h"
+#include "apps/calibrate/camera/lens_options.h"
+#include "apps/calibrate/stereo/output.h"
+#include "apps/common/output.h"
+#include "core/error.h"
+#include "recording/cameras/camera_file.h"
+
+namespace flextip {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CalibrateStereoOptions {
+  std::vector<fs::path> left, right;
+  LensOptions lens;
+  std::vector<fs::path> corners;  // none, or of the left and the right camera
+  fs::path pose;
+  bool force = false;
+  fs::path out;
+};
+
+void RequireAsMany(std::size_t left, std::size_t right) {
+  if (left == right) return;
+  throw InputError(
+      fmt::format("calibrate stereo: {} left and {} right pictures; they are paired in their order",
+                  left, right));
+}
+
+// What both cameras saw, picture by picture in their order.
+std::vector<StereoPair> Pair(std::array<CornersFile, 2> eyes) {
+  RequireAsMany(eyes[0].views.size(), eyes[1].views.size());
+  std::vector<StereoPair> pairs;
+  for (std::size_t i = 0; i < eyes[0].views.size(); ++i) {
+    pairs.push_back({{std::move(eyes[0].views[i]), std::move(eyes[1].views[i])}});
+  }
+  return pairs;
+}
+
+void RunCalibrateStereo(const CalibrateStereoOptions& options, bool quiet) {
+  // Named on neither side: all that the corners' files have.
+  if (options.corners.empty()) RequireAsMany(options.left.size(), options.right.size());
+  Pose T_RC0;
+  if (!options.pose.empty()) T_RC0 = ReadCameraCalibration(options.pose).T_RC;
+  std::vector<fs::path> inputs = options.left;
+  inputs.insert(inputs.end(), options.right.begin(), options.right.end());
+  OutputFolder output(options.out, "calibrate stereo", {.force = options.force, .inputs = inputs});
+  std::array<CornersFile, 2> eyes;
+  std::array<Eigen::Vector2i, 2> sizes_px;
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const fs::path corners = options.corners.empty() ? fs::path() : options.corners[eye];
+    const auto& images = eye == 0 ? options.left : options.right;
+    eyes[eye] = CornersOf({images, options.lens.board, corners}, quiet);
+    sizes_px[eye] = {eyes[eye].width_px, eyes[eye].height_px};
+  }
+  StereoOptions calibration;
+  calibration.camera = options.lens.Calibration();
+  const StereoResult result = CalibrateStereo(Pair(std::move(eyes)), sizes_px,
+                                              ParseBoardSpec(options.lens.board), calibration);
+  if (!result.IsUsable()) throw WorkError(fmt::format("calibrate stereo: {}", result.message));
+  WriteStereoResults(output, result, options.lens.board, T_RC0);
+  if (quiet) return;
+  fmt::print("{} pairs and {} single views used, reprojection error {:.4f} px RMS\n",
+             result.pairs_used, result.single_views_used, result.solution.RmsPx());
+  if (result.heldout) {
+    fmt::print("held-out pairs: {:.4f} px, rows {:.4f} px, lengths {:.4f} mm RMS\n",
+               result.heldout->rms_px, result.heldout->epipolar_rms_px,
+               1e3 * result.heldout->length_rms_m);
+  }
+  fmt::print("baseline {:.4f} mm, standard deviation {:.4f} mm\n", 1e3 * result.baseline.length_m,
+             1e3 * result.baseline.sd_m);
+}
+
+}  // namespace
+
+void AddCalibrateStereo(CLI::App& calibrate, AppContext& context) {
+  auto* command = calibrate.add_subcommand("stereo", "Two cameras fixed to each other");
+  auto options = std::make_shared<CalibrateStereoOptions>();
+  command->add_option("left", options->left, "Pictures of camera 0, in order")->type_name("IMAGE");
+  command->add_option("--right", options->right, "Of camera 1, at the same moments")
+      ->type_name("IMAGE");
+  AddLensOptions(*command, options->lens);
+  command
+      ->add_option("--corners", options->corners,
+                   "Detected corners of the left and of the right camera: read where the file "
+                   "exists, else written")
+      ->expected(2)
+      ->type_name("LEFT RIGHT");
+  command->add_option("--pose", options->pose, "A sensor.yaml with camera 0's T_RC; else it is R")
+      ->type_name("FILE");
+  command->add_option("-o,--output", options->out, "Folder for the results")->required();
+  command->add_flag("--force", options->force, "Replace the folder of an earlier run");
+  command->footer(
+      "Example:\n"
+      "  flextip calibrate stereo left*.jpg --right right*.jpg --board chessboard:9x6:0.025 -o "
+      "stereo\n");
+  OnRun(*command, context, [options, &context] { RunCalibrateStereo(*options, context.quiet); });
+}
+
+}  // namespace flextip

@@ -1,0 +1,161 @@
+#include "apps/common/output.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+
+#include "core/error.h"
+#include "core/version.h"
+
+namespace flextip {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Absolute, links followed, without a slash at the end.
+fs::path Normal(const fs::path& path) {
+  std::error_code error;
+  const fs::path absolute = fs::weakly_canonical(fs::absolute(path), error);
+  const fs::path normal = (error ? fs::absolute(path) : absolute).lexically_normal();
+  return normal.filename().empty() ? normal.parent_path() : normal;
+}
+
+bool IsInside(const fs::path& path, const fs::path& folder) {
+  const fs::path p = Normal(path);
+  return std::mismatch(folder.begin(), folder.end(), p.begin(), p.end()).first == folder.end();
+}
+
+bool HoldsSomething(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return false;
+  return !fs::is_empty(folder, error) || error;
+}
+
+bool HasNoNumber(const nlohmann::json& json) {
+  if (json.is_number_float()) return !std::isfinite(json.get<double>());
+  if (!json.is_structured()) return false;
+  return std::any_of(json.begin(), json.end(), HasNoNumber);
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
+                           const OutputOptions& options)
+    : command_(command), force_(options.force) {
+  if (name.empty()) throw InputError("the output folder has no name");
+  name_ = Normal(name);
+  std::error_code error;
+  if (fs::exists(name_, error) && !fs::is_directory(name_, error)) {
+    throw InputError::At(name.string(), 0, "is a file, expected a folder for the output");
+  }
+  if (HoldsSomething(name_)) {
+    if (!force_) {
+      throw InputError::At(name.string(), 0, "exists and is not empty; --force replaces it");
+    }
+    RefuseToReplace(options.inputs);
+  }
+  folder_ = name_;
+  folder_ += fmt::format(".partial-{}", getpid());
+  resumed_ = options.resume && TakeOver();
+  if (resumed_) return;
+  fs::remove_all(folder_, error);
+  fs::create_directories(folder_, error);
+  if (error) {
+    throw InputError::At(name.string(), 0,
+                         fmt::format("cannot make a folder there: {}", error.message()));
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  if (!committed_ && !keep_) fs::remove_all(folder_, ignored);
+}
+
+// The newest NAME.partial-PID whose program runs no more becomes folder_.
+bool OutputFolder::TakeOver() const {
+  const std::string start = name_.filename().string() + ".partial-";
+  fs::path newest;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(name_.parent_path(), error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(start) || !entry.is_directory(error)) continue;
+    const pid_t pid = std::atoi(name.c_str() + start.size());
+    if (pid <= 0 || (pid != getpid() && kill(pid, 0) == 0)) continue;
+    if (newest.empty() || entry.last_write_time(error) > fs::last_write_time(newest, error)) {
+      newest = entry.path();
+    }
+  }
+  if (newest.empty()) return false;
+  if (newest != folder_) fs::rename(newest, folder_, error);
+  return !error;
+}
+
+void OutputFolder::RefuseToReplace(const std::vector<fs::path>& inputs) const {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError::At(name_.string(), 0, fmt::format("not replaced: {}", why));
+  };
+  for (const auto& input : inputs) {
+    if (IsInside(input, name_)) refuse(fmt::format("it holds the input {}", input.string()));
+  }
+  if (IsInside(fs::current_path(), name_)) refuse("it holds the working folder");
+  const char* home = std::getenv("HOME");
+  if (home && *home && IsInside(home, name_)) refuse("it holds the home folder");
+  if (fs::exists(name_ / "recording.yaml") && !fs::exists(name_ / "summary.json")) {
+    refuse("it holds a recording that was not made by this program");
+  }
+}
+
+void OutputFolder::WriteSummary(nlohmann::json results) const {
+  if (results.is_null()) results = nlohmann::json::object();
+  assert(results.is_object());
+  if (HasNoNumber(results)) throw WorkError("summary.json would hold a NaN or infinite value");
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+  results["command"] = command_;
+  results["version"] = kVersion;
+  results["seconds"] = seconds.count();
+  auto& warnings = results["warnings"];
+  if (!warnings.is_array()) warnings = nlohmann::json::array();
+  for (const auto& warning : warnings_) warnings.push_back(warning);
+  std::ofstream out(folder_ / "summary.json");
+  // File names may hold bytes that are not UTF-8: they are replaced, not a reason to fail.
+  out << results.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  out.close();
+  if (!out)
+    throw WorkError(fmt::format("{}: cannot be written", (folder_ / "summary.json").string()));
+}
+
+void OutputFolder::Commit() {
+  assert(!committed_);
+  const auto move = [&](const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    fs::rename(from, to, error);
+    if (!error) return;
+    throw WorkError(
+        fmt::format("{}: the output could not be put there: {}", name_.string(), error.message()));
+  };
+  if (!HoldsSomething(name_) || !force_) {
+    move(folder_, name_);  // replaces an empty folder, and fails where something is in it by now
+  } else {
+    fs::path old = name_;
+    old += fmt::format(".old-{}", getpid());
+    move(name_, old);
+    try {
+      move(folder_, name_);
+    } catch (const WorkError&) {
+      std::error_code ignored;
+      fs::rename(old, name_, ignored);
+      throw;
+    }
+    std::error_code ignored;
+    fs::remove_all(old, ignored);
+  }
+  folder_ = name_;
+  committed_ = true;
+}
+
+}  // namespace flextip

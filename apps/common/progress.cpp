@@ -1,0 +1,46 @@
+#include "apps/common/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace flextip {
+
+Progress::Progress(std::string label, std::size_t total, bool quiet, std::string rate_unit)
+    : label_(std::move(label)),
+      rate_unit_(std::move(rate_unit)),
+      total_(total),
+      visible_(!quiet && isatty(fileno(stderr)) == 1),
+      start_(Clock::now()) {
+  Update(0);
+}
+
+Progress::~Progress() {
+  if (visible_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::Update(std::size_t done, const std::string& remark) {
+  const auto now = Clock::now();
+  if (!visible_ || (done > 0 && now - last_drawn_ < std::chrono::milliseconds(100))) return;
+  last_drawn_ = now;
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  std::string line = fmt::format("{} {}", label_, done);
+  if (total_ > 0) {
+    constexpr std::size_t kWidth = 32;
+    done = std::min(done, total_);
+    const std::size_t filled = kWidth * done / total_;
+    line = fmt::format("{} [{}{}] {:3} %", label_, std::string(filled, '#'),
+                       std::string(kWidth - filled, ' '), 100 * done / total_);
+  }
+  line += fmt::format(" {:.0f} s", seconds);
+  if (!rate_unit_.empty() && seconds > 0) {
+    line += fmt::format(" {:.1f} {}", static_cast<double>(done) / seconds, rate_unit_);
+  }
+  fmt::print(stderr, "\r{} {}\033[K", line, remark);
+  std::fflush(stderr);
+}
+
+}  // namespace flextip

@@ -1,0 +1,47 @@
+#include "apps/common/recording_input.h"
+
+#include <fmt/format.h>
+
+#include "recording/streams/sensor_streams.h"
+
+namespace flextip {
+
+void AddRecordingInput(CLI::App& command, RecordingInput& input) {
+  command.add_option("recording", input.recording, "Folder of the recording")
+      ->required()
+      ->type_name("RECORDING");
+  command.add_option("-o,--output", input.out, "Folder for the results")
+      ->required()
+      ->type_name("OUT");
+  command.add_option("--tracked", input.tracked,
+                     "Take the tip from this result of flextip track instead of vision0");
+  AddCalibrationOption(command, input.calibrations);
+}
+
+std::vector<std::filesystem::path> RecordingInput::Files() const {
+  std::vector<std::filesystem::path> files = calibrations;
+  files.push_back(recording);
+  if (!tracked.empty()) files.push_back(tracked);
+  return files;
+}
+
+InputRead ReadInput(const RecordingInput& input) {
+  InputRead read{ReadRecording(input.recording, {.check_frames = false}), {}};
+  Recording& recording = read.recording;
+  if (!input.tracked.empty()) recording.vision0.reset();
+  read.calibrations = UseCalibrations(input.calibrations, recording, read.warnings);
+  if (input.tracked.empty()) return read;
+  ReadLog log;
+  recording.vision0 = ReadVision(input.tracked / "vision0", log);
+  read.warnings.insert(read.warnings.end(), log.warnings.begin(), log.warnings.end());
+  for (const auto& used : read.calibrations) {
+    StateRegistrationNoise(used.calibration, *recording.vision0);
+  }
+  for (const std::string& name : NotTrackedWith(input.tracked, read.calibrations)) {
+    read.warnings.push_back(
+        fmt::format("{}: the tips were tracked without {}", input.tracked.string(), name));
+  }
+  return read;
+}
+
+}  // namespace flextip

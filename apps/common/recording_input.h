@@ -1,0 +1,33 @@
+// What commands that work on a whole recording are given, and how they read it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "apps/common/calibration_input.h"
+#include "recording/recording_reader.h"
+
+namespace flextip {
+
+struct RecordingInput {
+  std::filesystem::path recording, out;
+  std::filesystem::path tracked;  ///< a result of flextip track; empty: the recording's own tips
+  CalibrationFiles calibrations;
+
+  /// Everything that is read, for OutputFolder.
+  std::vector<std::filesystem::path> Files() const;
+};
+
+struct InputRead : ReadResult {
+  std::vector<UsedCalibration> calibrations;
+};
+
+/// RECORDING, --output, --tracked and --calibration. `input` must outlive the parsing.
+void AddRecordingInput(CLI::App& command, RecordingInput& input);
+
+/// The recording without a look at its frames, vision0 replaced by the tracked one where that was
+/// asked for, and with the calibrations in it; tracked tips are taken as they are. Throws
+/// InputError.
+InputRead ReadInput(const RecordingInput& input);
+
+}  // namespace flextip

@@ -1,0 +1,40 @@
+// What `flextip map` writes of a map: rows of map.csv and figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/figure.h"
+#include "workspace/map_scenario.h"
+
+namespace flextip {
+
+/// Worst cases over a map, one value a point, NaN where there is none; empty: not asked for.
+struct WorstValues {
+  std::vector<double> norm;
+  std::vector<double> angle_rad;
+};
+
+template <int N>
+std::string MapTableHeader(bool with_worst);
+/// One row for every point that the tip can reach. SI units, angles in degrees as named; a measure
+/// that is not there is left empty.
+template <int N>
+std::string MapTableRows(const std::string& slice, const WorkspaceMap<N>& map,
+                         const WorstValues& worst);
+
+/// ||G||, bound, angle and the two directions of a slice. `prefix` begins the names.
+template <int N>
+std::vector<report::Figure> MapFigures(const MapSetup<N>& setup, const std::string& slice,
+                                       const std::string& prefix, const WorkspaceMap<N>& map);
+/// The worst cases and, where there is one, the part they were asked for.
+template <int N>
+std::vector<report::Figure> WorstFigures(const MapSetup<N>& setup, const ToleranceTask<N>& task,
+                                         const std::string& slice, const std::string& prefix,
+                                         const WorkspaceMap<N>& map, const WorstValues& worst);
+/// Around the paths.
+template <int N>
+report::Figure PlanFigure(const WorkspaceMap<N>& map, const Path& direct, const Path& planned,
+                          const Followed<N>& by_direct, const Followed<N>& by_planned);
+
+}  // namespace flextip

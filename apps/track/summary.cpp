@@ -1,0 +1,54 @@
+#include "apps/track/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace flextip {
+namespace {
+
+double Rms(double squares, long count) { return std::sqrt(squares / static_cast<double>(count)); }
+
+void AddScores(const TrackSums& sums, nlohmann::json& summary) {
+  const TipScore& ok = sums.score;
+  const TipScore& predicted = sums.score_predicted;
+  summary["scored_frames"] = ok.frames;
+  summary["scored_frames_predicted"] = predicted.frames;
+  if (ok.frames > 0) {
+    summary["tip_rms_error_m"] = ok.RmsError();
+    summary["tip_max_error_m"] = ok.max_error_m;
+    summary["tip_rms_error_across_m"] = ok.RmsAcross();
+    summary["tip_rms_error_depth_m"] = ok.RmsDepth();
+    summary["tip_mean_nees"] = ok.MeanNees();
+    summary["tip_share_inside_95"] = ok.ShareInside();
+  }
+  if (predicted.frames > 0) {
+    summary["predicted_tip_rms_error_m"] = predicted.RmsError();
+    summary["predicted_tip_max_error_m"] = predicted.max_error_m;
+    summary["predicted_tip_mean_nees"] = predicted.MeanNees();
+    summary["predicted_tip_share_inside_95"] = predicted.ShareInside();
+  }
+}
+
+}  // namespace
+
+nlohmann::json TrackSummary(const TrackSums& sums, int cameras, bool scored) {
+  const auto frames = static_cast<double>(sums.frames);
+  nlohmann::json summary = {{"frames", sums.frames},
+                            {"ok", sums.ok},
+                            {"predicted", sums.predicted},
+                            {"lost", sums.lost},
+                            {"frames_by_pixels", sums.by_pixels},
+                            {"frames_by_corners", sums.by_corners},
+                            {"cameras", cameras},
+                            {"frames_per_second", frames / std::max(sums.seconds, 1e-9)},
+                            {"tags_per_frame", static_cast<double>(sums.tags) / frames}};
+  if (sums.by_corners > 0) {
+    summary["rms_reprojection_error_px"] = Rms(sums.squared_rms_px, sums.by_corners);
+  }
+  if (sums.by_pixels > 0) summary["noise_grey"] = Rms(sums.squared_noise_grey, sums.by_pixels);
+  if (scored) AddScores(sums, summary);
+  return summary;
+}
+
+}  // namespace flextip

@@ -1,0 +1,160 @@
+// How often the diagnosis is right: hidden recordings of every effect, size and kind, each written
+// to a folder without its label, read again, diagnosed, and compared. Resumes where it stopped.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <fstream>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "bench/diagnosis_matrix/picture.h"
+#include "bench/diagnosis_matrix/run.h"
+#include "bench/diagnosis_matrix/summary.h"
+#include "bench/tool.h"
+#include "core/error.h"
+#include "recording/text/text.h"
+
+namespace flextip {
+namespace {
+
+struct Arguments {
+  MatrixPlan plan;
+  int jobs = 1;
+  bool summarize = false;
+  std::filesystem::path out;
+};
+
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  MatrixPlan& plan = arguments.plan;
+  app.add_option("--parts", plan.parts, fmt::format("{}", fmt::join(MatrixParts(), ",")))
+      ->delimiter(',')
+      ->check(CLI::IsMember(MatrixParts()));
+  app.add_option("--sizes", plan.sizes, "subtle,plain,strong")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"subtle", "plain", "strong"}));
+  app.add_option("--loads", plan.loads, "known,unknown")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"known", "unknown"}));
+  app.add_option("--effects", plan.effects, "Of singles and leave-outs; all where not given")
+      ->delimiter(',')
+      ->check(CLI::IsMember(hidden::CatalogueEffects()));
+  app.add_option("--seeds-per-cell", plan.seeds_per_cell, "Recordings for each cell")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--healthy", plan.healthy, "Healthy recordings for each load")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--pairs", plan.pairs, "Random pairs for each load and size")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--first-seed", plan.first_seed, "Another one gives other recordings");
+  app.add_option("--family", plan.family, "Motions: tuning, held_out or any")
+      ->check(CLI::IsMember({"tuning", "held_out", "any"}));
+  app.add_option("--duration", plan.duration_s, "Seconds of each recording")
+      ->check(CLI::Range(1.0, 3600.0));
+  app.add_option("--jobs", arguments.jobs, "Cases at a time")->check(CLI::PositiveNumber);
+  app.add_flag("--summarize", arguments.summarize, "Only read cases.jsonl");
+  app.add_option("-o,--out", arguments.out,
+                 "Folder for cases.jsonl, summary.json, matrix.svg, misses.txt")
+      ->required();
+  app.footer(
+      "Example:\n  flextip_diagnosis_matrix --parts singles,healthy --sizes subtle,plain,strong "
+      "--seeds-per-cell 2 --family held_out -o matrix\n");
+}
+
+/// Appends lines one by one. A line that an interrupted run left half written is cut off first.
+class CaseFile {
+ public:
+  explicit CaseFile(const std::filesystem::path& file) : file_(file) {
+    if (std::filesystem::exists(file)) {
+      const std::string text = ReadTextFile(file);
+      std::filesystem::resize_file(file, text.rfind('\n') + 1);
+    } else {
+      WriteTextFile(file, "");
+    }
+  }
+
+  void Append(const MatrixRecord& record) {
+    const std::lock_guard lock(mutex_);
+    std::ofstream out(file_, std::ios::app);
+    out << JsonLine(record) + "\n" << std::flush;
+    if (!out) throw WorkError(file_.string() + ": cannot be written");
+    fmt::print(
+        "{:>5}  {:<70} {}{}  p {:.3f}  {:.2f} s\n", ++written_, record.key,
+        record.IsRight() && record.error.empty() ? "ok" : "MISS ",
+        record.error.empty() ? (record.IsRight() ? "" : JoinedNames(record.verdict)) : record.error,
+        record.p_truth, record.seconds);
+    std::fflush(stdout);
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::mutex mutex_;
+  int written_ = 0;
+};
+
+std::vector<MatrixCase> NotDoneYet(const MatrixPlan& plan, const std::filesystem::path& file) {
+  std::set<std::string> done;
+  for (const MatrixRecord& r : ReadRecords(file)) done.insert(r.key);
+  std::vector<MatrixCase> cases = PlanMatrix(plan);
+  const std::size_t all = cases.size();
+  std::erase_if(cases, [&](const MatrixCase& one) { return done.contains(one.Key()); });
+  fmt::print("{} cases, {} of them done before\n", all, all - cases.size());
+  return cases;
+}
+
+void RunCases(const std::vector<MatrixCase>& cases, int jobs, CaseFile& file) {
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    try {
+      for (std::size_t i = next++; i < cases.size(); i = next++) {
+        file.Append(RunMatrixCase(cases[i]));
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      failure = std::current_exception();
+      next = cases.size();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 1; i < jobs; ++i) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+void Summarize(const std::filesystem::path& out) {
+  const std::vector<MatrixRecord> records = ReadRecords(out / "cases.jsonl");
+  if (records.empty()) throw InputError((out / "cases.jsonl").string() + ": holds no cases");
+  const auto figures = Figures(records);
+  const auto main = Confusions(records), leave_outs = LeaveOutConfusions(records);
+  auto all = main;
+  all.insert(all.end(), leave_outs.begin(), leave_outs.end());
+  WriteTextFile(out / "summary.json", SummaryJson(figures, all));
+  WriteTextFile(out / "misses.txt", Misses(records));
+  if (!main.empty()) {
+    WriteTextFile(out / "matrix.svg", ConfusionSvg(main, "What was hidden and what was answered"));
+  }
+  if (!leave_outs.empty()) {
+    WriteTextFile(out / "leave_outs.svg",
+                  ConfusionSvg(leave_outs, "With a sensor or the true effect left out"));
+  }
+  fmt::print("{}", FigureTable(figures));
+}
+
+void Run(Arguments& arguments) {
+  if (!arguments.summarize) {
+    std::filesystem::create_directories(arguments.out);
+    CaseFile file(arguments.out / "cases.jsonl");
+    RunCases(NotDoneYet(arguments.plan, arguments.out / "cases.jsonl"), arguments.jobs, file);
+  }
+  Summarize(arguments.out);
+}
+
+}  // namespace
+}  // namespace flextip
+
+int main(int argc, char** argv) {
+  return flextip::RunTool(argc, argv, "How often the diagnosis finds what is hidden",
+                          flextip::AddOptions, flextip::Run);
+}

@@ -1,0 +1,28 @@
+#include "bench/diagnosis_matrix/separable.h"
+
+#include "diagnosis/evidence/generic_basis.h"
+#include "diagnosis/evidence/probabilities.h"
+#include "diagnosis/samples/noise_level.h"
+#include "diagnosis/search/hypothesis_fit.h"
+
+namespace flextip {
+
+Separation MeasureSeparation(TrueModel& truth) {
+  if (!truth.not_shown.empty())
+    return {0.0, diagnosis::Joined(diagnosis::VerdictOf({truth.present, false}, truth.layout))};
+  diagnosis::Replay& replay = truth.replay;
+  if (!replay.Evaluate(Eigen::VectorXd::Zero(truth.layout.Size()))) return {0.0, ""};
+  const diagnosis::SelectionOptions options;
+  const diagnosis::Rows may_miss =
+      diagnosis::MayMiss(diagnosis::ProblemHere(replay, diagnosis::GenericBasis(replay), options),
+                         options.discrepancy, options);
+  if (!truth.StandAtTruth()) return {0.0, ""};
+  replay.SetNoiseScale(diagnosis::NoiseScale(replay));
+  replay.Evaluate(truth.parameters.theta);
+  const diagnosis::LinearProblem problem =
+      diagnosis::MakeLinearProblem(replay, diagnosis::GenericBasis(replay), 1);
+  return NearestRival(WithoutGeneric(problem, diagnosis::GenericSd(problem, may_miss)),
+                      truth.parameters.theta, truth.layout, truth.present);
+}
+
+}  // namespace flextip

@@ -1,0 +1,15 @@
+// Whether hidden effects could be told at all from what else the recording might hold.
+#pragma once
+
+#include "bench/diagnosis_matrix/rival.h"
+#include "bench/diagnosis_matrix/true_model.h"
+
+namespace flextip {
+
+/// Of the one or two effects that are present. The model is linearised about the label's true
+/// parameters of all effects; sensors, motion, load and noise are the recording's. Effects of which
+/// one shows nowhere are not apart from the others by themselves. The rival's name is empty where
+/// the model has no equilibrium.
+Separation MeasureSeparation(TrueModel& truth);
+
+}  // namespace flextip

@@ -1,0 +1,61 @@
+// Which lens model: the one that predicts views it has not seen.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/camera/solution.h"
+
+namespace flextip {
+
+/// A lens model as it stands in cam0/sensor.yaml.
+struct LensModel {
+  Distortion distortion = Distortion::kOpenCv;
+  int terms = 5;
+
+  /// "radial-tangential", "equidistant", "opencv 5", "opencv 8", "opencv 12".
+  std::string Name() const;
+};
+
+/// All models, the simpler ones first.
+const std::vector<LensModel>& AllLensModels();
+
+/// The error of views that were left out: the lens (and warp) from the other views, the view's pose
+/// from its own corners. Fold k of `folds` leaves out every view whose place is k, k + folds, ...
+struct HeldOutError {
+  double rms_px = 0.0;              ///< per corner distance, freed of the pose's six parameters
+  std::vector<double> squared_px2;  ///< of each view: the mean squared distance, likewise
+};
+
+/// Only corners that `solution` uses count. Where its board has a shape of its own (`shape.sd_m`
+/// above 0), that is found anew in each fold. Empty where a fold cannot be solved.
+std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int folds);
+
+/// One model's part in the choice.
+struct LensCandidate {
+  LensModel model;
+  CameraSolution solution;              ///< over the corners that at least one model explains
+  std::optional<HeldOutError> heldout;  ///< of those corners
+  std::string folds;                    ///< FoldsInPicture
+  std::string reason;                   ///< why it cannot be used, or why it was not chosen
+  bool chosen = false;
+};
+
+/// The simplest candidate whose held-out error is not above the least by more than its standard
+/// error (of the views' differences), if there is one that does not fold; `reason` and `chosen` are
+/// filled in. Candidates without an error or with a `reason` are left aside. Empty where none is
+/// left.
+std::optional<std::size_t> ChooseLens(std::vector<LensCandidate>& candidates);
+
+/// Whether the board's warp makes the held-out error smaller by more than its standard error.
+bool WarpHelps(const HeldOutError& flat, const HeldOutError& warped);
+
+/// Whether the board's own shape does, by more than two: it is a parameter for every corner.
+bool ShapeHelps(const HeldOutError& as_described, const HeldOutError& shaped);
+
+/// Why `camera` cannot be used over its whole picture: beyond where the boards were seen its
+/// distortion turns back on itself. Empty where it can.
+std::string FoldsInPicture(const CameraCalibration& camera);
+
+}  // namespace flextip

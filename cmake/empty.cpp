@@ -1,1 +1,0 @@
-// Placeholder for folders without sources yet.

@@ -1,0 +1,43 @@
+// The replay's residuals as a linear problem in all parameters and in the generic terms,
+// compressed to its normal matrix block of time by block of time: from there every hypothesis is
+// weighed without touching a sample again.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "diagnosis/replay/replay.h"
+
+namespace flextip::diagnosis {
+
+/// Sums over samples for z = X x + noise of unit covariance.
+struct NormalSums {
+  Eigen::MatrixXd H;    ///< X^T X
+  Eigen::VectorXd g;    ///< X^T z
+  double c = 0.0;       ///< z^T z
+  double volume = 0.0;  ///< noise that unknown forces take up, to be put back on c (force_volume.h)
+  long rows = 0;
+
+  explicit NormalSums(Eigen::Index size = 0)
+      : H(Eigen::MatrixXd::Zero(size, size)), g(Eigen::VectorXd::Zero(size)) {}
+  void Add(const NormalSums& other, double weight = 1.0);
+};
+
+/// Unknowns: the layout's parameters (zero is the base simulation), then one generic coefficient
+/// for each measured row and basis function, in standard deviations of that row's noise.
+struct LinearProblem {
+  int parameters = 0;
+  std::vector<int> generic_row;    ///< of each generic unknown: the measured row
+  std::vector<NormalSums> blocks;  ///< consecutive stretches of time
+  NormalSums total;
+  /// Root mean square over the samples of what force and wrist noise leave of the residual as it
+  /// stands, per measured row in its standard deviations.
+  Rows residual_size = Rows::Zero();
+
+  int Size() const { return parameters + int(generic_row.size()); }
+};
+
+/// `basis` has one row a sample (generic_basis.h); empty: no generic terms.
+LinearProblem MakeLinearProblem(const Replay& replay, const Eigen::MatrixXd& basis, int blocks);
+
+}  // namespace flextip::diagnosis

@@ -1,0 +1,43 @@
+// Every effect the diagnosis knows (docs/effects in docs/diagnosis.md), one file each in effects/.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnosis/model/effect.h"
+
+namespace flextip::diagnosis {
+
+std::unique_ptr<Effect> MakeStiffness();
+std::unique_ptr<Effect> MakeLength();
+std::unique_ptr<Effect> MakeSelfWeight();
+std::unique_ptr<Effect> MakePrecurvature();
+std::unique_ptr<Effect> MakePortOffset();
+std::unique_ptr<Effect> MakePortMotion();
+std::unique_ptr<Effect> MakePortCompliance();
+std::unique_ptr<Effect> MakePortFriction();
+std::unique_ptr<Effect> MakePortMoment();
+std::unique_ptr<Effect> MakeShaftLoad();
+std::unique_ptr<Effect> MakeWristCompliance();
+std::unique_ptr<Effect> MakeTipCompliance();
+std::unique_ptr<Effect> MakeBacklash();
+std::unique_ptr<Effect> MakeEmDistortion();
+std::unique_ptr<Effect> MakeEmLatency();
+std::unique_ptr<Effect> MakeCameraLatency();
+std::unique_ptr<Effect> MakeHandEye();
+std::unique_ptr<Effect> MakeFocalLength();
+std::unique_ptr<Effect> MakeTagOffset();
+std::unique_ptr<Effect> MakeStrainGain();
+std::unique_ptr<Effect> MakeStrainDrift();
+
+using Catalogue = std::vector<std::unique_ptr<Effect>>;
+
+/// The effects that `samples` could show, in the order of docs; those named in `without` are left
+/// out. Fresh objects: some hold what a diagnosis finds on its way (a frequency).
+Catalogue MakeCatalogue(const SampleSet& samples, const std::vector<std::string>& without = {});
+
+/// One effect by its name; null where there is none of that name.
+std::unique_ptr<Effect> MakeEffect(const std::string& name);
+
+}  // namespace flextip::diagnosis

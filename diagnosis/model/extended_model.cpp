@@ -1,0 +1,248 @@
+#include "diagnosis/model/extended_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "diagnosis/model/extended_effect.h"
+#include "recording/text/text.h"
+#include "recording/text/yaml_map.h"
+
+namespace flextip::diagnosis {
+namespace {
+
+constexpr const char* kFormat = "flextip-model";
+constexpr int kVersion = 1;
+
+std::string Numbers(const std::vector<double>& values) {
+  return values.size() == 1 ? YamlNumber(values[0]) : YamlNumbers(values);
+}
+
+/// A section's lines: an effect each, its parameters' values or standard deviations.
+std::string Section(const std::string& name, const std::vector<EffectFit>& effects,
+                    std::vector<double> ReportedParameter::*what) {
+  if (effects.empty()) return name + ": {}\n";
+  std::string text = name + ":\n";
+  for (const EffectFit& fit : effects) {
+    std::string parameters;
+    for (const ReportedParameter& parameter : fit.parameters) {
+      if (!parameters.empty()) parameters += ", ";
+      parameters += parameter.name + ": " + Numbers(parameter.*what);
+    }
+    text += "  " + fit.effect + ": {" + parameters + "}\n";
+  }
+  return text;
+}
+
+std::string Covariance(const ExtendedModel& model) {
+  std::string names;
+  for (const std::string& name : NumberNames(model.effects)) {
+    names += (names.empty() ? "" : ", ") + YamlText(name);
+  }
+  const Eigen::MatrixXd& C = model.covariance;
+  std::vector<double> data;
+  for (Eigen::Index i = 0; i < C.rows(); ++i)
+    for (Eigen::Index j = 0; j < C.cols(); ++j) data.push_back(C(i, j));
+  return fmt::format("covariance:\n  parameters: [{}]\n  data: {}\n", names, YamlNumbers(data));
+}
+
+void RejectUnknownKeys(const YamlMap& map) {
+  ReadLog log;
+  map.WarnUnknown(log);
+  if (log.warnings.empty()) return;
+  const std::string& first = log.warnings.front();
+  throw InputError(first.substr(0, first.rfind(" ignored")));
+}
+
+std::vector<double> ReadValues(const YamlMap& map, const std::string& key, std::size_t count) {
+  if (count == 1 && !map.IsList(key)) return {map.Number(key)};
+  return map.Numbers(key, count);
+}
+
+/// One effect's mapping; standard deviations are read later.
+EffectFit ReadEffect(const YamlMap& section, const std::string& name) {
+  const auto effect = MakeEffectOfModel(name);
+  if (!effect) throw section.Error(name, fmt::format("found effect '{}', which is unknown", name));
+  const YamlMap map = section.Map(name);
+  EffectFit fit{name, ParametersOf(*effect)};
+  std::vector<std::vector<double>> values;
+  for (ReportedParameter& parameter : fit.parameters) {
+    if (map.Has(parameter.name) || !MayBeMissing(name, parameter.name)) {
+      parameter.value = ReadValues(map, parameter.name, parameter.value.size());
+    }
+    values.push_back(parameter.value);
+  }
+  RejectUnknownKeys(map);
+  const std::string wrong = WhatIsWrong(*effect, values);
+  if (!wrong.empty()) throw section.Error(name, wrong);
+  return fit;
+}
+
+std::vector<EffectFit> ReadEffects(const YamlMap& top, const std::string& key) {
+  const YamlMap section = top.Map(key);
+  std::vector<EffectFit> effects;
+  for (const std::string& name : section.Keys()) effects.push_back(ReadEffect(section, name));
+  return effects;
+}
+
+void ReadDeviations(const YamlMap& section, std::vector<EffectFit>& effects) {
+  for (EffectFit& fit : effects) {
+    if (!section.Has(fit.effect)) continue;
+    const YamlMap map = section.Map(fit.effect);
+    for (ReportedParameter& parameter : fit.parameters) {
+      if (!map.Has(parameter.name) && MayBeMissing(fit.effect, parameter.name)) {
+        parameter.sd.assign(parameter.value.size(), 0.0);
+        continue;
+      }
+      parameter.sd = ReadValues(map, parameter.name, parameter.value.size());
+      for (const double sd : parameter.sd) {
+        if (sd < 0) throw map.Error(parameter.name, fmt::format("found {}, expected >= 0", sd));
+      }
+    }
+    RejectUnknownKeys(map);
+  }
+  RejectUnknownKeys(section);
+}
+
+/// Whether the covariance of `effects` may have rows of these names: all, or all but those of
+/// parameters that may be missing.
+bool AreRows(const std::vector<std::string>& found, const std::vector<EffectFit>& effects) {
+  std::vector<EffectFit> least = effects;
+  for (EffectFit& fit : least) {
+    std::erase_if(fit.parameters, [&](const ReportedParameter& parameter) {
+      return MayBeMissing(fit.effect, parameter.name);
+    });
+  }
+  const auto same = [&](const std::vector<std::string>& names) {
+    return std::is_permutation(names.begin(), names.end(), found.begin(), found.end());
+  };
+  return same(NumberNames(effects)) || same(NumberNames(least));
+}
+
+/// In the order of `effects`, whatever the file's; rows that are missing are zero.
+Eigen::MatrixXd ReadCovariance(const YamlMap& map, const std::vector<EffectFit>& effects) {
+  const auto names = NumberNames(effects), found = map.Texts("parameters");
+  if (!AreRows(found, effects)) {
+    throw map.Error("parameters", fmt::format("found [{}], expected [{}]", fmt::join(found, ", "),
+                                              fmt::join(names, ", ")));
+  }
+  const std::size_t n = found.size();
+  const std::vector<double> data = map.Numbers("data");
+  RejectUnknownKeys(map);
+  if (data.empty()) return {};
+  if (data.size() != n * n) {
+    throw map.Error("data",
+                    fmt::format("found {} numbers, expected {} (or none)", data.size(), n * n));
+  }
+  const auto place = [&](std::size_t i) {
+    return std::find(names.begin(), names.end(), found[i]) - names.begin();
+  };
+  const auto size = static_cast<Eigen::Index>(names.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) covariance(place(i), place(j)) = data[n * i + j];
+  return covariance;
+}
+
+void CheckFormat(const YamlMap& top) {
+  const std::string format = top.Text("format");
+  if (format != kFormat) {
+    throw top.Error("format", fmt::format("found '{}', expected {}", format, kFormat));
+  }
+  const auto version = top.Integer("version");
+  if (version != kVersion) {
+    throw top.Error("version", fmt::format("found {}, expected {}", version, kVersion));
+  }
+}
+
+double Delay(const ExtendedModel& model, const char* effect) {
+  const EffectFit* fit = model.Find(effect);
+  return fit == nullptr ? 0.0 : fit->parameters.at(0).value.at(0);
+}
+
+template <class Samples>
+void MoveBack(Samples& samples, double delay_s) {
+  const auto delay_ns = static_cast<TimeNs>(std::llround(1e9 * delay_s));
+  for (auto& sample : samples) sample.t_ns -= delay_ns;
+}
+
+}  // namespace
+
+const EffectFit* ExtendedModel::Find(const std::string& effect) const {
+  for (const auto* list : {&effects, &within_tolerance})
+    for (const EffectFit& fit : *list)
+      if (fit.effect == effect) return &fit;
+  return nullptr;
+}
+
+ExtendedModel FromResult(const DiagnosisResult& result) {
+  return {result.parameters, result.within_tolerance, result.covariance, result.centre_m,
+          result.start_ns};
+}
+
+std::vector<std::string> NumberNames(const std::vector<EffectFit>& effects) {
+  std::vector<std::string> names;
+  for (const EffectFit& fit : effects)
+    for (const ReportedParameter& parameter : fit.parameters)
+      for (std::size_t i = 0; i < parameter.value.size(); ++i)
+        names.push_back(fmt::format("{}.{}[{}]", fit.effect, parameter.name, i));
+  return names;
+}
+
+std::string ModelYaml(const ExtendedModel& model) {
+  std::vector<EffectFit> with_sd;
+  for (const auto* list : {&model.effects, &model.within_tolerance})
+    for (const EffectFit& fit : *list)
+      if (!fit.parameters.empty() && !fit.parameters[0].sd.empty()) with_sd.push_back(fit);
+  std::string text = fmt::format("format: {}\nversion: {}\n", kFormat, kVersion);
+  text += "centre_m: " + YamlNumbers({model.centre_m.begin(), model.centre_m.end()}) + "\n";
+  text += fmt::format("start_ns: {}\n", model.start_ns);
+  text += Section("effects", model.effects, &ReportedParameter::value);
+  text += Section("within_tolerance", model.within_tolerance, &ReportedParameter::value);
+  text += Section("sd", with_sd, &ReportedParameter::sd);
+  return text + Covariance(model);
+}
+
+void WriteModel(const std::filesystem::path& file, const ExtendedModel& model) {
+  WriteTextFile(file, ModelYaml(model));
+}
+
+ExtendedModel ReadModel(const std::filesystem::path& file) {
+  const YamlMap top = YamlMap::Load(file);
+  CheckFormat(top);
+  ExtendedModel model;
+  model.centre_m = top.Vector3("centre_m");
+  model.start_ns = top.Integer("start_ns");
+  model.effects = ReadEffects(top, "effects");
+  if (top.Has("within_tolerance")) model.within_tolerance = ReadEffects(top, "within_tolerance");
+  for (const EffectFit& fit : model.within_tolerance) {
+    if (model.Find(fit.effect) != &fit) {
+      throw top.Map("within_tolerance").Error(fit.effect, "is among the effects too");
+    }
+  }
+  if (top.Has("sd")) {
+    const YamlMap section = top.Map("sd");
+    std::vector<EffectFit> all = model.effects;
+    all.insert(all.end(), model.within_tolerance.begin(), model.within_tolerance.end());
+    ReadDeviations(section, all);
+    const auto beyond = static_cast<std::ptrdiff_t>(model.effects.size());
+    model.effects.assign(all.begin(), all.begin() + beyond);
+    model.within_tolerance.assign(all.begin() + beyond, all.end());
+  }
+  if (top.Has("covariance"))
+    model.covariance = ReadCovariance(top.Map("covariance"), model.effects);
+  RejectUnknownKeys(top);
+  return model;
+}
+
+Recording WithoutLatency(Recording recording, const ExtendedModel& model) {
+  const double em_s = Delay(model, "em_latency"), camera_s = Delay(model, "camera_latency");
+  if (recording.em0) MoveBack(recording.em0->samples, em_s);
+  if (recording.em1) MoveBack(recording.em1->samples, em_s);
+  if (recording.vision0) MoveBack(recording.vision0->tips, camera_s);
+  return recording;
+}
+
+}  // namespace flextip::diagnosis

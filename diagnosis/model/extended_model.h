@@ -1,0 +1,44 @@
+// What a diagnosis found, as something that can be kept in a file and used: model.yaml
+// (docs/formats.md).
+#pragma once
+
+#include <Eigen/Dense>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/time_series.h"
+#include "diagnosis/diagnose.h"
+
+namespace flextip::diagnosis {
+
+/// The base simulation with these effects. In R and SI units, parameters as in docs/effects.md.
+struct ExtendedModel {
+  std::vector<EffectFit> effects;           ///< beyond tolerance: the verdict's
+  std::vector<EffectFit> within_tolerance;  ///< of the others, as far as the data moved them
+  Eigen::MatrixXd covariance;               ///< of the numbers of `effects` in order; may be empty
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< which EM gradients are about
+  TimeNs start_ns = 0;                                 ///< t = 0 of phases and drifts
+
+  /// Of effects or those within tolerance; null where it is not there.
+  const EffectFit* Find(const std::string& effect) const;
+};
+
+ExtendedModel FromResult(const DiagnosisResult& result);
+
+std::string ModelYaml(const ExtendedModel& model);
+/// Throws WorkError where the file cannot be written.
+void WriteModel(const std::filesystem::path& file, const ExtendedModel& model);
+
+/// Throws InputError with file and line for keys, effects or parameters that are unknown or
+/// missing, a wrong count, and values that have no meaning (a negative friction, a stiffness of
+/// zero). Effects come in alphabetical order.
+ExtendedModel ReadModel(const std::filesystem::path& file);
+
+/// "port_offset.offset_m[0]" and so on: the names of the covariance's rows.
+std::vector<std::string> NumberNames(const std::vector<EffectFit>& effects);
+
+/// `recording` with the streams that are stamped late by `model` moved to when they were taken.
+Recording WithoutLatency(Recording recording, const ExtendedModel& model);
+
+}  // namespace flextip::diagnosis

@@ -1,0 +1,167 @@
+#include "diagnosis/model/model_at.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/rotation.h"
+#include "diagnosis/model/extended_effect.h"
+#include "diagnosis/replay/geometry.h"
+
+namespace flextip::diagnosis {
+
+using namespace model_input;
+
+struct ModelAt::Acting {
+  std::unique_ptr<Effect> effect;
+  Eigen::VectorXd theta;
+  EffectMemory memory{};
+  bool rubs = false;
+};
+
+ModelAt::~ModelAt() = default;
+
+ModelAt::ModelAt(const ExtendedModel& model, const Recording& base) : start_ns_(model.start_ns) {
+  set_.instrument = base.instrument;
+  set_.p_RP = base.p_RP;
+  set_.gravity_m_s2 = base.gravity_m_s2;
+  set_.centre = model.centre_m;
+  set_.has_camera = base.cam0.has_value();
+  if (base.cam0) set_.T_RC = base.cam0->calibration.T_RC;
+  set_.samples.resize(1);
+  for (const auto* list : {&model.effects, &model.within_tolerance}) {
+    for (const EffectFit& fit : *list) {
+      Acting acting{MakeEffectOfModel(fit.effect), {}, {}, fit.effect == "port_friction"};
+      if (!acting.effect) throw InputError("model: effect '" + fit.effect + "' is unknown");
+      acting.effect->Parameters(set_);  // tells it what is nominal
+      std::vector<std::vector<double>> values;
+      for (const ReportedParameter& parameter : fit.parameters) values.push_back(parameter.value);
+      acting.theta = acting.effect->FromReported(values);
+      has_friction_ |= acting.rubs;
+      has_tag_offset_ |= fit.effect == "tag_offset";
+      if (fit.effect == "backlash") shaft_.wrist_play_m = acting.theta[0];
+      acting_.push_back(std::move(acting));
+    }
+  }
+  columns_.reserve(64);
+}
+
+void ModelAt::SetSample(TimeNs t_ns, const Measurements& z, const Eigen::Vector3d& f_tip_N) {
+  DiagnosisSample& now = set_.samples[0];
+  now.t_s = 1e-9 * static_cast<double>(t_ns - start_ns_);
+  now.p_RW = z.p_RW;
+  now.f_tip_N = z.load ? z.load->f_tip_N : f_tip_N;
+  // As in sample_set: without a measured orientation, R's axes turned without twist to the port.
+  const Eigen::Vector3d to_port = (set_.p_RP - z.p_RW).normalized();
+  now.y_wrist = z.R_RW ? Eigen::Vector3d(z.R_RW->col(1))
+                       : Eigen::Vector3d(RotationWithoutTwist(Eigen::Vector3d::UnitX(), to_port) *
+                                         Eigen::Vector3d::UnitY());
+}
+
+void ModelAt::Apply(Acting& acting, double s_port_free_m, double ds_port_dfriction_m) {
+  const Moment moment{set_, 0, set_.samples[0].t_s, s_port_free_m, ds_port_dfriction_m};
+  columns_.clear();
+  InputChange change(acting.theta.data(), 0, inputs_, columns_);
+  acting.effect->Apply(acting.theta.data(), moment, acting.memory, change);
+}
+
+/// Where the port and the tip are with the friction of the last instant: what the next one's
+/// friction and the tags' offset are reckoned from. Where there is no equilibrium, the last holds.
+void ModelAt::SolveShaft() {
+  const SolvedSample solved = SolveSample(set_, 0, inputs_, set_.samples[0].f_tip_N, solver_);
+  if (!solved.ok) return;
+  ds_port_dfriction_m_ = solved.ds_port_dfriction_m;
+  s_port_free_m_ = solved.s_port_m - ds_port_dfriction_m_ * friction_;
+  R_RE_.col(0) = solved.at.segment<3>(place::kTipTangent);
+  R_RE_.col(1) = solved.at.segment<3>(place::kTipY);
+  R_RE_.col(2) = R_RE_.col(0).cross(R_RE_.col(1));
+}
+
+void ModelAt::Advance(TimeNs t_ns, const Measurements& measured, const Eigen::Vector3d& f_tip_N) {
+  if (!measured.p_RW.allFinite()) return;
+  SetSample(t_ns, measured, f_tip_N);
+  inputs_.setZero();
+  for (Acting& acting : acting_)
+    if (!acting.rubs) Apply(acting, 0.0, 0.0);
+  if (has_friction_ || has_tag_offset_) {
+    inputs_[kPortFriction] = friction_;
+    SolveShaft();
+    inputs_[kPortFriction] = 0.0;
+  }
+  for (Acting& acting : acting_)
+    if (acting.rubs) Apply(acting, s_port_free_m_, ds_port_dfriction_m_);
+  friction_ = inputs_[kPortFriction];
+  FillShaft();
+}
+
+void ModelAt::FillShaft() {
+  const ModelInputs& u = inputs_;
+  shaft_.stiffness_scale = std::exp(u[kStiffness]);
+  shaft_.length_delta_m = u[kLength];
+  shaft_.weight_N_m = u.segment<3>(kWeight);
+  shaft_.wrist_shift_m = u.segment<3>(kWrist);
+  shaft_.port_shift_m = u.segment<3>(kPort);
+  shaft_.tip_compliance_m_N = u[kTipCompliance];
+  shaft_.effects = EffectsOf(u, set_.samples[0].y_wrist);
+}
+
+void ModelAt::CorrectEm(EmMeasurement& em) const {
+  const ModelInputs& u = inputs_;
+  const Eigen::Matrix3d back = ExpRotation(-u.segment<3>(kEmTurn));
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> G(u.data() + kEmGradient);
+  // measured = centre + shift + R ((I + G) (p - centre) + offset)
+  const Eigen::Vector3d bent =
+      back * (em.T_RS.p - set_.centre - u.segment<3>(kEmShift)) - u.segment<3>(kEmOffset);
+  const Eigen::Matrix3d unbend = (Eigen::Matrix3d::Identity() + G).inverse();
+  em.T_RS.p = set_.centre + unbend * bent;
+  em.T_RS.R = back * em.T_RS.R;
+  em.position_noise_m *= unbend.norm() / std::sqrt(3.0);  // the RMS over all directions
+}
+
+/// Backwards through sensor_model's SeenTip and TrueTip; the yielding tip is the shaft's affair.
+void ModelAt::CorrectTip(Measurements& z) const {
+  const ModelInputs& u = inputs_;
+  TipObservation& tip = *z.tip;
+  const Eigen::Vector3d p_RC = set_.has_camera ? set_.T_RC.p : set_.centre;
+  const Eigen::Matrix3d vision_back = ExpRotation(-u.segment<3>(kVisionTurn));
+  const Eigen::Matrix3d camera = ExpRotation(u.segment<3>(kCameraTurn));
+  Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();  // undoes the focal length's shrinking
+  if (set_.has_camera) {
+    const Eigen::Vector3d axis = set_.T_RC.R.col(2);
+    stretch += (std::exp(u[kLogFocal]) - 1.0) * axis * axis.transpose();
+  }
+  const Eigen::Matrix3d A = camera * stretch * vision_back;
+  const Eigen::Vector3d seen =
+      vision_back * (tip.p_RE - set_.centre - u.segment<3>(kVisionShift)) + set_.centre;
+  tip.p_RE = p_RC + u.segment<3>(kCameraShift) + camera * stretch * (seen - p_RC);
+  tip.p_RE -= R_RE_ * u.segment<3>(kTagOffset);
+  tip.covariance_m2 = A * tip.covariance_m2 * A.transpose();
+  if (!tip.d_RE) return;
+  Eigen::Matrix3d focal = Eigen::Matrix3d::Identity();
+  if (set_.has_camera) {  // a pose keeps its attitude to the line of sight
+    const Eigen::Vector3d p_C = set_.T_RC.R.transpose() * (tip.p_RE - set_.T_RC.p);
+    const double depth_m = std::max(p_C.z(), 1e-3);
+    const Eigen::Vector3d axis =
+        set_.T_RC.R * Eigen::Vector3d(-p_C.y() / depth_m, p_C.x() / depth_m, 0.0);
+    focal = ExpRotation(-u[kFocalTurn] * axis);
+  }
+  tip.d_RE = camera * focal * vision_back * *tip.d_RE;
+}
+
+Measurements ModelAt::Correct(const Measurements& measured) const {
+  Measurements z = measured;
+  if (z.em) CorrectEm(*z.em);
+  if (z.port_direction) {
+    z.port_direction = ExpRotation(-inputs_.segment<3>(kEmTurn)) * *z.port_direction;
+  }
+  if (z.tip && z.tip->status != TipStatus::kLost) CorrectTip(z);
+  if (z.strain) {
+    const Eigen::Vector4d gain = Eigen::Vector4d::Ones() + inputs_.segment<4>(kStrainGain);
+    z.strain->moments_Nm =
+        (z.strain->moments_Nm - inputs_.segment<4>(kStrainOffset)).cwiseQuotient(gain);
+    z.strain->moment_noise_Nm *= std::sqrt(gain.cwiseAbs2().cwiseInverse().mean());
+  }
+  return z;
+}
+
+}  // namespace flextip::diagnosis

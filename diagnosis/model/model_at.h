@@ -1,0 +1,53 @@
+// An extended model at one instant after the other: what it changes in the shaft, and the sensors'
+// effects undone.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "diagnosis/model/extended_model.h"
+#include "diagnosis/replay/model_input.h"
+#include "diagnosis/samples/sample_set.h"
+#include "estimation/instrument_model.h"
+
+namespace flextip::diagnosis {
+
+/// Made for one run: effects have a memory. Advance and Correct do what diagnosis/geometry and
+/// sensor_model do, the latter backwards.
+class ModelAt : public InstrumentModel {
+ public:
+  /// Of `base` the instrument, port, gravity and the camera's pose are taken. Throws InputError for
+  /// an effect that is none of the catalogue's.
+  ModelAt(const ExtendedModel& model, const Recording& base);
+  ~ModelAt() override;
+
+  void Advance(TimeNs t_ns, const Measurements& measured, const Eigen::Vector3d& f_tip_N) override;
+  const ShaftChange& Shaft() const override { return shaft_; }
+  Measurements Correct(const Measurements& measured) const override;
+
+  /// Inputs at this instant, delays among them.
+  const ModelInputs& Inputs() const { return inputs_; }
+
+ private:
+  struct Acting;  // an effect with its parameters and memory
+  void SetSample(TimeNs t_ns, const Measurements& measured, const Eigen::Vector3d& f_tip_N);
+  void Apply(Acting& acting, double s_port_free_m, double ds_port_dfriction_m);
+  void SolveShaft();
+  void FillShaft();
+  void CorrectEm(EmMeasurement& em) const;
+  void CorrectTip(Measurements& z) const;
+
+  SampleSet set_;  // of one sample: now
+  TimeNs start_ns_;
+  std::vector<Acting> acting_;
+  std::vector<InputChange::Column> columns_;  // not used; effects write them
+  ModelInputs inputs_ = ModelInputs::Zero();
+  ShaftChange shaft_;
+  bool has_friction_ = false, has_tag_offset_ = false;
+  double friction_ = 0.0;  // the last instant's
+  EffectRodSolver solver_;
+  double s_port_free_m_ = 0.0, ds_port_dfriction_m_ = 0.0;
+  Eigen::Matrix3d R_RE_ = Eigen::Matrix3d::Identity();
+};
+
+}  // namespace flextip::diagnosis

@@ -1,0 +1,65 @@
+// What a sample of the replayed model depends on: the rod's inputs (kinematics/effect_rod.h) and
+// the sensors'. Effects write into these, and every prediction is differentiated by them.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "kinematics/effect_rod.h"
+
+namespace flextip::diagnosis {
+
+/// Indices of one sample's inputs. All are changes from the base simulation, so zero is the base;
+/// the first rod_input::kCount are those of the rod in its order (kStiffness is the logarithm of
+/// the stiffness over the nominal one). In R and SI units.
+namespace model_input {
+using namespace rod_input;
+inline constexpr int kTipCompliance = rod_input::kCount;  ///< E moves by this times the tip force
+inline constexpr int kEmGradient = kTipCompliance + 1;    ///< 3x3, row by row, about the EM centre
+inline constexpr int kEmOffset = kEmGradient + 9;         ///< of the EM position
+inline constexpr int kEmDelay = kEmOffset + 3;            ///< s; samples are stamped late
+inline constexpr int kCameraDelay = kEmDelay + 1;
+inline constexpr int kCameraTurn = kCameraDelay + 1;  ///< of the camera about itself, rad
+inline constexpr int kCameraShift = kCameraTurn + 3;  ///< of the camera
+inline constexpr int kLogFocal = kCameraShift + 3;    ///< of the true focal length over calibrated
+/// What a changed focal length turns a pose by, over the tangent of how far off the axis it is.
+inline constexpr int kFocalTurn = kLogFocal + 1;
+inline constexpr int kTagOffset = kFocalTurn + 1;      ///< in E, of the tags against their mount
+inline constexpr int kStrainGain = kTagOffset + 3;     ///< per gage, less one
+inline constexpr int kStrainOffset = kStrainGain + 4;  ///< per gage, Nm
+inline constexpr int kEmTurn = kStrainOffset + 4;      ///< EM frame in R about the centre, rad
+inline constexpr int kEmShift = kEmTurn + 3;           ///< EM frame in R
+inline constexpr int kVisionTurn = kEmShift + 3;       ///< vision's frame in R about the centre
+inline constexpr int kVisionShift = kVisionTurn + 3;
+inline constexpr int kCount = kVisionShift + 3;
+}  // namespace model_input
+
+using ModelInputs = Eigen::Matrix<double, model_input::kCount, 1>;
+
+/// One sample's measured values, in rows of fixed places; directions count two (across the measured
+/// one). A sample has those rows whose sensor spoke.
+namespace row {
+inline constexpr int kWristDirection = 0, kEmPosition = 2, kEmDirection = 5, kStrain = 7;
+inline constexpr int kTipPosition = 11, kTipDirection = 14, kPortDirection = 16;
+inline constexpr int kCount = 18;
+}  // namespace row
+
+using Rows = Eigen::Matrix<double, row::kCount, 1>;
+using RowsByInputs = Eigen::Matrix<double, row::kCount, model_input::kCount>;
+
+/// The measured channels, for results: a run of rows with one name and unit.
+struct Channel {
+  const char* name;
+  int first_row, rows;
+};
+inline constexpr Channel kChannels[] = {
+    {"wrist0_orientation_rad", row::kWristDirection, 2},
+    {"em0_position_m", row::kEmPosition, 3},
+    {"em0_orientation_rad", row::kEmDirection, 2},
+    {"strain0_moment_Nm", row::kStrain, 4},
+    {"vision0_position_m", row::kTipPosition, 3},
+    {"vision0_direction_rad", row::kTipDirection, 2},
+    {"em1_orientation_rad", row::kPortDirection, 2},
+};
+inline constexpr int kChannelCount = 7;
+
+}  // namespace flextip::diagnosis

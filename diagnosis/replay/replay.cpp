@@ -1,0 +1,247 @@
+#include "diagnosis/replay/replay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "diagnosis/replay/sample_loops.h"
+
+namespace flextip::diagnosis {
+namespace {
+
+constexpr std::size_t kForceNeighbours = 4;  // on either side, that say what a force should be
+constexpr std::size_t kSharedNoise = 8;      // samples over which smoothed loads share their noise
+constexpr int kMostPasses = 5;
+constexpr double kSameFriction = 0.01;  // axial over lateral force
+constexpr std::size_t kSlideReach = 8;  // samples on either side that say how the shaft slides
+
+}  // namespace
+
+Replay::Replay(const SampleSet& samples, const ParameterLayout& layout)
+    : samples_(samples),
+      layout_(layout),
+      retiming_(samples),
+      force_unit_N_(samples.instrument.bending_stiffness_Nm2 / samples.instrument.length_m /
+                    samples.instrument.length_m),
+      theta_(Eigen::VectorXd::Zero(layout.Size())),
+      replayed_(samples.samples.size()),
+      along_prior_(1.0) {
+  noise_scale_.fill(1.0);
+  if (!samples.has_load) return;
+  for (std::size_t k = 0; k < replayed_.size(); ++k)
+    replayed_[k].f_tip_N = samples.samples[k].f_tip_N;
+}
+
+bool Replay::Evaluate(const Eigen::VectorXd& theta) {
+  return EvaluateBy(theta, [this] { samples_.has_load ? SolveRods() : FitForces(); });
+}
+
+bool Replay::EvaluateWithForces(const Eigen::VectorXd& theta) {
+  return EvaluateBy(theta, [this] { SolveRods(); });
+}
+
+/// Friction follows from how the shaft slides, and that from the shapes: again until it stays.
+bool Replay::EvaluateBy(const Eigen::VectorXd& theta, const std::function<void()>& solve) {
+  theta_ = theta;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const double change = ApplyEffects(theta);
+    if (pass > 0 && change < kSameFriction) break;
+    if (pass == 0)
+      for (ReplayedSample& sample : replayed_) sample.stale = true;
+    Retime();
+    solve();
+  }
+  return Finish();
+}
+
+bool Replay::Finish() {
+  failed_ = int(std::count_if(replayed_.begin(), replayed_.end(),
+                              [](const ReplayedSample& s) { return !s.ok; }));
+  if (failed_ * 10 > int(replayed_.size())) return false;
+  CompareSamples();
+  return true;
+}
+
+/// Where on the shaft the port would be without friction, as the last replay has it.
+double Replay::FreePortPlace(std::size_t k) const {
+  const ReplayedSample& sample = replayed_[k];
+  return sample.solved.s_port_m -
+         sample.solved.ds_port_dfriction_m * sample.inputs[model_input::kPortFriction];
+}
+
+/// The same by the least-squares parabola through the samples around: what makes the shaft stick or
+/// slip must not be the noise of a force found from one sample.
+double Replay::SmoothPortPlace(std::size_t k) const {
+  const double own_m = FreePortPlace(k);
+  if (!samples_.resolved_in_time || replayed_.size() <= 2 * kSlideReach) return own_m;
+  const std::size_t first =
+      std::clamp(k, kSlideReach, replayed_.size() - 1 - kSlideReach) - kSlideReach;
+  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d rhs = Eigen::Vector3d::Zero();
+  for (std::size_t a = first; a <= first + 2 * kSlideReach; ++a) {
+    if (!replayed_[a].ok) return own_m;
+    const double u = (samples_.samples[a].t_s - samples_.samples[k].t_s) / samples_.period_s;
+    const Eigen::Vector3d basis(1.0, u, u * u);
+    N += basis * basis.transpose();
+    rhs += basis * FreePortPlace(a);
+  }
+  return N.llt().solve(rhs)[0];
+}
+
+/// Returns the largest change of the port's friction since the last replay.
+double Replay::ApplyEffects(const Eigen::VectorXd& theta) {
+  double change = 0.0;
+  std::vector<EffectMemory> memory(layout_.Blocks().size());
+  for (auto& m : memory) m.fill(0.0);
+  std::vector<double> s_port_free_m(replayed_.size(), 0.0);
+  for (std::size_t k = 0; k < replayed_.size(); ++k)
+    if (replayed_[k].ok) s_port_free_m[k] = SmoothPortPlace(k);
+  for (std::size_t k = 0; k < replayed_.size(); ++k) {
+    ReplayedSample& sample = replayed_[k];
+    Moment now{samples_, k, samples_.samples[k].t_s, s_port_free_m[k], 0.0};
+    if (sample.ok) now.ds_port_dfriction_m = sample.solved.ds_port_dfriction_m;
+    const double friction = sample.inputs[model_input::kPortFriction];
+    sample.inputs.setZero();
+    sample.columns.clear();
+    for (std::size_t b = 0; b < layout_.Blocks().size(); ++b) {
+      const auto& block = layout_.Blocks()[b];
+      InputChange input(theta.data() + block.first, block.first, sample.inputs, sample.columns);
+      block.effect->Apply(theta.data() + block.first, now, memory[b], input);
+    }
+    const double by = std::abs(sample.inputs[model_input::kPortFriction] - friction);
+    sample.stale = by > 0.2 * kSameFriction;
+    change = std::max(change, by);
+  }
+  return change;
+}
+
+void Replay::SolveRods() {
+  ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
+    EffectRodSolver solver;
+    for (std::size_t k = begin; k < end; ++k) {
+      ReplayedSample& sample = replayed_[k];
+      if (!sample.stale) continue;
+      sample.solved = SolveSample(samples_, k, sample.inputs, sample.f_tip_N, solver);
+      sample.ok = sample.solved.ok;
+    }
+  });
+}
+
+void Replay::Retime() {
+  ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      replayed_[k].measured = retiming_.At(k, replayed_[k].inputs[model_input::kEmDelay],
+                                           replayed_[k].inputs[model_input::kCameraDelay]);
+  });
+}
+
+/// Where the five samples begin that say how sample `k` moves: two on either side, at the ends
+/// those nearest to it that are judged by all that their sensors said, the others' forces being
+/// poor.
+std::optional<std::size_t> Replay::FirstOfFive(std::size_t k) const {
+  const auto n = std::ptrdiff_t(replayed_.size()), middle = std::ptrdiff_t(k);
+  const auto is_good = [&](std::ptrdiff_t first) {
+    for (std::ptrdiff_t a = first; a < first + 5; ++a) {
+      if (a < 0 || a >= n || !replayed_[a].ok) return false;
+      const DiagnosisSample& sample = samples_.samples[a];
+      if (!samples_.has_load && sample.present != sample.spoken) return false;
+    }
+    return true;
+  };
+  for (const std::ptrdiff_t by : {0, 1, -1, 2, -2})
+    if (is_good(middle - 2 + by)) return std::size_t(middle - 2 + by);
+  return {};
+}
+
+/// Rate and bend by the least-squares parabola through them.
+TimedGeometry Replay::WithRate(std::size_t k) const {
+  TimedGeometry timed{replayed_[k].solved.at, Geometry::Zero(), Geometry::Zero()};
+  if (!samples_.resolved_in_time) return timed;
+  const auto first = FirstOfFive(k);
+  if (!first) return timed;
+  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 3, place::kCount> rhs;
+  rhs.setZero();
+  for (std::size_t a = *first; a < *first + 5; ++a) {
+    const double u = (samples_.samples[a].t_s - samples_.samples[k].t_s) / samples_.period_s;
+    const Eigen::Vector3d basis(1.0, u, 0.5 * u * u);
+    N += basis * basis.transpose();
+    rhs += basis * replayed_[a].solved.at.transpose();
+  }
+  const Eigen::Matrix<double, 3, place::kCount> fit = N.inverse() * rhs;
+  timed.rate = fit.row(1).transpose() / samples_.period_s;
+  timed.bend = fit.row(2).transpose() / (samples_.period_s * samples_.period_s);
+  return timed;
+}
+
+void Replay::TakeSettings(const Replay& other) {
+  noise_scale_ = other.noise_scale_;
+  along_prior_ = other.along_prior_;
+  input_noise_ = other.input_noise_;
+  left_out_ = other.left_out_;
+}
+
+void Replay::LeaveOut(const std::vector<std::size_t>& samples) {
+  left_out_.assign(replayed_.size(), false);
+  for (const std::size_t k : samples) left_out_[k] = true;
+}
+
+/// What samples around `k` say, on the mean: with as many before as after it, without itself and
+/// those that share its noise. Itself where there are none.
+template <class Get>
+auto Replay::Around(std::size_t k, Get get) const {
+  using Value = std::decay_t<decltype(get(k))>;
+  const std::size_t skip = samples_.has_load ? kSharedNoise : 0;
+  const std::size_t reach = std::min({k, replayed_.size() - 1 - k, skip + kForceNeighbours});
+  const Value own = get(k);
+  if (!samples_.resolved_in_time || own_derivatives_) return own;
+  Value sum = Value::Zero();
+  int count = 0;
+  for (std::size_t by = skip + 1; by <= reach; ++by) {
+    if (!replayed_[k - by].ok || !replayed_[k + by].ok) continue;
+    sum += get(k - by) + get(k + by);
+    count += 2;
+  }
+  return count == 0 ? own : Value(sum / count);
+}
+
+/// The geometry's derivatives, those by compliances and by stiffness (with the force in its units)
+/// as the samples around have them: they grow with the force, and the noise of a force found from
+/// this very sample must not look like something explained.
+GeometryByInputs Replay::ExpectedDerivatives(std::size_t k) const {
+  GeometryByInputs by = replayed_[k].solved.by_inputs;
+  for (const int input : {rod_input::kPortCompliance, rod_input::kWristCompliance})
+    by.col(input) = Around(
+        k, [&](std::size_t j) -> Geometry { return replayed_[j].solved.by_inputs.col(input); });
+  const auto with_force = [&](std::size_t j) -> Geometry {
+    const GeometryByInputs& own = replayed_[j].solved.by_inputs;
+    if (samples_.has_load) return own.col(rod_input::kStiffness);
+    return own.col(rod_input::kStiffness) +
+           own.middleCols<3>(rod_input::kForce) * replayed_[j].f_tip_N;
+  };
+  by.col(rod_input::kStiffness) += Around(k, with_force) - with_force(k);
+  return by;
+}
+
+void Replay::CompareSamples() {
+  ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      ReplayedSample& sample = replayed_[k];
+      if (!sample.ok) continue;
+      const Eigen::Vector3d expected_N =
+          Around(k, [&](std::size_t j) -> Eigen::Vector3d { return replayed_[j].f_tip_N; });
+      sample.compared =
+          Compare(samples_, sample.measured, sample.inputs, ForceOnTip(sample.f_tip_N, expected_N),
+                  WithRate(k), ExpectedDerivatives(k));
+      for (int i = 0; i < 4; ++i) {  // a gain acts on the moment, which comes of the force too
+        if (!sample.measured.Has(row::kStrain + i)) continue;
+        const auto moment = Around(k, [&](std::size_t j) -> Eigen::Matrix<double, 1, 1> {
+          return replayed_[j].solved.at.segment<1>(place::kMoments + i);
+        });
+        sample.compared.by_inputs(row::kStrain + i, model_input::kStrainGain + i) = moment[0];
+      }
+    }
+  });
+}
+
+}  // namespace flextip::diagnosis

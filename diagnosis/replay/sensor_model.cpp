@@ -1,0 +1,185 @@
+#include "diagnosis/replay/sensor_model.h"
+
+#include <cmath>
+
+#include "core/rotation.h"
+
+namespace flextip::diagnosis {
+namespace {
+
+using namespace model_input;
+using Three = Eigen::Matrix<double, 3, model_input::kCount>;
+
+/// J with Exp(w + dw) = Exp(J dw) Exp(w) to first order.
+Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
+  const double angle = w.norm();
+  const Eigen::Matrix3d W = Skew(w);
+  if (angle < 1e-4) return Eigen::Matrix3d::Identity() + 0.5 * W + W * W / 6.0;
+  const double square = angle * angle;
+  return Eigen::Matrix3d::Identity() + (1.0 - std::cos(angle)) / square * W +
+         (angle - std::sin(angle)) / (square * angle) * W * W;
+}
+
+/// A predicted vector and its derivatives.
+struct Predicted {
+  Eigen::Vector3d v;
+  Three d = Three::Zero();
+
+  Predicted(const TimedGeometry& geometry, const GeometryByInputs& by_inputs, int at)
+      : v(geometry.at.segment<3>(at)) {
+    d.leftCols<rod_input::kCount>() = by_inputs.middleRows<3>(at);
+  }
+  void Delay(const TimedGeometry& geometry, int at, int input) {
+    d.col(input) -= geometry.rate.segment<3>(at);
+  }
+  /// Turned by Exp(`sign` w) about the origin, w standing in inputs from `input` on.
+  void Turn(const ModelInputs& u, int input, double sign) {
+    const Eigen::Vector3d w = sign * u.segment<3>(input);
+    const Eigen::Matrix3d R = ExpRotation(w);
+    v = R * v;
+    d = R * d;
+    d.middleCols<3>(input) -= sign * Skew(v) * LeftJacobian(w);
+  }
+  void Shift(const ModelInputs& u, int input, double sign) {
+    v += sign * u.segment<3>(input);
+    d.middleCols<3>(input) += sign * Eigen::Matrix3d::Identity();
+  }
+};
+
+void AddVector(const Eigen::Vector3d& measured, const Predicted& predicted, int first,
+               SampleResidual& out) {
+  out.residual.segment<3>(first) = measured - predicted.v;
+  out.by_inputs.middleRows<3>(first) = predicted.d;
+}
+
+void AddDirection(const Eigen::Vector3d& measured, const Predicted& predicted, int first,
+                  SampleResidual& out) {
+  const Eigen::Matrix<double, 3, 2> across = NormalBasis(measured);
+  out.residual.segment<2>(first) = -across.transpose() * predicted.v;
+  out.by_inputs.middleRows<2>(first) = across.transpose() * predicted.d;
+}
+
+Predicted EmPosition(const SampleSet& samples, const ModelInputs& u, const TimedGeometry& sensed,
+                     const GeometryByInputs& by_inputs) {
+  Predicted p(sensed, by_inputs, place::kEm);
+  p.Delay(sensed, place::kEm, kEmDelay);
+  p.v -= samples.centre;
+  const Eigen::Vector3d from_centre = p.v;
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> G(u.data() + kEmGradient);
+  p.v += G * from_centre;
+  p.d += (G * p.d).eval();
+  for (int i = 0; i < 3; ++i) p.d.block<1, 3>(i, kEmGradient + 3 * i) += from_centre.transpose();
+  p.Shift(u, kEmOffset, 1.0);
+  p.Turn(u, kEmTurn, 1.0);
+  p.Shift(u, kEmShift, 1.0);
+  p.v += samples.centre;
+  return p;
+}
+
+Predicted SeenByCamera(const TimedGeometry& sensed, const GeometryByInputs& by_inputs, int at) {
+  Predicted seen(sensed, by_inputs, at);
+  seen.Delay(sensed, at, kCameraDelay);
+  return seen;
+}
+
+/// E as it truly is: yielding under its force, with the tags off their place.
+Predicted TrueTip(const ModelInputs& u, const ForceOnTip& f_tip, const TimedGeometry& sensed,
+                  const GeometryByInputs& by_inputs) {
+  Predicted p = SeenByCamera(sensed, by_inputs, place::kTip);
+  p.v += u[kTipCompliance] * f_tip.at_N;
+  p.d.col(kTipCompliance) += f_tip.expected_N;
+  p.d.middleCols<3>(kForce) += u[kTipCompliance] * Eigen::Matrix3d::Identity();
+  const Predicted x = SeenByCamera(sensed, by_inputs, place::kTipTangent),
+                  y = SeenByCamera(sensed, by_inputs, place::kTipY);
+  Eigen::Matrix3d R_RE;
+  R_RE << x.v, y.v, x.v.cross(y.v);
+  const Eigen::Vector3d offset = u.segment<3>(kTagOffset);
+  p.v += R_RE * offset;
+  p.d += offset.x() * x.d + offset.y() * y.d + offset.z() * (Skew(x.v) * y.d - Skew(y.v) * x.d);
+  p.d.middleCols<3>(kTagOffset) += R_RE;
+  return p;
+}
+
+/// What a camera that is not where it was registered, with another focal length, makes of it.
+Predicted SeenTip(const SampleSet& samples, const ModelInputs& u, Predicted p) {
+  const Eigen::Vector3d p_RC = samples.has_camera ? samples.T_RC.p : samples.centre;
+  p.v -= p_RC;
+  p.Shift(u, kCameraShift, -1.0);
+  p.Turn(u, kCameraTurn, -1.0);
+  if (samples.has_camera) {  // tags look larger by the focal scale, so they seem nearer
+    const Eigen::Vector3d axis = samples.T_RC.R.col(2);
+    const double shrink = std::exp(-u[kLogFocal]);
+    const double depth = axis.dot(p.v);
+    p.v += (shrink - 1.0) * depth * axis;
+    p.d += (shrink - 1.0) * axis * (axis.transpose() * p.d).eval();
+    p.d.col(kLogFocal) -= shrink * depth * axis;
+  }
+  p.v += p_RC - samples.centre;
+  p.Turn(u, kVisionTurn, 1.0);
+  p.Shift(u, kVisionShift, 1.0);
+  p.v += samples.centre;
+  return p;
+}
+
+/// A pose from tags keeps its attitude to the line of sight, which a changed focal length moves
+/// away from the axis (to first order).
+void TurnByFocal(const SampleSet& samples, const ModelInputs& u, const Predicted& p_RE,
+                 Predicted& d) {
+  const Eigen::Matrix3d& R_RC = samples.T_RC.R;
+  const Eigen::Vector3d p_C = R_RC.transpose() * (p_RE.v - samples.T_RC.p);
+  const double x = p_C.x() / p_C.z(), y = p_C.y() / p_C.z();
+  const Eigen::Vector3d axis = R_RC * Eigen::Vector3d(-y, x, 0.0), turned = axis.cross(d.v);
+  Eigen::Matrix3d by_p_C;
+  by_p_C << 0, -1, y, 1, 0, -x, 0, 0, 0;
+  const Three d_axis = R_RC * (by_p_C / p_C.z()) * R_RC.transpose() * p_RE.d;
+  d.d += (u[kFocalTurn] * (Skew(axis) * d.d - Skew(d.v) * d_axis)).eval();
+  d.d.col(kFocalTurn) += turned;
+  d.v += u[kFocalTurn] * turned;
+}
+
+}  // namespace
+
+SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const ModelInputs& u,
+                       const ForceOnTip& f_tip, const TimedGeometry& geometry,
+                       const GeometryByInputs& by_inputs) {
+  SampleResidual out;
+  const TimedGeometry em = geometry.After(z.dt_em_s - u[kEmDelay]);
+  const TimedGeometry tip = geometry.After(z.dt_tip_s - u[kCameraDelay]);
+  const TimedGeometry gages = geometry.After(z.dt_strain_s), port = geometry.After(z.dt_port_s);
+  if (z.Has(row::kWristDirection))
+    AddDirection(z.d_wrist, Predicted(geometry, by_inputs, place::kWristTangent),
+                 row::kWristDirection, out);
+  if (z.Has(row::kPortDirection))
+    AddDirection(z.d_port, Predicted(port, by_inputs, place::kPortTangent), row::kPortDirection,
+                 out);
+  if (z.Has(row::kEmPosition))
+    AddVector(z.p_RS, EmPosition(samples, u, em, by_inputs), row::kEmPosition, out);
+  if (z.Has(row::kEmDirection)) {
+    Predicted d(em, by_inputs, place::kEmTangent);
+    d.Delay(em, place::kEmTangent, kEmDelay);
+    d.Turn(u, kEmTurn, 1.0);
+    AddDirection(z.d_em, d, row::kEmDirection, out);
+  }
+  for (int i = 0; i < 4; ++i) {
+    if (!z.Has(row::kStrain + i)) continue;
+    const double gain = 1.0 + u[kStrainGain + i], moment = gages.at[place::kMoments + i];
+    const int r = row::kStrain + i;
+    out.residual[r] = z.moments_Nm[i] - gain * moment - u[kStrainOffset + i];
+    out.by_inputs.row(r).head<rod_input::kCount>() = gain * by_inputs.row(place::kMoments + i);
+    out.by_inputs(r, kStrainGain + i) = moment;
+    out.by_inputs(r, kStrainOffset + i) = 1.0;
+  }
+  if (z.Has(row::kTipPosition))
+    AddVector(z.p_RE, SeenTip(samples, u, TrueTip(u, f_tip, tip, by_inputs)), row::kTipPosition,
+              out);
+  if (z.Has(row::kTipDirection)) {
+    Predicted d = SeenByCamera(tip, by_inputs, place::kTipTangent);
+    d.Turn(u, kCameraTurn, -1.0);
+    if (samples.has_camera) TurnByFocal(samples, u, SeenByCamera(tip, by_inputs, place::kTip), d);
+    d.Turn(u, kVisionTurn, 1.0);
+    AddDirection(z.d_tip, d, row::kTipDirection, out);
+  }
+  return out;
+}
+
+}  // namespace flextip::diagnosis

@@ -1,0 +1,42 @@
+// All hypotheses and how likely each is: evidence and prior odds.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "diagnosis/evidence/evidence.h"
+
+namespace flextip::diagnosis {
+
+struct SelectionOptions {
+  int blocks = 20;                  ///< of time, for bagging and held-out parts
+  double discrepancy = 0.06;        ///< what a right form may miss of its effect's signal, relative
+  double first_discrepancy = 0.15;  ///< while linearised far from the answer
+  double least_discrepancy = 0.1;   ///< of the noise
+  double prior_none = 0.5, prior_singles = 0.33, prior_pairs = 0.08, prior_unknown = 0.05;
+};
+
+struct ScoredHypothesis {
+  WeighedHypothesis weighed;
+  double log_posterior = 0.0;  ///< evidence and prior odds, not normalised
+};
+
+/// What a hypothesis's own fit says of its log posterior, less what the linear problem says.
+struct Correction {
+  Hypothesis hypothesis;
+  double log = 0.0;
+};
+
+/// None, every single effect and, with `pairs`, every two.
+std::vector<Hypothesis> KnownHypotheses(int effects, bool pairs);
+
+/// Those, and something unknown by itself or beside each single effect.
+std::vector<Hypothesis> AllHypotheses(int effects);
+
+/// `hypotheses` among `effects` ones of the catalogue, weighed, best first.
+std::vector<ScoredHypothesis> Score(const Evidence& evidence, int effects,
+                                    const std::vector<Hypothesis>& hypotheses,
+                                    const SelectionOptions& options,
+                                    const std::vector<Correction>& corrections = {});
+
+}  // namespace flextip::diagnosis

@@ -1,0 +1,172 @@
+#include "diagnosis/search/hypothesis_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/effects/port_motion.h"
+#include "diagnosis/evidence/force_volume.h"
+#include "diagnosis/search/frequency_scan.h"
+
+namespace flextip::diagnosis {
+namespace {
+
+constexpr double kAtRest = 0.5;         // of a parameter's standard deviation
+constexpr double kHopeless = 40.0;      // in log odds, after two rounds
+constexpr double kFarthest = 6.0;       // typical sizes
+constexpr double kSameFrequency = 0.6;  // of what the recording resolves
+
+/// Minus twice the log of how likely parameters `theta` are, the generic terms at their best.
+double Merit(const LinearProblem& problem, const Eigen::VectorXd& theta,
+             const Eigen::VectorXd& prior_sd, const Eigen::VectorXd& generic_sd) {
+  const NormalSums& sums = problem.total;
+  const auto P = theta.size(), G = sums.g.size() - P;
+  const double merit = sums.c - 2.0 * sums.g.head(P).dot(theta) +
+                       theta.dot(sums.H.topLeftCorner(P, P) * theta) + sums.volume +
+                       theta.cwiseQuotient(prior_sd).squaredNorm();
+  const Eigen::VectorXd left =
+      generic_sd.asDiagonal() * (sums.g.tail(G) - sums.H.bottomLeftCorner(G, P) * theta);
+  Eigen::MatrixXd M =
+      generic_sd.asDiagonal() * sums.H.bottomRightCorner(G, G) * generic_sd.asDiagonal();
+  M.diagonal().array() += 1.0;
+  return merit - left.dot(Eigen::VectorXd(M.llt().solve(left)));
+}
+
+/// `mode` no further out than is plausible.
+Eigen::VectorXd Plausible(Eigen::VectorXd mode, const ParameterLayout& layout) {
+  for (int j = 0; j < layout.Size(); ++j) {
+    const double limit = kFarthest * std::max(layout.Parameter(j).typical, layout.Tolerances()[j]);
+    mode[j] = std::clamp(mode[j], -limit, limit);
+  }
+  return mode;
+}
+
+PortMotion* PortMotionOf(ParameterLayout& layout) {
+  const int block = layout.Find("port_motion");
+  return block < 0 ? nullptr : static_cast<PortMotion*>(&layout.MutableEffect(block));
+}
+
+/// Looks for the breathing frequency anew; what was found before stays where it is confirmed.
+void FindFrequency(Replay& replay, ParameterLayout& layout) {
+  PortMotion* motion = PortMotionOf(layout);
+  if (motion == nullptr) return;
+  const auto& block = layout.Blocks()[layout.Find("port_motion")];
+  const double found_hz = BestPortFrequency(replay);
+  Eigen::VectorXd theta = replay.Theta();
+  auto own = theta.segment(block.first, block.size);
+  const double now_hz = motion->Frequency() + own[own.size() - 1];
+  if (std::abs(found_hz - now_hz) < kSameFrequency / replay.Set().Duration()) return;
+  motion->SetFrequency(found_hz);
+  own.setZero();
+  replay.Evaluate(theta);
+}
+
+}  // namespace
+
+Rows MayMiss(const LinearProblem& problem, double part, const SelectionOptions& options) {
+  return (part * problem.residual_size).cwiseMax(options.least_discrepancy);
+}
+
+Eigen::VectorXd GenericSd(const LinearProblem& problem, const Rows& may_miss) {
+  Rows terms = Rows::Zero();
+  for (const int r : problem.generic_row) terms[r] += 1.0;
+  Eigen::VectorXd sd(Eigen::Index(problem.generic_row.size()));
+  for (Eigen::Index j = 0; j < sd.size(); ++j) {
+    const int r = problem.generic_row[j];
+    sd[j] = may_miss[r] / std::sqrt(terms[r]);
+  }
+  return sd;
+}
+
+LinearProblem ProblemHere(const Replay& replay, const Eigen::MatrixXd& basis,
+                          const SelectionOptions& options) {
+  LinearProblem problem = MakeLinearProblem(replay, basis, options.blocks);
+  problem.total.volume = ForceVolume(replay);
+  for (NormalSums& block : problem.blocks)
+    block.volume = problem.total.volume * double(block.rows) / double(problem.total.rows);
+  return problem;
+}
+
+Weighing Weigh(const Replay& replay, LinearProblem here, const std::vector<Hypothesis>& hypotheses,
+               const SelectionOptions& options, const Rows& may_miss) {
+  const ParameterLayout& layout = replay.Layout();
+  const int P = layout.Size();
+  Weighing w;
+  w.problem = std::move(here);
+  w.generic_sd = GenericSd(w.problem, may_miss);
+  const EvidenceOptions known{.unknown_sd = {}};
+  const Evidence evidence(w.problem.total, layout, w.generic_sd, known);
+  w.scored = Score(evidence, layout.EffectCount(), hypotheses, options);
+  const WeighedHypothesis& best = w.scored.front().weighed;
+  w.log_none = evidence.LogEvidenceOfNone();
+  const Eigen::MatrixXd covariance = evidence.Covariance(best);
+  const Eigen::VectorXd mode = evidence.Mode(best, covariance);
+  w.target = Plausible(mode.head(P), layout);
+  w.prior_sd = evidence.PriorSd(best).head(P);
+  const Eigen::VectorXd sd = covariance.diagonal().head(P).cwiseSqrt();
+  w.distance = (w.target - replay.Theta()).cwiseQuotient(sd).cwiseAbs().maxCoeff();
+  const double now = Merit(w.problem, replay.Theta(), w.prior_sd, w.generic_sd);
+  w.promised = std::max(0.0, 0.5 * (now - evidence.Merit(best, mode)));
+  return w;
+}
+
+std::optional<LinearProblem> MoveToTarget(Replay& replay, const Weighing& weighing,
+                                          const Eigen::MatrixXd& basis,
+                                          const SelectionOptions& options) {
+  const Eigen::VectorXd from = replay.Theta();
+  const Replay::State here = replay.Save();
+  const double before = Merit(weighing.problem, from, weighing.prior_sd, weighing.generic_sd);
+  for (double part = 1.0; part > 0.1; part *= 0.4) {
+    const Eigen::VectorXd theta = from + part * (weighing.target - from);
+    replay.PredictForces(theta - from);
+    if (replay.Evaluate(theta)) {
+      LinearProblem there = ProblemHere(replay, basis, options);
+      if (Merit(there, theta, weighing.prior_sd, weighing.generic_sd) < before) return there;
+    }
+    replay.Restore(here);
+  }
+  return {};
+}
+
+Place PlaceOf(const Replay& replay) {
+  Place place{replay.Theta(), replay.Forces(), 0.0};
+  const int block = replay.Layout().Find("port_motion");
+  if (block < 0) return place;
+  const auto& motion = static_cast<const PortMotion&>(*replay.Layout().Blocks()[block].effect);
+  place.port_frequency_hz = motion.Frequency();
+  return place;
+}
+
+void GoTo(Replay& replay, ParameterLayout& layout, const Place& place) {
+  if (PortMotion* motion = PortMotionOf(layout)) motion->SetFrequency(place.port_frequency_hz);
+  replay.SetForces(place.forces_N);
+  replay.Evaluate(place.theta);
+}
+
+HypothesisFit FitHypothesis(Replay& replay, ParameterLayout& layout, const Hypothesis& hypothesis,
+                            const SelectionOptions& options, const FitOptions& fit_options) {
+  HypothesisFit fit;
+  fit.hypothesis = hypothesis;
+  const bool breathes = std::any_of(hypothesis.effects.begin(), hypothesis.effects.end(),
+                                    [&](int block) { return block == layout.Find("port_motion"); });
+  std::optional<LinearProblem> here;
+  for (int round = 0; round < fit_options.rounds; ++round) {
+    const bool scan = round < fit_options.scans && (round == 0 || !breathes);
+    if (scan) FindFrequency(replay, layout);
+    if (scan || !here) here = ProblemHere(replay, fit_options.basis, options);
+    const bool far = fit_options.scans > 0 && round == 0;
+    const Rows may_miss =
+        far ? MayMiss(*here, options.first_discrepancy, options) : fit_options.may_miss;
+    const Weighing weighing = Weigh(replay, std::move(*here), {hypothesis}, options, may_miss);
+    fit.log_posterior = weighing.LogPosterior() - weighing.promised;
+    fit.distance = weighing.distance;
+    fit.place = PlaceOf(replay);
+    if (round > 0 && round >= fit_options.scans && weighing.distance < kAtRest) break;
+    if (round > 1 && weighing.LogPosterior() < fit_options.worth - kHopeless) break;
+    if (round + 1 == fit_options.rounds) break;
+    here = MoveToTarget(replay, weighing, fit_options.basis, options);
+    if (!here) break;
+  }
+  return fit;
+}
+
+}  // namespace flextip::diagnosis

@@ -1,0 +1,153 @@
+// Cameras in OpenCV's FileStorage, with the keys of its own calibration program
+// (samples/cpp/tutorial_code/calib3d/camera_calibration).
+#include <initializer_list>
+#include <opencv2/core.hpp>
+#include <set>
+
+#include "recording/cameras/format_parts.h"
+
+namespace flextip {
+namespace {
+
+using Keys = std::initializer_list<const char*>;
+constexpr Keys kMatrixKeys = {"camera_matrix", "cameraMatrix", "Camera_Matrix"};
+constexpr Keys kTermKeys = {"distortion_coefficients", "distCoeffs", "dist_coeffs",
+                            "Distortion_Coefficients"};
+constexpr Keys kWidthKeys = {"image_width", "image_Width"};
+constexpr Keys kHeightKeys = {"image_height", "image_Height"};
+
+struct Reader {
+  std::string file;
+  cv::FileStorage storage;
+
+  explicit Reader(const std::filesystem::path& path) : file(path.string()) {
+    try {
+      storage.open(file, cv::FileStorage::READ);
+    } catch (const cv::Exception& error) {
+      throw Error(fmt::format("cannot be read by OpenCV: {}", error.err));
+    }
+    if (!storage.isOpened()) throw Error("cannot be read by OpenCV");
+  }
+  InputError Error(const std::string& what) const { return InputError::At(file, 0, what); }
+
+  cv::FileNode Find(Keys keys) const {
+    for (const char* key : keys) {
+      if (const auto node = storage[key]; !node.empty()) return node;
+    }
+    return {};
+  }
+  std::vector<double> Matrix(Keys keys) const {
+    const std::string name = *keys.begin();
+    const auto node = Find(keys);
+    if (node.empty()) throw Error(fmt::format("key \"{}\" is missing", name));
+    cv::Mat matrix;
+    try {
+      node >> matrix;
+      matrix.convertTo(matrix, CV_64F);
+    } catch (const cv::Exception&) {
+      throw Error(fmt::format("{}: expected a matrix", name));
+    }
+    const cv::Mat flat = matrix.clone().reshape(1, 1);
+    std::vector<double> values(flat.begin<double>(), flat.end<double>());
+    for (const double value : values) {
+      if (!std::isfinite(value)) throw Error(fmt::format("{}: found {}", name, value));
+    }
+    return values;
+  }
+  int Whole(Keys keys, int fallback) const {
+    const auto node = Find(keys);
+    if (node.empty()) return fallback;
+    if (!node.isInt()) throw Error(fmt::format("{}: expected a whole number", *keys.begin()));
+    return static_cast<int>(node);
+  }
+  std::string Text(const char* key) const {
+    const auto node = storage[key];
+    return node.isString() ? static_cast<std::string>(node) : "";
+  }
+};
+
+void ReadLens(const Reader& in, CameraCalibration& camera) {
+  camera.distortion_coefficients = in.Matrix(kTermKeys);
+  auto& k = camera.distortion_coefficients;
+  if (in.Whole({"fisheye_model"}, 0) != 0) {
+    camera.distortion = Distortion::kEquidistant;
+    if (k.size() != 4) {
+      throw in.Error(fmt::format(
+          "distortion_coefficients: found {}, expected 4 for a fisheye_model", k.size()));
+    }
+    return;
+  }
+  if (k.empty()) k = {0, 0, 0, 0};
+  if (k.size() == 14 && k[12] == 0 && k[13] == 0) k.resize(12);
+  if (k.size() == 14) {
+    throw in.Error(
+        "distortion_coefficients: found a tilted sensor (the last two of 14), of which "
+        "there is no counterpart");
+  }
+  if (!std::set<std::size_t>{4, 5, 8, 12}.contains(k.size())) {
+    throw in.Error(
+        fmt::format("distortion_coefficients: found {}, expected 4, 5, 8, 12 or 14", k.size()));
+  }
+  camera.distortion = k.size() == 4 ? Distortion::kRadialTangential : Distortion::kOpenCv;
+}
+
+void NoteOtherKeys(const Reader& in, CameraDescription& d) {
+  std::set<std::string> known = {"fisheye_model", "comment", "camera_name", "rostopic", "rate_hz"};
+  for (const Keys keys : {kMatrixKeys, kTermKeys, kWidthKeys, kHeightKeys}) {
+    known.insert(keys.begin(), keys.end());
+  }
+  std::string others;
+  for (const auto& node : in.storage.root()) {
+    if (!known.contains(node.name())) others += (others.empty() ? "" : ", ") + node.name();
+  }
+  if (!others.empty()) d.notes.push_back(others + ": of the calibration, not of the camera");
+}
+
+}  // namespace
+
+CameraDescription ReadOpenCvCamera(const std::filesystem::path& file,
+                                   const CameraFileChoice& choice) {
+  const Reader in(file);
+  CameraDescription d;
+  const auto problem = TakeIntrinsics(in.Matrix(kMatrixKeys), d.calibration);
+  if (!problem.empty()) throw in.Error(fmt::format("camera_matrix: {}", problem));
+  ReadLens(in, d.calibration);
+  d.calibration.width_px = in.Whole(kWidthKeys, choice.width_px);
+  d.calibration.height_px = in.Whole(kHeightKeys, choice.height_px);
+  if (d.calibration.width_px == 0 || d.calibration.height_px == 0) {
+    throw in.Error("does not state image_width and image_height: give them (--resolution W,H)");
+  }
+  d.comment = in.Text("comment");
+  d.camera_name = in.Text("camera_name");
+  d.rostopic = in.Text("rostopic");
+  if (const auto rate = in.storage["rate_hz"]; rate.isReal() || rate.isInt()) {
+    d.calibration.rate_hz = static_cast<double>(rate);
+    d.has_rate = true;
+  }
+  NoteOtherKeys(in, d);
+  return d;
+}
+
+void WriteOpenCvCamera(const std::filesystem::path& file, const CameraDescription& d) {
+  const CameraCalibration& c = d.calibration;
+  const bool fisheye = c.distortion == Distortion::kEquidistant;
+  const cv::Matx33d K(c.fu_px, 0, c.cu_px, 0, c.fv_px, c.cv_px, 0, 0, 1);
+  const cv::Mat terms = cv::Mat(c.distortion_coefficients, true).reshape(1, 1);
+  std::error_code ignored;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+  try {
+    cv::FileStorage out(file.string(), cv::FileStorage::WRITE);
+    if (!out.isOpened()) throw WorkError(fmt::format("{}: cannot be written", file.string()));
+    out << "image_width" << c.width_px << "image_height" << c.height_px;
+    if (fisheye) out << "fisheye_model" << 1;
+    out << "camera_matrix" << cv::Mat(K) << "distortion_coefficients" << terms;
+    if (d.has_rate) out << "rate_hz" << c.rate_hz;
+    if (!d.comment.empty()) out << "comment" << d.comment;
+    if (!d.camera_name.empty()) out << "camera_name" << d.camera_name;
+    if (!d.rostopic.empty()) out << "rostopic" << d.rostopic;
+  } catch (const cv::Exception& error) {
+    throw WorkError(fmt::format("{}: cannot be written by OpenCV: {}", file.string(), error.err));
+  }
+}
+
+}  // namespace flextip

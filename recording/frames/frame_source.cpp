@@ -1,0 +1,276 @@
+#include "recording/frames/frame_source.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <opencv2/videoio.hpp>
+#include <opencv2/videoio/registry.hpp>
+#include <utility>
+
+#include "core/error.h"
+#include "recording/text/text.h"
+
+namespace flextip {
+namespace {
+
+namespace fs = std::filesystem;
+
+Image FromMat(const cv::Mat& picture) {
+  Image image(picture.cols, picture.rows, picture.channels());
+  const auto row_bytes = static_cast<std::size_t>(image.channels) * picture.cols;
+  for (int y = 0; y < picture.rows; ++y) {
+    std::copy_n(picture.ptr<std::uint8_t>(y), row_bytes, image.Row(y));
+  }
+  return image;
+}
+
+void CheckSize(const std::string& what, const Image& image, const CameraCalibration& camera) {
+  if (image.width_px == camera.width_px && image.height_px == camera.height_px) return;
+  throw InputError::At(what, 0,
+                       fmt::format("is {} x {}, expected the camera's {} x {}", image.width_px,
+                                   image.height_px, camera.width_px, camera.height_px));
+}
+
+bool OpenVideo(cv::VideoCapture& video, const std::string& name) {
+  const QuietStderr quiet;
+  try {
+    // Asked for any of its readers, OpenCV complains of each that refuses the file.
+    const bool ffmpeg = cv::videoio_registry::hasBackend(cv::CAP_FFMPEG);
+    return video.open(name, ffmpeg ? cv::CAP_FFMPEG : cv::CAP_ANY);
+  } catch (const cv::Exception&) {
+    return false;
+  }
+}
+
+class PictureFrames : public FrameSource {
+ public:
+  PictureFrames(fs::path folder, Series<std::string> names, const CameraCalibration& camera,
+                const GreyRange& range)
+      : folder_(std::move(folder)), names_(std::move(names)), camera_(camera), range_(range) {}
+
+  std::size_t Count() const override { return names_.size(); }
+  void Skip(std::size_t frames) override { next_ += frames; }
+  std::optional<Frame> Next() override {
+    if (next_ >= names_.size()) return {};
+    const auto& [t_ns, name] = names_[next_++];
+    const fs::path file = folder_ / name;
+    Frame frame{t_ns, ReadGreyOrColour(file, range_)};
+    CheckSize(file.string(), frame.image, camera_);
+    return frame;
+  }
+
+ private:
+  fs::path folder_;
+  Series<std::string> names_;
+  CameraCalibration camera_;
+  GreyRange range_;
+  std::size_t next_ = 0;
+};
+
+/// All frames of a video, by a rate, or those of `numbers`.
+class VideoFrames : public FrameSource {
+ public:
+  VideoFrames(const fs::path& file, const CameraCalibration& camera, Series<int> numbers)
+      : file_(file.string()), camera_(camera), numbers_(std::move(numbers)) {
+    if (!OpenVideo(video_, file_)) {
+      throw InputError::At(file_, 0, "the video cannot be opened");
+    }
+  }
+
+  double OwnRate() const { return video_.get(cv::CAP_PROP_FPS); }
+  void SetRate(double rate_hz) { rate_hz_ = rate_hz; }
+
+  std::size_t Count() const override {
+    if (!numbers_.empty()) return numbers_.size();
+    return static_cast<std::size_t>(std::max(0.0, video_.get(cv::CAP_PROP_FRAME_COUNT)));
+  }
+  void Skip(std::size_t frames) override { next_ += frames; }
+  std::optional<Frame> Next() override {
+    if (!numbers_.empty() && next_ >= numbers_.size()) return {};
+    const std::size_t wanted =
+        numbers_.empty() ? next_ : static_cast<std::size_t>(numbers_[next_].value);
+    for (; position_ < wanted; ++position_) {
+      if (!video_.grab()) return {};
+    }
+    cv::Mat picture;
+    if (!video_.read(picture) || picture.empty()) return {};
+    ++position_;
+    const TimeNs t_ns = numbers_.empty() ? std::llround(1e9 * static_cast<double>(next_) / rate_hz_)
+                                         : numbers_[next_].t_ns;
+    ++next_;
+    Frame frame{t_ns, FromMat(picture)};
+    CheckSize(file_, frame.image, camera_);
+    return frame;
+  }
+
+ private:
+  std::string file_;
+  CameraCalibration camera_;
+  Series<int> numbers_;
+  cv::VideoCapture video_;
+  double rate_hz_ = 30.0;
+  std::size_t next_ = 0, position_ = 0;  // the next frame to give, and the one the video gives next
+};
+
+class LiveFrames : public FrameSource {
+ public:
+  LiveFrames(const std::string& source, const CameraCalibration& camera)
+      : source_(source), camera_(camera) {
+    const bool device = std::all_of(source.begin(), source.end(),
+                                    [](unsigned char c) { return c >= '0' && c <= '9'; });
+    if (source.empty() || !Open(device)) {
+      throw InputError(fmt::format("live source {}: cannot be opened", Quoted(source)));
+    }
+  }
+
+  std::size_t Count() const override { return 0; }
+  void Skip(std::size_t frames) override {
+    for (std::size_t i = 0; i < frames; ++i) (void)video_.grab();
+  }
+  std::optional<Frame> Next() override {
+    if (!video_.grab()) return {};
+    using std::chrono::nanoseconds;
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    // A clock that was set back must not turn time around.
+    last_ns_ = std::max(last_ns_ + 1, std::chrono::duration_cast<nanoseconds>(now).count());
+    cv::Mat picture;
+    if (!video_.retrieve(picture) || picture.empty()) return {};
+    Frame frame{last_ns_, FromMat(picture)};
+    CheckSize(source_, frame.image, camera_);
+    return frame;
+  }
+
+ private:
+  bool Open(bool device) {
+    if (!device) return OpenVideo(video_, source_);
+    const auto number = ParseInteger(source_);
+    if (!number || *number > 1000) return false;
+    const QuietStderr quiet;
+    try {
+      if (!video_.open(static_cast<int>(*number))) return false;
+    } catch (const cv::Exception&) {
+      return false;
+    }
+    // A device gives its own size unless asked; the newest frame counts, not a queue of old ones.
+    video_.set(cv::CAP_PROP_FRAME_WIDTH, camera_.width_px);
+    video_.set(cv::CAP_PROP_FRAME_HEIGHT, camera_.height_px);
+    video_.set(cv::CAP_PROP_BUFFERSIZE, 1);
+    return true;
+  }
+
+  std::string source_;
+  CameraCalibration camera_;
+  cv::VideoCapture video_;
+  TimeNs last_ns_ = 0;
+};
+
+bool IsPicture(const fs::path& file) {
+  std::string kind = file.extension().string();
+  std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) {
+    return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  });
+  for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff"}) {
+    if (kind == known) return true;
+  }
+  return false;
+}
+
+/// frame_2 before frame_10: runs of digits compare as numbers.
+bool NaturallyBefore(const std::string& a, const std::string& b) {
+  const auto digits = [](const std::string& s, std::size_t from) {
+    const auto end = s.find_first_not_of("0123456789", from);
+    const std::string run = s.substr(from, end - from);
+    const auto start = run.find_first_not_of('0');
+    return std::pair(run.size(), start == std::string::npos ? "" : run.substr(start));
+  };
+  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+    const auto [length_a, number_a] = digits(a, i);
+    const auto [length_b, number_b] = digits(b, j);
+    if (length_a > 0 && length_b > 0) {
+      if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
+      if (number_a != number_b) return number_a < number_b;
+      i += length_a, j += length_b;
+    } else if (a[i] != b[j]) {
+      return a[i] < b[j];
+    } else {
+      ++i, ++j;
+    }
+  }
+  return std::pair(a.size(), a) < std::pair(b.size(), b);
+}
+
+/// Every name as a number of nanoseconds, where that can be meant.
+std::vector<TimeNs> TimesOfNames(const std::vector<std::string>& names) {
+  constexpr TimeNs kShortest_ns = 100'000;
+  std::vector<TimeNs> times;
+  for (const auto& name : names) {
+    const auto time = ParseInteger(fs::path(name).stem().string());
+    if (!time || (!times.empty() && *time - times.back() < kShortest_ns)) return {};
+    times.push_back(*time);
+  }
+  return times.size() > 1 ? times : std::vector<TimeNs>{};
+}
+
+}  // namespace
+
+Series<std::string> PicturesInFolder(const fs::path& folder, double rate_hz,
+                                     bool times_from_names) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.is_regular_file() && IsPicture(entry.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end(), NaturallyBefore);
+  const auto times = times_from_names ? TimesOfNames(names) : std::vector<TimeNs>{};
+  Series<std::string> pictures;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const TimeNs by_rate = std::llround(1e9 * static_cast<double>(i) / rate_hz);
+    pictures.push_back({times.empty() ? by_rate : times[i], names[i]});
+  }
+  return pictures;
+}
+
+std::unique_ptr<FrameSource> OpenRecordedFrames(const fs::path& recording, const std::string& name,
+                                                const CameraStream& camera,
+                                                const GreyRange& range) {
+  const fs::path folder = recording / name;
+  if (!camera.video.empty() && !camera.frame_numbers.empty()) {
+    return std::make_unique<VideoFrames>(folder / camera.video, camera.calibration,
+                                         camera.frame_numbers);
+  }
+  if (camera.filenames.empty()) {
+    throw InputError::At(folder.string(), 0, "no frames, only the camera's settings");
+  }
+  return std::make_unique<PictureFrames>(folder / "data", camera.filenames, camera.calibration,
+                                         range);
+}
+
+std::unique_ptr<FrameSource> OpenPlainFrames(const fs::path& source,
+                                             const CameraCalibration& camera,
+                                             const std::optional<double>& rate_hz,
+                                             const GreyRange& range) {
+  std::error_code error;
+  if (fs::is_directory(source, error)) {
+    auto pictures = PicturesInFolder(source, rate_hz.value_or(camera.rate_hz), !rate_hz);
+    if (pictures.empty()) {
+      throw InputError::At(source.string(), 0, "no PNG, JPEG or TIFF files, expected frames");
+    }
+    return std::make_unique<PictureFrames>(source, std::move(pictures), camera, range);
+  }
+  if (!fs::is_regular_file(source, error)) {
+    throw InputError::At(source.string(), 0,
+                         "no such folder or file, expected a recording, pictures or a video");
+  }
+  auto video = std::make_unique<VideoFrames>(source, camera, Series<int>{});
+  const double own = video->OwnRate();
+  video->SetRate(rate_hz.value_or(own > 0 && own < 1e5 ? own : camera.rate_hz));
+  return video;
+}
+
+std::unique_ptr<FrameSource> OpenLiveFrames(const std::string& source,
+                                            const CameraCalibration& camera) {
+  return std::make_unique<LiveFrames>(source, camera);
+}
+
+}  // namespace flextip

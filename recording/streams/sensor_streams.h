@@ -1,0 +1,47 @@
+// One reader and one writer for each sensor's folder. `folder` is RECORDING/wrist0 and so on;
+// readers throw InputError with file and line, and log what they had to skip.
+#pragma once
+
+#include <filesystem>
+
+#include "recording/read_log.h"
+#include "recording/recording.h"
+#include "recording/text/csv.h"
+
+namespace flextip {
+
+WristStream ReadWrist(const std::filesystem::path& folder, ReadLog& log);
+void WriteWrist(const std::filesystem::path& folder, const WristStream& stream);
+
+CommandStream ReadCommand(const std::filesystem::path& folder, ReadLog& log);
+void WriteCommand(const std::filesystem::path& folder, const CommandStream& stream);
+
+/// An EM sensor on the shaft is `length_m` from the tip at most; one on the port (`on_port`) needs
+/// no distance.
+EmStream ReadEm(const std::filesystem::path& folder, double length_m, bool on_port, ReadLog& log);
+void WriteEm(const std::filesystem::path& folder, const EmStream& stream);
+
+/// The stations lie along the shaft, within `length_m`, the first one nearer to the wrist.
+StrainStream ReadStrain(const std::filesystem::path& folder, double length_m, ReadLog& log);
+void WriteStrain(const std::filesystem::path& folder, const StrainStream& stream);
+
+LoadStream ReadLoad(const std::filesystem::path& folder, ReadLog& log);
+void WriteLoad(const std::filesystem::path& folder, const LoadStream& stream);
+
+CameraStream ReadCamera(const std::filesystem::path& folder, bool check_frames, ReadLog& log);
+void WriteCamera(const std::filesystem::path& folder, const CameraStream& stream);
+
+/// A collar's sensor.yaml, alone.
+TagCollar ReadCollarFile(const std::filesystem::path& file, ReadLog& log);
+TagCollar ReadTags(const std::filesystem::path& folder, ReadLog& log);
+void WriteTags(const std::filesystem::path& folder, const TagCollar& collar);
+
+VisionStream ReadVision(const std::filesystem::path& folder, ReadLog& log);
+void WriteVision(const std::filesystem::path& folder, const VisionStream& stream);
+
+/// The parts of WriteVision, for a table that is written as its rows come.
+const std::vector<std::string>& VisionColumns();  ///< without the time
+void AddVisionRow(CsvWriter& csv, const Sample<TipObservation>& tip);
+void WriteVisionSettings(const std::filesystem::path& folder, const VisionStream& stream);
+
+}  // namespace flextip

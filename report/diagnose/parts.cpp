@@ -1,0 +1,168 @@
+#include "report/diagnose/parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/report.h"
+
+namespace flextip::report {
+namespace {
+
+constexpr std::size_t kBars = 8;
+constexpr double kFaint = kChanceScore;
+
+std::string Paragraph(const char* style, const std::string& text) {
+  return text.empty() ? "" : fmt::format("<p class=\"{}\">{}</p>\n", style, EscapeHtml(text));
+}
+
+std::string FigureHtml(const char* style, const std::string& title, const std::string& inside,
+                       const std::string& caption) {
+  return fmt::format(
+      "<figure class=\"table {}\">\n<h3>{}</h3>\n{}{}</figure>\n", style, EscapeHtml(title), inside,
+      caption.empty() ? "" : fmt::format("<figcaption>{}</figcaption>\n", EscapeHtml(caption)));
+}
+
+/// From white to deep blue with the logarithm of the score; chance stays white.
+std::string ScoreStyle(double score, double largest) {
+  const double top = std::log(std::max(largest, 4.0 * kFaint) / kFaint);
+  const double depth = score <= kFaint ? 0.0 : std::clamp(std::log(score / kFaint) / top, 0.0, 1.0);
+  const auto mix = [&](double light, double dark) {
+    return int(std::lround(light + (dark - light) * depth));
+  };
+  return fmt::format("background:rgb({},{},{});color:{}", mix(255, 8), mix(255, 69), mix(255, 110),
+                     depth > 0.5   ? "#fff"
+                     : depth > 0.0 ? "#1d2733"
+                                   : "#8a95a1");
+}
+
+void AddOnce(std::vector<std::string>& list, const std::string& item) {
+  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+}
+
+std::string HeatRow(const std::string& channel, const std::vector<std::string>& regressors,
+                    const std::vector<DiagnosedSignature>& signatures) {
+  std::string row = fmt::format("<tr><th>{}</th>", EscapeHtml(SpokenChannel(channel)));
+  for (const auto& against : regressors) {
+    const auto it = std::find_if(signatures.begin(), signatures.end(), [&](const auto& s) {
+      return s.channel == channel && s.against == against;
+    });
+    row += it == signatures.end()
+               ? "<td></td>"
+               : fmt::format("<td style=\"{}\">{}</td>",
+                             ScoreStyle(it->score, signatures.front().score),
+                             fmt::format("{:.{}f}", it->score, it->score < 10.0 ? 1 : 0));
+  }
+  return row + "</tr>\n";
+}
+
+std::string ErrorText(double error) { return fmt::format("{:.{}f}", error, error < 10.0 ? 2 : 0); }
+
+}  // namespace
+
+std::string HeadlineHtml(const Headline& headline) {
+  std::string html = "<section class=\"verdict\">\n" + Paragraph("says", headline.verdict);
+  if (!headline.causes.empty()) {
+    html += "<ul class=\"says\">";
+    for (const auto& cause : headline.causes) html += "<li>" + EscapeHtml(cause) + "</li>\n";
+    html += "</ul>\n";
+  }
+  return html + Paragraph("gains", headline.gain) + Paragraph("advice", headline.advice) +
+         "</section>\n";
+}
+
+std::string BarsHtml(const std::string& title, const std::vector<Bar>& bars,
+                     const std::string& caption) {
+  if (bars.empty()) return "";
+  std::string rows = "<div class=\"bars\">\n";
+  for (const auto& bar : bars) {
+    rows += fmt::format(
+        "<span class=\"label{0}\">{1}</span><span class=\"track\"><i class=\"bar{0}\" "
+        "style=\"width:{2:.2f}%\"></i></span><span class=\"number{0}\">{3}</span>\n",
+        bar.strong ? " strong" : "", EscapeHtml(bar.label), 100.0 * std::clamp(bar.share, 0.0, 1.0),
+        EscapeHtml(bar.value));
+  }
+  return FigureHtml("half", title, rows + "</div>\n", caption);
+}
+
+std::vector<Bar> ProbabilityBars(const DiagnosedResult& result) {
+  std::vector<std::string> found;  // the verdict and what this recording cannot tell from it
+  for (const auto& set : result.Equivalents()) found.push_back(JoinedEffects(set));
+  std::vector<Bar> bars;
+  for (const auto& [name, p] : result.probabilities) {
+    const bool strong = std::find(found.begin(), found.end(), name) != found.end();
+    const bool always = strong || name == "none" || name == "unknown";
+    if (!always && (bars.size() >= kBars || p < 5e-4)) continue;
+    bars.push_back({SpokenHypothesis(name), Percent(p), p, strong});
+  }
+  return bars;
+}
+
+std::vector<Bar> PresenceBars(const DiagnosedResult& result) {
+  std::vector<std::string> found;
+  for (const auto& set : result.Equivalents()) found.insert(found.end(), set.begin(), set.end());
+  std::vector<Bar> bars;
+  for (const auto& [name, p] : result.presence) {
+    if (name == "none" || name == "unknown" || bars.size() >= kBars || p < 5e-4) continue;
+    const bool strong = std::find(found.begin(), found.end(), name) != found.end();
+    bars.push_back({SpokenHypothesis(name), Percent(p), p, strong});
+  }
+  return bars;
+}
+
+std::string HeatMapHtml(const std::vector<DiagnosedSignature>& signatures) {
+  if (signatures.empty()) return "";
+  std::vector<std::string> channels, regressors;  // strongest first, as the list is
+  for (const auto& s : signatures) {
+    AddOnce(channels, s.channel);
+    AddOnce(regressors, s.against);
+  }
+  std::string table = "<table class=\"heat\">\n<thead><tr><th></th>";
+  for (const auto& against : regressors) {
+    table += "<th>" + EscapeHtml(SpokenHypothesis(against)) + "</th>";
+  }
+  table += "</tr></thead>\n<tbody>";
+  for (const auto& channel : channels) table += HeatRow(channel, regressors, signatures);
+  return FigureHtml("wide", "Which residual depends on what", table + "</tbody></table>\n",
+                    "Each number says how strongly the base simulation's residual in that channel "
+                    "depends on that quantity, in standard deviations of what chance gives. Below "
+                    "3 is chance.");
+}
+
+std::string ErrorBarsHtml(const std::string& title, std::vector<ErrorPair> errors,
+                          const std::string& caption) {
+  if (errors.empty()) return "";
+  std::stable_sort(errors.begin(), errors.end(),
+                   [](const auto& a, const auto& b) { return a.base > b.base; });
+  double longest = 2.0;
+  for (const auto& e : errors) longest = std::max({longest, 1.05 * e.base, 1.05 * e.extended});
+  std::string rows =
+      "<p class=\"key\"><b class=\"base\"></b>base simulation <b class=\"extended\"></b>extended "
+      "model <b class=\"mark\"></b>noise (1)</p>\n<div class=\"bars pairs\">\n";
+  for (const auto& e : errors) {
+    rows += fmt::format(
+        "<span class=\"label\">{}</span><span class=\"track\"><i class=\"bar base\" "
+        "style=\"width:{:.2f}%\"></i><i class=\"bar extended\" style=\"width:{:.2f}%\"></i><u "
+        "style=\"left:{:.2f}%\"></u></span><span class=\"number\">{} → {}</span>\n",
+        EscapeHtml(e.label), 100.0 * e.base / longest, 100.0 * e.extended / longest,
+        100.0 / longest, ErrorText(e.base), ErrorText(e.extended));
+  }
+  return FigureHtml("wide", title, rows + "</div>\n", caption);
+}
+
+std::string FoldedTableHtml(const std::string& title, const std::vector<std::string>& header,
+                            const std::vector<std::vector<std::string>>& rows) {
+  const auto line = [](const std::vector<std::string>& cells, const char* element) {
+    std::string html = "<tr>";
+    for (const auto& c : cells) html += fmt::format("<{0}>{1}</{0}>", element, EscapeHtml(c));
+    return html + "</tr>\n";
+  };
+  std::string html = fmt::format("<details class=\"table\"><summary>{}</summary>\n<table><thead>{}",
+                                 EscapeHtml(title), line(header, "th"));
+  html += "</thead>\n<tbody>";
+  for (const auto& row : rows) html += line(row, "td");
+  return html + "</tbody></table></details>\n";
+}
+
+}  // namespace flextip::report

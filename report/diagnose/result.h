@@ -1,0 +1,84 @@
+// diagnosis.json as the page needs it. What is absent in the file is empty here: a page can be made
+// of an older or a shorter answer.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace flextip::report {
+
+/// One named parameter of an effect, in SI; all lists have the size of `value`, or are empty.
+struct DiagnosedParameter {
+  std::string effect = {}, name = {};
+  std::vector<double> value = {}, sd = {};
+  std::vector<double> nominal = {};    ///< what the base simulation takes
+  std::vector<double> tolerance = {};  ///< one standard deviation of what is within specification
+  bool is_list = false;
+
+  /// How far component `i` is from nominal, in tolerances; nothing where it has none.
+  std::optional<double> TolerancesOff(std::size_t i) const;
+};
+
+struct DiagnosedScore {
+  std::map<std::string, double> heldout_rms;  ///< by channel, in its unit
+  std::optional<double> tip_prediction_rms_m, weighted_rms, chi2_per_dof;
+};
+
+struct DiagnosedSignature {
+  std::string channel, against;
+  double score = 0.0;
+};
+
+struct ClosedLoopGain {
+  std::string controller;
+  std::optional<double> max_before_m, max_after_m, rms_before_m, rms_after_m;
+};
+
+/// Effects as one hypothesis: sorted, with "+" between.
+std::string JoinedEffects(std::vector<std::string> effects);
+
+struct DiagnosedResult {
+  std::vector<std::string> verdicts;
+  std::vector<std::pair<std::string, double>> probabilities;  ///< most likely first
+  std::vector<std::pair<std::string, double>> presence;       ///< of each effect, likeliest first
+  std::vector<std::string> credible_set;                      ///< names as in probabilities
+  std::vector<std::vector<std::string>> indistinguishable;    ///< one group for each verdict
+  std::string separating_motion;
+  std::vector<DiagnosedParameter> parameters, within_tolerance;
+  DiagnosedScore base, extended;
+  std::optional<double> heldout_error_ratio, tip_error_ratio;
+  std::optional<std::pair<double, double>> heldout_error_interval;
+  std::vector<DiagnosedSignature> signatures;  ///< strongest first
+  std::map<std::string, double> noise_scale;   ///< measured over data sheet's, by channel
+  std::map<std::string, double> noise_sd;      ///< in the channel's unit, by channel
+  std::map<std::string, std::string> summaries;
+  std::optional<ClosedLoopGain> closed_loop;
+  std::vector<std::string> catalogue, warnings;
+  std::vector<std::pair<std::string, double>> counts;  ///< samples, failed_samples, fits
+
+  bool Is(const std::string& answer) const;  ///< the verdict is this alone
+  /// Of the hypothesis of these effects together, in whatever order; zero where not listed.
+  double Probability(const std::vector<std::string>& effects) const;
+  /// Of the verdict, together with all that the recording cannot tell apart from it.
+  double VerdictProbability() const;
+  /// Every combination of one effect from each group, the verdict among them.
+  std::vector<std::vector<std::string>> Equivalents() const;
+};
+
+/// Throws InputError where the file cannot be read, is no JSON, or holds something else than
+/// docs/formats.md says.
+DiagnosedResult ReadDiagnosedResult(const std::filesystem::path& path);
+
+/// What summary.json says of the run: names and values as shown, and the warnings.
+struct RunSummary {
+  std::string command = {}, version = {};
+  std::vector<std::pair<std::string, std::string>> figures = {};
+  std::vector<std::string> warnings = {};
+};
+RunSummary ReadRunSummary(const std::filesystem::path& path);
+
+}  // namespace flextip::report

@@ -1,0 +1,224 @@
+#include "reproduction/chapter5/sensor_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "control/controller.h"
+#include "estimation/window_estimator.h"
+#include "simulation/closed_loop/tip_path.h"
+#include "simulation/plant/plant.h"
+#include "simulation/sensors/sensors.h"
+
+namespace flextip::reproduction {
+namespace {
+
+// The press of the demo (testdata/scenarios/press.yaml).
+const Instrument kInstrument{0.6, 0.00238, 0.304, 0.0};
+const Eigen::Vector3d kPort(0.0, 0.0, 0.17), kWrist(-0.2457, 0.0, 0.3421);
+const Eigen::Vector3d kSurface(0.2457, 0.0, -0.0021);
+const Eigen::Vector3d kPortOff = Eigen::Vector3d(0.3, 0.8, 0.5).normalized();
+const Eigen::Vector3d kHung(0.25, -0.2, 0.45);  // N
+constexpr double kRate_hz = 30.0, kEmFromTip_m = 0.02, kWander_m = 0.008;
+constexpr int kWanderUpdates = 30;
+
+simulation::SensorSetup AllSensors() {
+  simulation::SensorSetup setup;
+  setup.wrist.emplace();
+  setup.wrist->rate_hz = kRate_hz;
+  setup.wrist->position_noise_m = 0.00005;
+  setup.wrist->orientation_noise_rad = 0.0003;
+  setup.em0.emplace();
+  setup.em0->rate_hz = kRate_hz;
+  setup.em0->distance_from_tip_m = kEmFromTip_m;
+  setup.em0->position_noise_m = 0.00013;
+  setup.em0->orientation_noise_rad = 0.00056;
+  setup.strain.emplace();
+  setup.strain->rate_hz = kRate_hz;
+  setup.strain->station_from_wrist_m[0] = 0.15;
+  setup.strain->station_from_wrist_m[1] = 0.5;
+  setup.strain->moment_noise_Nm = 0.0008;
+  setup.load.emplace();
+  setup.load->rate_hz = kRate_hz;
+  setup.load->force_noise_N = 0.005;
+  setup.tip.emplace();
+  setup.tip->rate_hz = kRate_hz;
+  setup.tip->depth_noise_m = 0.0006;
+  setup.tip->line_of_sight = Eigen::Vector3d(-0.27, 0.73, -0.63).normalized();
+  return setup;
+}
+
+simulation::PlantSetup MakePlant(const SensorCase& setup) {
+  simulation::PlantSetup plant;
+  plant.instrument = kInstrument;
+  plant.p_RP = kPort + setup.port_off_m * kPortOff;
+  if (setup.move == SensorMove::kLateral) {
+    plant.load.constant_N = kHung;
+    return plant;
+  }
+  simulation::Tissue tissue;
+  tissue.p_surface = tissue.p_anchor = kSurface;
+  tissue.stiffness_N_m = 50.0;
+  tissue.tangential_stiffness_N_m = 4.0;
+  plant.load.tissue = tissue;
+  return plant;
+}
+
+simulation::PathSetup MakePath(SensorMove move) {
+  simulation::PathSetup path;
+  path.speed_m_s = 0.015;
+  path.settle_s = 0.3;
+  if (move == SensorMove::kPress) path.waypoints_m = {{0.0, 0.0, -0.01}};
+  if (move == SensorMove::kLateral) path.waypoints_m = {{0.002, 0.009, -0.004}};
+  return path;
+}
+
+ControllerKind KindFor(const SensorCase& setup) {
+  const bool sees = setup.sensors.SeesTip();
+  switch (setup.model) {
+    case SensorModel::kStraight:
+      return sees ? ControllerKind::kStraightTrack : ControllerKind::kStraightCalculate;
+    case SensorModel::kFlex:
+      return sees ? ControllerKind::kFlexTrack : ControllerKind::kFlexCalculate;
+    case SensorModel::kRod:
+      break;
+  }
+  return sees ? ControllerKind::kRodTrack : ControllerKind::kRodCalculate;
+}
+
+EstimatorOptions MakeEstimator(const SensorCase& setup) {
+  EstimatorOptions options;
+  options.instrument = kInstrument;
+  options.p_RP = kPort;
+  options.port_prior_m = setup.port_prior_m;
+  options.use_positions = setup.sensors.SeesTip();
+  return options;
+}
+
+/// The newest sample of the sensors in the set.
+Measurements Gather(const Recording& r, const SensorSet& sensors) {
+  Measurements z;
+  z.p_RW = r.wrist0->samples.back().value.p_RW;
+  z.wrist_position_noise_m = r.wrist0->position_noise_m;
+  z.R_RW = r.wrist0->samples.back().value.q_RW->toRotationMatrix();
+  z.wrist_orientation_noise_rad = r.wrist0->orientation_noise_rad;
+  if (sensors.tip) {
+    z.tip = r.vision0->tips.back().value;
+    z.tip_direction_noise_rad = r.vision0->direction_noise_rad;
+    if (!sensors.tip_direction) z.tip->d_RE.reset();
+  }
+  if (sensors.em_position || sensors.em_direction) {
+    const EmSample& em = r.em0->samples.back().value;
+    z.em = EmMeasurement{Pose::FromQuaternion(em.q_RS, em.p_RS), kEmFromTip_m,
+                         r.em0->position_noise_m, r.em0->orientation_noise_rad};
+    if (!sensors.em_position) z.em->position_noise_m = 1e3;  // its position says nothing
+  }
+  if (sensors.strain) {
+    z.strain =
+        StrainMeasurement{r.strain0->moments_Nm.back().value,
+                          {r.strain0->station_from_wrist_m[0], r.strain0->station_from_wrist_m[1]},
+                          r.strain0->moment_noise_Nm};
+  }
+  if (sensors.load) z.load = LoadMeasurement{r.load0->f_tip_N.back().value, r.load0->force_noise_N};
+  return z;
+}
+
+class SensorLoop {
+ public:
+  explicit SensorLoop(const SensorCase& setup)
+      : setup_(setup),
+        plant_(MakePlant(setup), {.links_before_port = 60, .links_behind_port = 60}),
+        sensors_(AllSensors(), setup.seed),
+        single_(MakeEstimator(setup)),
+        window_({.estimator = MakeEstimator(setup)}),
+        controller_({.kind = KindFor(setup), .max_step_m = 0.02}) {}
+
+  SensorRun Run() {
+    Wander();
+    if (run_.lost) return run_;
+    std::optional<simulation::TipPath> path;
+    path.emplace(MakePath(setup_.move), shape_.T_RE().p, kRate_hz);
+    Eigen::Vector3d p_RW = kWrist;
+    while (!path->Done() && Move(p_RW)) {
+      const Measurements z = Sense();
+      const ShaftEstimate estimate = Estimate(z);
+      const ControlInput input = MakeInput(z, estimate, path->Advance(Eigen::Vector3d::Zero()));
+      const ControlOutput output = controller_.Step(input);
+      Score(output, path->Deviation(shape_.T_RE().p));
+      p_RW = output.p_RW_command + (p_RW - z.p_RW);
+    }
+    const double count = std::max(1, run_.updates);
+    run_.tip_rms_m = std::sqrt(run_.tip_rms_m / count);
+    run_.path_rms_m = std::sqrt(run_.path_rms_m / count);
+    return run_;
+  }
+
+ private:
+  /// Three slow sines that end where they began.
+  void Wander() {
+    for (int i = 0; i <= kWanderUpdates && !run_.lost; ++i) {
+      const double turn = 2.0 * 3.14159265358979 * i / kWanderUpdates;
+      const Eigen::Vector3d away(std::sin(turn), std::sin(2.0 * turn), std::sin(3.0 * turn));
+      if (Move(kWrist + kWander_m * away)) Estimate(Sense());
+    }
+  }
+
+  bool Move(const Eigen::Vector3d& p_RW) {
+    shape_ = plant_.Solve(p_RW);
+    run_.lost = !shape_.IsUsable();
+    return !run_.lost;
+  }
+
+  Measurements Sense() {
+    const TimeNs t_ns = simulation::kSimulationStart_ns + std::llround(tick_++ * 1e9 / kRate_hz);
+    sensors_.Sample(shape_, t_ns, recording_);
+    return Gather(recording_, setup_.sensors);
+  }
+
+  ShaftEstimate Estimate(const Measurements& z) {
+    return setup_.window ? window_.Update(z).shaft : single_.Update(z);
+  }
+
+  ControlInput MakeInput(const Measurements& z, const ShaftEstimate& estimate,
+                         const Eigen::Vector3d& p_RE_desired) const {
+    ControlInput input;
+    input.p_RW = z.p_RW;
+    input.p_RE_desired = p_RE_desired;
+    input.model = estimate.model;
+    if (setup_.model == SensorModel::kStraight) input.model.p_RP = kPort;
+    input.tip_measured = setup_.sensors.SeesTip();
+    if (z.tip) {
+      input.p_RE_measured = z.tip->p_RE;
+    } else if (z.em) {
+      input.p_RE_measured = z.em->T_RS.p + kEmFromTip_m * z.em->T_RS.R.col(0);
+    }
+    const bool fused = setup_.model == SensorModel::kRod && estimate.status == EstimateStatus::kOk;
+    if (fused) input.p_RE_measured = estimate.p_RE;
+    return input;
+  }
+
+  void Score(const ControlOutput& output, double deviation_m) {
+    ++run_.updates;
+    run_.without_model += output.status != ControlStatus::kOk;
+    run_.tip_rms_m += (output.p_RE_used - shape_.T_RE().p).squaredNorm();
+    run_.path_rms_m += deviation_m * deviation_m;
+    run_.path_max_m = std::max(run_.path_max_m, deviation_m);
+  }
+
+  SensorCase setup_;
+  simulation::Plant plant_;
+  simulation::Sensors sensors_;
+  ShaftEstimator single_;
+  WindowEstimator window_;
+  TipController controller_;
+  Recording recording_;
+  simulation::PlantShape shape_;
+  SensorRun run_;
+  int tick_ = 0;
+};
+
+}  // namespace
+
+SensorRun RunSensorCase(const SensorCase& setup) { return SensorLoop(setup).Run(); }
+
+}  // namespace flextip::reproduction

@@ -1,0 +1,74 @@
+// The closed loop: plant -> sensors (and laparoscope -> vision) -> estimation -> control -> wrist.
+// Estimator and controller are given what the sensors say and nothing else.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "control/controller.h"
+#include "core/image.h"
+#include "estimation/instrument_model.h"
+#include "recording/recording.h"
+#include "recording/truth.h"
+#include "simulation/closed_loop/tip_path.h"
+#include "simulation/plant/plant.h"
+#include "simulation/render/laparoscope.h"
+#include "simulation/sensors/sensors.h"
+#include "vision/tracking/tip_tracker.h"
+
+namespace flextip::simulation {
+
+struct LoopSetup {
+  Recording base;  ///< instrument, registered port, gravity, camera and collar; no samples
+  PlantSetup plant;
+  PlantOptions plant_options;
+  Eigen::Vector3d p_RW_start = Eigen::Vector3d::Zero();
+  double max_wrist_speed_m_s = 0.2;
+  SensorSetup sensors;
+  SensorEffects sensor_effects;
+  /// Makes the found model that estimator and controller know of; empty: none. The plant does not
+  /// know it. Called for each run, perhaps by several at once.
+  std::function<std::unique_ptr<InstrumentModel>()> model;
+  double update_rate_hz = 30.0;  ///< of the controller: the camera's
+  PathSetup path;
+  ControllerOptions controller;
+  double port_prior_m = 0.0003;
+  std::uint64_t seed = 1;
+};
+
+/// For rendered runs. `save` is given every frame as the camera made it.
+struct LoopCamera {
+  const Laparoscope& laparoscope;
+  TrackerOptions tracker;
+  std::function<void(TimeNs, const Image&)> save;
+};
+
+/// One update, for scoring and pictures.
+struct LoopUpdate {
+  TimeNs t_ns = 0;
+  Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();  ///< true
+  double deviation_m = 0.0;                        ///< of the true tip from the path
+  ControlStatus status = ControlStatus::kOk;
+};
+
+struct LoopResult {
+  Recording recording;
+  Series<TruthSample> truth;
+  std::vector<LoopUpdate> updates;
+  double max_deviation_m = 0.0, rms_deviation_m = 0.0;
+  double final_error_m = 0.0;  ///< of the true tip from the last waypoint
+  std::map<std::string, int> control_statuses, tip_statuses;
+  int steps_limited = 0, steps_damped = 0;
+};
+
+/// Runs one controller along the path. `camera` null: the tip comes from `sensors.tip` instead.
+/// Throws InputError where the plant has no equilibrium at the start and WorkError where it loses
+/// it on the way.
+LoopResult RunClosedLoop(const LoopSetup& setup, const LoopCamera* camera,
+                         const std::function<void(int done, int total)>& progress = {});
+
+}  // namespace flextip::simulation

@@ -1,0 +1,53 @@
+// The path the tip is asked to follow: straight legs between waypoints.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+namespace flextip::simulation {
+
+enum class PathMode {
+  kContinuous,  ///< the goal moves along the legs at a speed
+  kSteps,       ///< thesis 4.3.1: the goal moves on by a step each update and waits at a leg's end
+};
+
+struct PathSetup {
+  PathMode mode = PathMode::kContinuous;
+  std::vector<Eigen::Vector3d> waypoints_m;  ///< relative to where the tip starts, in R
+  double speed_m_s = 0.02;                   ///< kContinuous
+  double settle_s = 0.5;                     ///< kContinuous: held at the last waypoint
+  double step_m = 0.002;                     ///< kSteps
+  double reached_m = 0.00005;                ///< kSteps: close enough to a leg's end
+  int max_updates = 40;                      ///< kSteps: for one leg
+};
+
+/// Where the tip should be, update by update.
+class TipPath {
+ public:
+  TipPath(const PathSetup& setup, const Eigen::Vector3d& p_start, double update_rate_hz);
+
+  /// The goal of the next update. `p_RE_known` is the tip as the controller knows it.
+  Eigen::Vector3d Advance(const Eigen::Vector3d& p_RE_known);
+  bool Done() const { return done_; }
+
+  /// How far `p` is from the path travelled so far: from the leg under way and the one before.
+  double Deviation(const Eigen::Vector3d& p) const;
+  /// How many updates the path takes at most.
+  int MaxUpdates() const;
+
+ private:
+  Eigen::Vector3d AdvanceContinuous();
+  Eigen::Vector3d AdvanceStep(const Eigen::Vector3d& p_RE_known);
+  double LegLength(std::size_t leg) const { return (points_[leg + 1] - points_[leg]).norm(); }
+  Eigen::Vector3d Along(std::size_t leg, double travelled_m) const;
+
+  PathSetup setup_;
+  double update_rate_hz_;
+  std::vector<Eigen::Vector3d> points_;  // the start and the waypoints, in R
+  std::size_t leg_ = 0;
+  double travelled_m_ = 0.0;  // on the leg
+  int updates_ = 0;           // on the leg, or of settling
+  bool done_ = false;
+};
+
+}  // namespace flextip::simulation

@@ -1,0 +1,51 @@
+// The simulated instrument: a shaft pinned at the wrist, sliding through a port and loaded at the
+// tip and by its weight, with whatever PlantEffects adds. Its equilibrium is that of a discrete
+// elastic chain (chain.h), a method of its own: nothing here is shared with the models in
+// kinematics/.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "simulation/plant/chain_curvature.h"
+#include "simulation/plant/chain_problem.h"
+#include "simulation/plant/memory.h"
+#include "simulation/plant/setup.h"
+#include "simulation/plant/shape.h"
+
+namespace flextip::simulation {
+
+/// Finds one equilibrium after the other and starts each from the last.
+class Plant {
+ public:
+  explicit Plant(const PlantSetup& setup, const PlantOptions& options = {});
+
+  /// The equilibrium with the wrist measured at `p_RW`, at the time `t_s`: from the last one where
+  /// there is one, otherwise from the straight shaft with the load applied in steps. What has a
+  /// memory (backlash, friction, tissue on the shaft) goes on from the last equilibrium found; a
+  /// time before the last one's counts as no time passed.
+  PlantShape Solve(const Eigen::Vector3d& p_RW, double t_s = 0.0);
+
+  const PlantSetup& Setup() const { return setup_; }
+  /// Changes the load; the next solve starts from the shape under the old one.
+  void SetLoad(const TipLoad& load) { setup_.load = load; }
+  /// Turns the instrument about its own axis.
+  void SetRoll(double roll_rad) { setup_.roll_rad = roll_rad; }
+
+ private:
+  struct Call;  // what one call of Solve works on
+  static bool SolveNear(const ChainProblem& problem, ChainState& state, int& iterations);
+  bool SolveCold(Call& call) const;
+  bool SolveWithMemory(Call& call) const;
+  void FillShape(const Call& call, PlantShape& shape) const;
+  void FillPort(const Call& call, PlantShape& shape) const;
+  void FillMoments(const Call& call, const ChainRest& rest, PlantShape& shape) const;
+  void FillFrames(const Call& call, const ChainRest& rest, PlantShape& shape) const;
+
+  PlantSetup setup_;
+  PlantOptions options_;
+  bool warm_ = false;
+  ChainState state_;
+  PlantMemory memory_;
+};
+
+}  // namespace flextip::simulation

@@ -1,0 +1,25 @@
+// What a pose was a moment ago, for sensors whose samples are stamped late.
+#pragma once
+
+#include <deque>
+
+#include "core/pose.h"
+#include "core/time_series.h"
+
+namespace flextip::simulation {
+
+/// The last second of a pose. Between the entries it is the cubic through the four around the time,
+/// for the orientation in the rotation vector from the nearest one; before the first it is the
+/// first, after the last it is the last.
+class PoseHistory {
+ public:
+  /// In increasing time; an entry at the last one's time replaces it.
+  void Add(TimeNs t_ns, const Pose& pose);
+  /// Needs an entry.
+  Pose At(TimeNs t_ns) const;
+
+ private:
+  std::deque<Sample<Pose>> entries_;
+};
+
+}  // namespace flextip::simulation

@@ -1,0 +1,254 @@
+#include "testdata/hidden/draw.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/rotation.h"
+
+namespace flextip::hidden {
+namespace {
+
+using Rng = std::mt19937_64;
+
+constexpr double kWithinTolerance = 2.0;  // tolerances; what is further off is not healthy
+
+/// How a present effect's parameter is drawn around its neutral value.
+enum class Form {
+  kSigned,    ///< one number, either sign
+  kPositive,  ///< one number without sign
+  kAny,       ///< a vector of any direction
+  kAcross,    ///< a vector at least half across the shaft
+  kEntries,   ///< a matrix, every entry alike
+  kGages,     ///< one to four of the entries
+};
+
+struct Row {
+  const char *effect, *parameter;
+  int count;
+  double neutral, tolerance, lowest, highest;  // of the deviation, for present effects
+  Form form;
+};
+
+/// docs/effects.md with the plausible limits of a deviation; what is not a size (frequency, phase,
+/// axis) is drawn apart.
+constexpr Row kRows[] = {
+    {"stiffness", "scale", 1, 1.0, 0.02, -0.4, 0.5, Form::kSigned},
+    {"length", "delta_m", 1, 0.0, 0.0003, -0.008, 0.008, Form::kSigned},
+    {"self_weight", "mass_per_length_kg_m", 1, 0.0, 0.003, 0.0, 0.15, Form::kPositive},
+    {"precurvature", "curvature_1_m", 2, 0.0, 0.003, 0.0, 0.3, Form::kAny},
+    {"port_offset", "offset_m", 3, 0.0, 0.0003, 0.0, 0.008, Form::kAcross},
+    {"port_motion", "amplitude_m", 3, 0.0, 0.0001, 0.0, 0.004, Form::kAcross},
+    {"port_compliance", "compliance_m_N", 1, 0.0, 0.00003, 0.0, 0.002, Form::kPositive},
+    {"port_friction", "coefficient", 1, 0.0, 0.03, 0.0, 0.6, Form::kPositive},
+    {"port_moment", "stiffness_Nm_rad", 1, 0.0, 0.005, 0.0, 0.3, Form::kPositive},
+    {"shaft_load", "force_per_length_N_m", 3, 0.0, 0.02, 0.0, 1.0, Form::kAcross},
+    {"wrist_compliance", "compliance_m_N", 1, 0.0, 0.00003, 0.0, 0.002, Form::kPositive},
+    {"tip_compliance", "compliance_m_N", 1, 0.0, 0.00003, 0.0, 0.002, Form::kPositive},
+    {"backlash", "width_m", 1, 0.0, 0.0001, 0.0, 0.003, Form::kPositive},
+    {"em_distortion", "gradient", 9, 0.0, 0.001, 0.0, 0.03, Form::kEntries},
+    {"em_latency", "delay_s", 1, 0.0, 0.003, 0.0, 0.15, Form::kPositive},
+    {"camera_latency", "delay_s", 1, 0.0, 0.003, 0.0, 0.15, Form::kPositive},
+    {"hand_eye", "rotation_rad", 3, 0.0, 0.001, 0.0, 0.04, Form::kAny},
+    {"hand_eye", "translation_m", 3, 0.0, 0.0002, 0.0, 0.006, Form::kAny},
+    {"focal_length", "scale", 1, 1.0, 0.002, -0.1, 0.1, Form::kSigned},
+    {"tag_offset", "offset_m", 3, 0.0, 0.0002, 0.0, 0.004, Form::kAny},
+    {"strain_gain", "gain", 4, 1.0, 0.01, -0.3, 0.3, Form::kGages},
+    {"strain_drift", "rate_Nm_s", 4, 0.0, 0.00002, -0.002, 0.002, Form::kGages},
+};
+
+double Uniform(Rng& rng, double from, double to) {
+  return std::uniform_real_distribution<double>(from, to)(rng);
+}
+
+/// A fresh one each time: no number is kept back from one parameter to the next.
+double Normal(Rng& rng) { return std::normal_distribution<double>()(rng); }
+
+double Sign(Rng& rng) { return Uniform(rng, 0.0, 1.0) < 0.5 ? -1.0 : 1.0; }
+
+/// In tolerances, even in the logarithm.
+double Magnitude(EffectSize size, Rng& rng) {
+  const double range[3][2] = {{3.0, 5.0}, {8.0, 20.0}, {20.0, 40.0}};
+  const auto& [from, to] = range[static_cast<int>(size)];
+  return std::exp(Uniform(rng, std::log(from), std::log(to)));
+}
+
+Eigen::VectorXd Direction(int count, Rng& rng) {
+  Eigen::VectorXd direction(count);
+  do {
+    for (double& x : direction) x = Normal(rng);
+  } while (direction.norm() < 0.1);
+  return direction.normalized();
+}
+
+/// Normal with a standard deviation of one, drawn again where it is beyond kWithinTolerance.
+double CutNormal(Rng& rng) {
+  double x = 0.0;
+  do {
+    x = Normal(rng);
+  } while (std::abs(x) > kWithinTolerance);
+  return x;
+}
+
+Eigen::VectorXd AbsentDeviation(const Row& row, Rng& rng, bool unsigned_value) {
+  Eigen::VectorXd deviation(row.count);
+  for (double& x : deviation) {
+    x = row.tolerance * CutNormal(rng);
+    if (unsigned_value) x = std::abs(x);
+  }
+  return deviation;
+}
+
+Eigen::VectorXd GageDeviation(const Row& row, EffectSize size, Rng& rng) {
+  Eigen::VectorXd deviation = AbsentDeviation(row, rng, false);
+  std::vector<int> gages = {0, 1, 2, 3};
+  std::shuffle(gages.begin(), gages.end(), rng);
+  gages.resize(std::uniform_int_distribution<std::size_t>(1, 4)(rng));
+  for (const int gage : gages) {
+    deviation[gage] = Sign(rng) * row.tolerance * Magnitude(size, rng);
+  }
+  return deviation.cwiseMax(row.lowest).cwiseMin(row.highest);
+}
+
+Eigen::VectorXd PresentDeviation(const Row& row, const EffectDraw& draw, Rng& rng) {
+  if (row.form == Form::kGages) return GageDeviation(row, draw.size, rng);
+  const double size = row.tolerance * Magnitude(draw.size, rng);
+  if (row.form == Form::kSigned) {
+    return Eigen::VectorXd::Constant(1, std::clamp(Sign(rng) * size, row.lowest, row.highest));
+  }
+  Eigen::VectorXd direction = row.count == 1 ? Eigen::VectorXd::Ones(1) : Direction(row.count, rng);
+  if (row.form == Form::kAcross) {
+    while (direction.head<3>().cross(draw.mean_axis).norm() < 0.5) direction = Direction(3, rng);
+  }
+  if (row.form == Form::kEntries) {
+    return (size * std::sqrt(double(row.count)) * direction)
+        .cwiseMax(-row.highest)
+        .cwiseMin(row.highest);
+  }
+  return std::min(size, row.highest) * direction;
+}
+
+std::vector<double> Values(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
+
+/// What has no tolerance of its own: the breath's rhythm and the incision's rest axis.
+void DrawOthers(const EffectDraw& draw, Rng& rng, HiddenLabel& label) {
+  EffectParameters& breath = label.parameters["port_motion"];
+  breath["frequency_hz"] = {Uniform(rng, 0.15, 0.5)};
+  breath["phase_rad"] = {Uniform(rng, 0.0, 2.0 * std::numbers::pi)};
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  const Eigen::Vector2d lean(0.12 * Normal(rng), 0.12 * Normal(rng));
+  const bool along_x = Uniform(rng, 0.0, 1.0) < 0.4 && draw.mean_axis.x() > 0.9;
+  if (!along_x) axis = (draw.mean_axis + NormalBasis(draw.mean_axis) * lean).normalized();
+  label.parameters["port_moment"]["rest_axis"] = Values(axis);
+}
+
+bool Has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void CheckNames(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (!Has(CatalogueEffects(), name) && !Has(OtherForms(), name)) {
+      throw InputError(
+          fmt::format("effect \"{}\" is unknown: expected a name of docs/effects.md, or one of {}",
+                      name, fmt::join(OtherForms(), ", ")));
+    }
+  }
+}
+
+double Scalar(const HiddenLabel& label, const char* effect, const char* parameter) {
+  return label.parameters.at(effect).at(parameter).at(0);
+}
+
+template <int N>
+Eigen::Matrix<double, N, 1> Vector(const HiddenLabel& label, const char* effect,
+                                   const char* parameter) {
+  const std::vector<double>& values = label.parameters.at(effect).at(parameter);
+  assert(values.size() == N);
+  return Eigen::Map<const Eigen::Matrix<double, N, 1>>(values.data());
+}
+
+}  // namespace
+
+const std::vector<std::string>& CatalogueEffects() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> unique;
+    for (const Row& row : kRows) {
+      if (!Has(unique, row.effect)) unique.emplace_back(row.effect);
+    }
+    return unique;
+  }();
+  return names;
+}
+
+const std::vector<std::string>& OtherForms() {
+  static const std::vector<std::string> names = {"port_grip", "taper", "shaft_tissue",
+                                                 "second_contact", "strain_clip"};
+  return names;
+}
+
+HiddenLabel DrawEffects(const EffectDraw& draw, Rng& rng) {
+  CheckNames(draw.present);
+  HiddenLabel label;
+  label.present = draw.present;
+  for (const Row& row : kRows) {
+    // A seed of its own: the others do not change with what is present, nor with draws thrown away.
+    Rng own(rng());
+    const bool present = Has(draw.present, row.effect);
+    Eigen::VectorXd deviation = Eigen::VectorXd::Zero(row.count);
+    if (present) {
+      deviation = PresentDeviation(row, draw, own);
+    } else if (!draw.exact) {
+      const bool weight = std::string(row.effect) == "self_weight";
+      deviation =
+          AbsentDeviation(row, own, row.form == Form::kPositive && (!weight || draw.massless));
+    }
+    label.parameters[row.effect][row.parameter] =
+        Values((deviation.array() + row.neutral).matrix());
+  }
+  DrawOthers(draw, rng, label);
+  return label;
+}
+
+simulation::PlantEffects PlantEffectsOf(const HiddenLabel& label) {
+  simulation::PlantEffects effects;
+  effects.stiffness_scale = Scalar(label, "stiffness", "scale");
+  effects.length_delta_m = Scalar(label, "length", "delta_m");
+  effects.mass_per_length_kg_m = Scalar(label, "self_weight", "mass_per_length_kg_m");
+  effects.curvature_1_m = Vector<2>(label, "precurvature", "curvature_1_m");
+  effects.port_offset_m = Vector<3>(label, "port_offset", "offset_m");
+  effects.port_motion.amplitude_m = Vector<3>(label, "port_motion", "amplitude_m");
+  effects.port_motion.frequency_hz = Scalar(label, "port_motion", "frequency_hz");
+  effects.port_motion.phase_rad = Scalar(label, "port_motion", "phase_rad");
+  effects.port_compliance_m_N = Scalar(label, "port_compliance", "compliance_m_N");
+  effects.port_friction.coefficient = Scalar(label, "port_friction", "coefficient");
+  effects.port_stiffness_Nm_rad = Scalar(label, "port_moment", "stiffness_Nm_rad");
+  effects.port_rest_axis = Vector<3>(label, "port_moment", "rest_axis");
+  effects.shaft_load_N_m = Vector<3>(label, "shaft_load", "force_per_length_N_m");
+  effects.wrist_compliance_m_N = Scalar(label, "wrist_compliance", "compliance_m_N");
+  effects.tip_compliance_m_N = Scalar(label, "tip_compliance", "compliance_m_N");
+  effects.backlash_m = Scalar(label, "backlash", "width_m");
+  return effects;
+}
+
+simulation::SensorEffects SensorEffectsOf(const HiddenLabel& label) {
+  simulation::SensorEffects effects;
+  const std::vector<double>& gradient = label.parameters.at("em_distortion").at("gradient");
+  effects.em_gradient =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(gradient.data());
+  effects.em_latency_s = Scalar(label, "em_latency", "delay_s");
+  effects.camera_latency_s = Scalar(label, "camera_latency", "delay_s");
+  effects.hand_eye_rotation_rad = Vector<3>(label, "hand_eye", "rotation_rad");
+  effects.hand_eye_translation_m = Vector<3>(label, "hand_eye", "translation_m");
+  effects.focal_scale = Scalar(label, "focal_length", "scale");
+  effects.tag_offset_m = Vector<3>(label, "tag_offset", "offset_m");
+  effects.strain_gain = Vector<4>(label, "strain_gain", "gain");
+  effects.strain_drift_Nm_s = Vector<4>(label, "strain_drift", "rate_Nm_s");
+  return effects;
+}
+
+}  // namespace flextip::hidden

@@ -1,0 +1,53 @@
+// Draws what a hidden recording holds: the effects present, and everything else a little off.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "simulation/plant/effects.h"
+#include "simulation/sensors/effects.h"
+
+namespace flextip::hidden {
+
+/// How far beyond specification, in tolerances: 3 to 5, 8 to 20, 20 to 40. Values stay below what
+/// is plausible (a stiffness of 0.6 to 1.5 times the nominal one, 8 mm of port offset, ...).
+enum class EffectSize : std::uint8_t { kSubtle, kPlain, kStrong };
+
+/// Parameter name to values (matrices by rows), as in docs/effects.md.
+using EffectParameters = std::map<std::string, std::vector<double>>;
+
+struct HiddenLabel {
+  std::vector<std::string> present;                    ///< catalogue effects and other forms
+  std::map<std::string, EffectParameters> parameters;  ///< of every catalogue effect
+};
+
+/// The catalogue's names, in its order.
+const std::vector<std::string>& CatalogueEffects();
+
+/// Forms the catalogue lacks: port_grip, taper, shaft_tissue, second_contact, strain_clip. What
+/// they need of the scene is set with it (hidden_recording.h).
+const std::vector<std::string>& OtherForms();
+
+struct EffectDraw {
+  std::vector<std::string> present = {};  ///< throws InputError for a name that is neither
+  EffectSize size = EffectSize::kPlain;
+  bool exact = false;    ///< what is not present is exactly nominal
+  bool massless = true;  ///< nominally: then the weight drawn is not negative
+  Eigen::Vector3d mean_axis = Eigen::Vector3d::UnitX();  ///< of the shaft, in R, unit
+};
+
+/// Absent effects: each number normal with its tolerance as standard deviation, cut off at two
+/// tolerances (drawn again), its magnitude where it has no sign. Present ones: of the size's
+/// magnitude (a vector's norm; each entry's RMS of the EM gradient), any direction, port and shaft
+/// effects at least half across the shaft. Of the gages one to four are off.
+HiddenLabel DrawEffects(const EffectDraw& draw, std::mt19937_64& rng);
+
+/// What the plant and the sensors make of it; forms outside the catalogue are left neutral.
+simulation::PlantEffects PlantEffectsOf(const HiddenLabel& label);
+simulation::SensorEffects SensorEffectsOf(const HiddenLabel& label);
+
+}  // namespace flextip::hidden

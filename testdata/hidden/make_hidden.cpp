@@ -1,0 +1,151 @@
+// Makes recordings whose effect is hidden, for the diagnosis's matrix: folders rec_0000, ...
+// without a word of what is in them, and the labels in one file elsewhere.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "bench/tool.h"
+#include "core/error.h"
+#include "recording/text/text.h"
+#include "testdata/hidden/recording.h"
+
+namespace flextip::hidden {
+namespace {
+
+struct Arguments {
+  HiddenOptions options;
+  std::vector<std::string> effects;
+  std::uint64_t seed = 1;
+  int count = 1;
+  bool no_load = false, truth = false;
+  std::filesystem::path out, label;
+};
+
+const std::map<std::string, EffectSize> kSizes = {{"subtle", EffectSize::kSubtle},
+                                                  {"plain", EffectSize::kPlain},
+                                                  {"strong", EffectSize::kStrong}};
+const std::map<std::string, MotionFamily> kFamilies = {{"tuning", MotionFamily::kTuning},
+                                                       {"held_out", MotionFamily::kHeldOut},
+                                                       {"any", MotionFamily::kAny}};
+
+std::map<std::string, MotionKind> MotionNames() {
+  std::map<std::string, MotionKind> names;
+  for (const MotionKind kind : Kinds(MotionFamily::kAny)) names[Name(kind)] = kind;
+  return names;
+}
+
+std::map<std::string, LoadKind> LoadNames() {
+  std::map<std::string, LoadKind> names;
+  for (int i = 0; i < kLoadKinds; ++i) names[Name(LoadKind(i))] = LoadKind(i);
+  return names;
+}
+
+nlohmann::json Json(const EffectParameters& parameters) {
+  nlohmann::json json;
+  for (const auto& [name, values] : parameters) {
+    if (values.size() == 1) {
+      json[name] = values[0];
+    } else {
+      json[name] = values;
+    }
+  }
+  return json;
+}
+
+nlohmann::json Json(const HiddenRecording& hidden, std::uint64_t seed) {
+  nlohmann::json json = {{"seed", seed},
+                         {"motion", Name(hidden.scene.motion_setup.kind)},
+                         {"load", Name(hidden.scene.load.kind)},
+                         {"attempt", hidden.attempt},
+                         {"effects", nlohmann::json::object()},
+                         {"others", nlohmann::json::object()}};
+  for (const std::string& name : hidden.label.present) {
+    json["effects"][name] = nlohmann::json::object();
+  }
+  for (const auto& [name, parameters] : hidden.label.parameters) {
+    json[json["effects"].contains(name) ? "effects" : "others"][name] = Json(parameters);
+  }
+  return json;
+}
+
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  HiddenOptions& options = arguments.options;
+  app.add_option("--seed", arguments.seed, "Of the first recording; the next ones count on");
+  app.add_option("--count", arguments.count, "How many recordings")->check(CLI::PositiveNumber);
+  app.add_option("--effects", arguments.effects,
+                 "Names with commas between (docs/effects.md, port_grip, taper, shaft_tissue, "
+                 "second_contact, strain_clip), none, or draw1, draw2")
+      ->delimiter(',');
+  app.add_option("--size", options.size, "subtle, plain or strong")
+      ->transform(CLI::CheckedTransformer(kSizes));
+  app.add_flag("--exact", options.exact, "Nothing but the effects is off");
+  app.add_flag("--no-load", arguments.no_load, "Leave out load0");
+  app.add_option("--leave-out", options.left_out, "em0, strain0, vision0, wrist0_orientation")
+      ->delimiter(',');
+  app.add_option("--family", options.scene.family, "Motions: tuning, held_out or any")
+      ->transform(CLI::CheckedTransformer(kFamilies));
+  app.add_option("--motion", options.scene.motion, "One kind of motion")
+      ->transform(CLI::CheckedTransformer(MotionNames()));
+  app.add_option("--load", options.scene.load, "none, hung_mass, tissue or varying")
+      ->transform(CLI::CheckedTransformer(LoadNames()));
+  app.add_option("--duration", options.scene.duration_s, "Seconds");
+  app.add_option("--noise-scale", options.noise_scale, "True noise over the stated one")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--noise-correlation", options.noise_correlation,
+                 "AR(1) coefficient from sample to sample")
+      ->check(CLI::Range(0.0, 0.999));
+  app.add_flag("--truth", arguments.truth, "Write truth0 too");
+  app.add_option("-o,--output", arguments.out, "Folder for rec_0000, rec_0001, ...")->required();
+  app.add_option("--label", arguments.label, "File for the labels, outside that folder")
+      ->required();
+  app.footer(
+      "Example:\n  flextip_make_hidden --seed 7 --count 20 --effects stiffness,em_latency "
+      "--size plain --family held_out -o recordings --label labels.json\n");
+}
+
+/// none, draw1 and draw2 are not names of effects.
+void TakeEffects(Arguments& arguments) {
+  for (const std::string& name : arguments.effects) {
+    if (name == "draw1" || name == "draw2") {
+      arguments.options.drawn_effects = name == "draw1" ? 1 : 2;
+    } else if (name != "none") {
+      arguments.options.effects.push_back(name);
+    }
+  }
+  arguments.options.with_load = !arguments.no_load;
+}
+
+bool LiesIn(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  const auto relative = std::filesystem::weakly_canonical(file).lexically_relative(
+      std::filesystem::weakly_canonical(folder));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+void Run(Arguments& arguments) {
+  TakeEffects(arguments);
+  if (LiesIn(arguments.label, arguments.out)) {
+    throw InputError(arguments.label.string() + ": labels belong outside " +
+                     arguments.out.string());
+  }
+  const auto start = std::chrono::steady_clock::now();
+  nlohmann::json labels;
+  for (int i = 0; i < arguments.count; ++i) {
+    const std::uint64_t seed = arguments.seed + static_cast<std::uint64_t>(i);
+    const std::string name = fmt::format("rec_{:04}", i);
+    const HiddenRecording hidden = MakeHidden(arguments.options, seed);
+    WriteHidden(arguments.out / name, hidden, arguments.truth);
+    labels[name] = Json(hidden, seed);
+  }
+  WriteTextFile(arguments.label, labels.dump(1) + "\n");
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  fmt::print("{} recordings, {:.2f} s each\n", arguments.count, seconds.count() / arguments.count);
+}
+
+}  // namespace
+}  // namespace flextip::hidden
+
+int main(int argc, char** argv) {
+  return flextip::RunTool(argc, argv, "Recordings whose effect is hidden", flextip::AddOptions,
+                          flextip::Run);
+}

@@ -1,0 +1,52 @@
+// When the shaft's outline is looked at, and when it is believed.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "vision/outline/tip_outline.h"
+#include "vision/tracking/collar_localiser.h"
+#include "vision/tracking/constant_velocity_filter.h"
+#include "vision/tracking/options.h"
+
+namespace flextip {
+
+/// The outline in a tracker: joined to the tags while they are seen, followed alone while they are
+/// covered, if it agreed with them before.
+class OutlineFollower {
+ public:
+  /// Throws InputError as ShaftContour does. `options.tube` is there.
+  OutlineFollower(const std::vector<CameraCalibration>& cameras, const TrackerOptions& options);
+
+  /// Where the tags leave the direction uncertain, the outline's long base line is worth its time.
+  /// Now and then it is looked at all the same: one that is not where the tags say (another
+  /// diameter, another end) is not believed later without them.
+  void Join(const std::vector<const Image*>& images, Sight& sight);
+
+  /// The tags were seen at `t_ns`, with which `filter` went on.
+  void LeaveFrom(const TipFilter& filter, TimeNs t_ns);
+  /// No tags were seen for long.
+  void Forget() { by_tags_.reset(); }
+
+  /// The pose by the outline alone, while it is believed. `expected`: with what the outline said
+  /// before; `model`: of this frame, not from pictures.
+  std::optional<TipPrediction> Follow(const std::vector<const Image*>& images, TimeNs t_ns,
+                                      const TipPrediction& expected,
+                                      const std::optional<TipPrediction>& model);
+
+  /// All that lasts from frame to frame.
+  void VisitState(StateText& state);
+
+ private:
+  TipPrediction Prior(TimeNs t_ns, const TipPrediction& expected,
+                      const std::optional<TipPrediction>& model) const;
+
+  TrackerOptions options_;
+  TipOutline outline_;
+  std::optional<TipFilter> by_tags_;  // as the tags left it, before an outline came in
+  TimeNs last_seen_ns_ = 0;           // of the last tags
+  double agreement_ = 0;              // with the tags, fading
+  int checks_ = 0, frames_since_ = 0;
+};
+
+}  // namespace flextip

@@ -1,0 +1,272 @@
+#include "vision/photometric/face.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vision/grey.h"
+#include "vision/photometric/tag_blur.h"
+
+namespace flextip {
+namespace {
+
+constexpr double kMinCosine = 0.105;         // of the angle between normal and view: 84 degrees
+constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
+constexpr float kReachOfUnknown = 3.2f;      // sigmas kept from what is not known
+constexpr float kEdgeReach = 2.9f;  // sigmas from an edge within which pixels say something
+constexpr float kSaturated_grey = 252.0f;
+constexpr double kMaxBlur_cells = 1.6;
+constexpr int kFewestPixels = 30;
+constexpr int kFlatEvery = 7;             // of flat pixels so many are left out for one taken
+constexpr double kHiddenRim_cells = 0.5;  // of a tag's rim that a neighbour may hide
+
+}  // namespace
+
+// Rays to the tag's cells: (a, b, 1/z) = to_tag (mx, my, 1), u = a z, v = b z.
+struct PhotometricFace::Geometry {
+  Eigen::Matrix3f to_tag;
+  Eigen::Matrix2f m_of_px;  // derivative of the ray at the tag's centre
+  Eigen::Vector3f normal;   // into the tag
+  PatternBlur blur;         // on the tag, in cells, at its centre
+  Eigen::Vector3f bend;     // of the light: by fu^2, fu fv, fv^2
+  float half = 0, depth = 0;
+  Pose T_CG;
+  Eigen::Matrix2d spread_px = Eigen::Matrix2d::Identity();  // the blur, pixels included
+  bool valid = false;
+
+  struct Place {
+    float u, v, z, nearness;  // z: depth; nearness: the middle's over it
+  };
+  // How the light of a matt surface, lit from the lens, bends over the tag: it falls with the
+  // square of the distance and aslant, |p|^-3 in all. The linear part is left to the slopes.
+  float Falloff(float fu, float fv) const {
+    return 1 + bend[0] * fu * fu + bend[1] * fu * fv + bend[2] * fv * fv;
+  }
+  Place At(float mx, float my) const {
+    const float w = to_tag(2, 0) * mx + to_tag(2, 1) * my + to_tag(2, 2);
+    const float z = 1 / w;
+    return {(to_tag(0, 0) * mx + to_tag(0, 1) * my + to_tag(0, 2)) * z,
+            (to_tag(1, 0) * mx + to_tag(1, 1) * my + to_tag(1, 2)) * z, z, depth * w};
+  }
+};
+
+PhotometricFace::PhotometricFace(const CollarTag& tag, const TagCells& cells,
+                                 const std::array<Side, 4>& sides)
+    : tag_(tag), pattern_(cells), cell_m_(tag.size_m / cells.border_cells), sides_(sides) {}
+
+double PhotometricFace::Cosine(const Pose& T_CE) const {
+  const Pose T_CG = T_CE * tag_.T_EG;
+  return T_CG.R.col(2).dot(T_CG.p) / T_CG.p.norm();
+}
+
+// In cells from the top left corner: u low, u high, v low, v high. A neighbour that is turned more
+// toward the camera may hide this tag's rim: its plate need not end where the planes meet.
+Eigen::Vector4f PhotometricFace::Limits(const Pose& T_CE) const {
+  Eigen::Vector4f limits;
+  const double half = 0.5 * pattern_.Cells(), border = 0.5 * tag_.size_m / cell_m_;
+  for (int i = 0; i < 4; ++i) {
+    double reach = sides_[i].reach_m / cell_m_;
+    if (sides_[i].neighbour_T_EG) {
+      const Pose T_CN = T_CE * *sides_[i].neighbour_T_EG;
+      if (T_CN.R.col(2).dot(T_CN.p) / T_CN.p.norm() > Cosine(T_CE)) {
+        reach = std::min(reach, border - kHiddenRim_cells);
+      }
+    }
+    limits[i] = static_cast<float>(half + (i % 2 == 0 ? -reach : reach));
+  }
+  return limits;
+}
+
+PhotometricFace::Geometry PhotometricFace::Place(const CameraModel& camera, const Pose& T_CE,
+                                                 const Optics& optics) const {
+  Geometry g;
+  Pose T_CG = T_CE * tag_.T_EG;
+  T_CG.p -= optics.print_offset_m * T_CG.R.col(2);
+  const double half = 0.5 * pattern_.Cells();
+  Eigen::Matrix3d from_tag;
+  from_tag << cell_m_ * T_CG.R.col(0), cell_m_ * T_CG.R.col(1),
+      T_CG.p - half * cell_m_ * (T_CG.R.col(0) + T_CG.R.col(1));
+  const Eigen::Matrix3d to_tag = from_tag.inverse();
+  if (!to_tag.allFinite()) return g;
+  g.to_tag = to_tag.cast<float>();
+  g.normal = T_CG.R.col(2).cast<float>();
+  g.half = static_cast<float>(half);
+  g.depth = static_cast<float>(T_CG.p.z());
+  const double distance2 = T_CG.p.squaredNorm(), side2 = std::pow(half * cell_m_, 2) / distance2;
+  const Eigen::Vector2d along = T_CG.R.leftCols<2>().transpose() * T_CG.p / std::sqrt(distance2);
+  g.bend = (side2 * Eigen::Vector3d(7.5 * along[0] * along[0] - 1.5, 15 * along[0] * along[1],
+                                    7.5 * along[1] * along[1] - 1.5))
+               .cast<float>();
+
+  Eigen::Matrix2d spread_px;
+  spread_px << optics.blur_px2[0] + kPixelVariance, optics.blur_px2[1], optics.blur_px2[1],
+      optics.blur_px2[2] + kPixelVariance;
+  Eigen::Matrix<double, 2, 3> J;
+  if (!camera.Project(T_CG.p, &J)) return g;
+  const Eigen::Matrix2d m_of_px = (T_CG.p.z() * J.leftCols<2>()).inverse();
+  g.blur = BlurOnTag(to_tag, m_of_px * spread_px * m_of_px.transpose(), half, T_CG.p.z());
+  if (!(g.blur.sigma_u < kMaxBlur_cells && g.blur.sigma_v < kMaxBlur_cells)) return g;
+  g.m_of_px = m_of_px.cast<float>();
+  g.T_CG = T_CG;
+  g.spread_px = spread_px;
+  g.valid = true;
+  return g;
+}
+
+bool PhotometricFace::IsSeen(const CameraModel& camera, const Pose& T_CE) const {
+  if (Cosine(T_CE) < kMinCosine) return false;
+  const auto px = camera.Project(T_CE * tag_.T_EG.p);
+  const CameraCalibration& c = camera.Calibration();
+  return px && px->x() > 0 && px->y() > 0 && px->x() < c.width_px - 1 && px->y() < c.height_px - 1;
+}
+
+void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& lens,
+                                   const Image& image, const Pose& T_CE, const Optics& optics,
+                                   int stride) {
+  pixels_.clear();
+  const Geometry g = Place(camera, T_CE, optics);
+  if (!g.valid) return;
+  const Pose T_CG = T_CE * tag_.T_EG;
+  const double reach = 0.5 * cell_m_ * pattern_.Cells();
+  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  for (const auto& [x, y] :
+       {std::pair{-1, -1}, std::pair{1, -1}, std::pair{1, 1}, std::pair{-1, 1}}) {
+    const auto px = camera.Project(T_CG * Eigen::Vector3d(x * reach, y * reach, 0));
+    if (!px) return;
+    low = low.cwiseMin(*px);
+    high = high.cwiseMax(*px);
+  }
+  const int x0 = std::max(0, static_cast<int>(low.x())),
+            y0 = std::max(0, static_cast<int>(low.y()));
+  const int x1 = std::min(lens.WidthPx() - 1, static_cast<int>(high.x()) + 1);
+  const int y1 = std::min(lens.HeightPx() - 1, static_cast<int>(high.y()) + 1);
+  const float reach_u = kReachOfUnknown * g.blur.sigma_u,
+              reach_v = kReachOfUnknown * g.blur.sigma_v;
+  const Eigen::Vector4f limits =
+      Limits(T_CE) + Eigen::Vector4f(reach_u, -reach_u, reach_v, -reach_v);
+  const float edge_u = std::min(kEdgeReach * g.blur.sigma_u, 0.99f);
+  const float edge_v = std::min(kEdgeReach * g.blur.sigma_v, 0.99f);
+  int flat = 0;
+  for (int y = y0; y <= y1; y += stride) {
+    for (int x = x0 + (y / stride) % stride; x <= x1; x += stride) {
+      const LensMap::Ray& ray = lens.At(x, y);
+      const auto at = g.At(ray.x, ray.y);
+      const bool within =
+          at.u > limits[0] && at.u < limits[1] && at.v > limits[2] && at.v < limits[3];
+      if (!within || !pattern_.Known(at.u, at.v, reach_u, reach_v)) continue;
+      if (!pattern_.NearEdge(at.u, at.v, edge_u, edge_v) && flat++ % kFlatEvery != 0) continue;
+      pixels_.push_back({ray.x, ray.y, GreyAt(image, x, y)});
+    }
+  }
+}
+
+// A straight line through light against whiteness.
+double PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE,
+                                    const Optics& optics, const ToneCurve& tone) {
+  const Geometry g = Place(camera, T_CE, optics);
+  if (!g.valid || Pixels() < kFewestPixels) return 0;
+  double n = 0, c1 = 0, c2 = 0, l1 = 0, l2 = 0, cl = 0;
+  for (const Pixel& pixel : pixels_) {
+    const auto at = g.At(pixel.mx, pixel.my);
+    const double c = pattern_.At(at.u, at.v, g.blur, at.nearness).c, light = tone.Light(pixel.grey);
+    n += 1, c1 += c, c2 += c * c, l1 += light, l2 += light * light, cl += c * light;
+  }
+  const double spread = c2 - c1 * c1 / n;
+  if (spread < 1e-3 * n) return 0;
+  const double contrast = (cl - c1 * l1 / n) / spread;
+  const double black = std::max(0.0, (l1 - contrast * c1) / n);
+  levels << black, 0, 0, black + contrast, 0, 0;
+  const double spread_light = l2 - l1 * l1 / n;
+  return contrast > 0 ? contrast * std::sqrt(spread / spread_light) : 0;
+}
+
+// Black and white at a place on the tag, in light.
+struct PhotometricFace::Light {
+  Eigen::Matrix<float, 6, 1> level;
+  float half;
+  float black, white, fu, fv;
+  Light(const FaceLevels& levels, int cells)
+      : level(levels.cast<float>()), half(0.5f * static_cast<float>(cells)) {}
+  float ContrastByU() const { return (level[4] - level[1]) / half; }
+  float ContrastByV() const { return (level[5] - level[2]) / half; }
+  void At(float u, float v) {
+    fu = u / half - 1;
+    fv = v / half - 1;
+    black = level[0] + level[1] * fu + level[2] * fv;
+    white = level[3] + level[4] * fu + level[5] * fv;
+  }
+};
+
+// By pose, print offset and blur; `by_c`: the grey value by the pattern's whiteness.
+void PhotometricFace::DifferentiatePlace(const Pixel& pixel, const Geometry& g,
+                                         const PatternValue& p, const Eigen::Vector3f& pivot,
+                                         float by_c, Row& row) {
+  const auto at = g.At(pixel.mx, pixel.my);
+  // By the ray, and by the point of the tag that is seen there.
+  const Eigen::Matrix3f& T = g.to_tag;
+  Eigen::Matrix2f D;  // by the ray, over the depth
+  D << T(0, 0) - at.u * T(2, 0), T(0, 1) - at.u * T(2, 1), T(1, 0) - at.v * T(2, 0),
+      T(1, 1) - at.v * T(2, 1);
+  const float gx = by_c * (p.c_u * D(0, 0) + p.c_v * D(1, 0));
+  const float gy = by_c * (p.c_u * D(0, 1) + p.c_v * D(1, 1));
+  const Eigen::Vector3f h(-gx, -gy, gx * pixel.mx + gy * pixel.my);
+  const Eigen::Vector3f q = Eigen::Vector3f(pixel.mx * at.z, pixel.my * at.z, at.z) - pivot;
+  row.segment<3>(0) = q.cross(h);
+  row.segment<3>(3) = h;
+  row[FaceColumns::kOffset] = -h.dot(g.normal);
+  // Spreading is diffusion: the derivative by a variance is half the second derivative.
+  const Eigen::Matrix2f B = at.z * D * g.m_of_px;
+  const float a = B(0, 0), b = B(0, 1), c = B(1, 0), d = B(1, 1);
+  row[FaceColumns::kBlur] = 0.5f * by_c * (a * a * p.c_uu + 2 * a * c * p.c_uv + c * c * p.c_vv);
+  row[FaceColumns::kBlur + 1] = by_c * (a * b * p.c_uu + (a * d + c * b) * p.c_uv + c * d * p.c_vv);
+  row[FaceColumns::kBlur + 2] =
+      0.5f * by_c * (b * b * p.c_uu + 2 * b * d * p.c_uv + d * d * p.c_vv);
+}
+
+void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
+                                 const Eigen::Vector3d& pivot_C, const Optics& optics,
+                                 const ToneCurve& tone, const RobustRule& rule,
+                                 FaceSums& sums) const {
+  const Geometry g = Place(camera, T_CE, optics);
+  if (!g.valid) return;
+  const Eigen::Vector3f pivot = pivot_C.cast<float>();
+  Light light(levels, pattern_.Cells());
+  const float half_contrast = 0.5f * (tone.At(light.level[3]).grey - tone.At(light.level[0]).grey);
+  const float uu = g.blur.sigma_u * g.blur.sigma_u, vv = g.blur.sigma_v * g.blur.sigma_v,
+              uv = g.blur.rho * g.blur.sigma_u * g.blur.sigma_v;
+  Row row;
+  for (const Pixel& pixel : pixels_) {
+    const auto at = g.At(pixel.mx, pixel.my);
+    const PatternValue p = pattern_.At(at.u, at.v, g.blur, at.nearness);
+    light.At(at.u, at.v);
+    const float falloff = g.Falloff(light.fu, light.fv);
+    const float contrast = falloff * (light.white - light.black);
+    // The light is blurred with the pattern: where it rises, the brighter side counts for more.
+    const float from_u = uu * p.c_u + uv * p.c_v, from_v = uv * p.c_u + vv * p.c_v;
+    const float brighter = light.ContrastByU() * from_u + light.ContrastByV() * from_v;
+    const ToneCurve::Value film = tone.At(falloff * (light.black + brighter) + p.c * contrast);
+    const float residual = pixel.grey - film.grey;
+    if (film.by_light == 0 && pixel.grey > kSaturated_grey) continue;  // says nothing
+    sums.CountError(residual, half_contrast);
+    const float weight = rule.Weight(residual);
+    if (weight == 0) continue;
+    const float curvature = rule.Curvature(weight), root = std::sqrt(curvature);
+    const float by_light = root * film.by_light;
+    if (p.flat) {
+      row.head<FaceColumns::kLevels>().setZero();
+    } else {
+      DifferentiatePlace(pixel, g, p, pivot, by_light * contrast, row);
+    }
+    row[FaceColumns::kGamma] = root * film.by_gamma;
+    const float by_level = by_light * falloff;
+    const float by_black = by_level * (1 - p.c), by_white = by_level * p.c;
+    const float by_u = by_level * from_u / g.half, by_v = by_level * from_v / g.half;
+    row.segment<6>(FaceColumns::kLevels) << by_black, by_black * light.fu - by_u,
+        by_black * light.fv - by_v, by_white, by_white * light.fu + by_u,
+        by_white * light.fv + by_v;
+    row[FaceColumns::kResidual] = weight / root * residual;
+    sums.Add(row, {weight, curvature, pixel.grey, film.grey, light.fu, light.fv});
+  }
+  sums.Finish(SpreadOfTag(g.T_CG, pivot_C, g.m_of_px.cast<double>(), g.spread_px));
+}
+
+}  // namespace flextip

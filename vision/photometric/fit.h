@@ -1,0 +1,79 @@
+// The pose of the tip frame E from the grey values of all visible tags at once, in one or more
+// cameras.
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/pose.h"
+#include "core/tag_collar.h"
+#include "vision/photometric/view.h"
+
+namespace flextip {
+
+enum class PhotometricStatus {
+  kOk,
+  kNoFaces,       ///< no tag is where it should be
+  kNotConverged,  ///< the steps do not become small
+  kPoorFit,       ///< what is there does not look like the tags
+};
+
+struct PhotometricOptions {
+  int coarse_pixels = 500;             ///< of all faces together, until the steps become small
+  double coarse_extra_blur_px2 = 2.0;  ///< widens the reach of the first steps
+  int max_coarse_iterations = 8, max_iterations = 6;
+  double min_correlation = 0.96;  ///< of a face's measured and predicted grey values
+  double min_contrast_grey = 10.0;
+  double max_contradicted = 0.02;  ///< of a face's pixels, white for black and black for white each
+  double min_inliers = 0.6;        ///< mean weight of all pixels
+  double model_noise_px = 0.015;   ///< what a tag's corners are wrong by whatever the noise: print,
+                                   ///< lens, film; per axis
+};
+
+/// What one camera's picture said.
+struct ViewFit {
+  OpticsPrior learned;  ///< its mean is what was fitted
+  double noise_grey = 0;
+  std::vector<FaceFit> faces;
+};
+
+struct PhotometricResult {
+  PhotometricStatus status = PhotometricStatus::kNoFaces;
+  Pose T_RE;
+  /// Of (dw, dp), T_RE = (exp([dw]x) R, p + dp), both in R (rad, m).
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  int pixels = 0, faces = 0;
+  int faces_in_view = 0;   ///< that should be seen well; more than `faces` where some are covered
+  bool one_plane = false;  ///< all faces seen are parallel: two poses may look alike
+  std::vector<ViewFit> views;
+
+  bool IsUsable() const { return status == PhotometricStatus::kOk; }
+};
+
+/// Twice the log of how much likelier the pixels are under `a` than under `b`, from the noise that
+/// each fit leaves.
+double LogLikelihoodRatio2(const PhotometricResult& a, const PhotometricResult& b);
+
+class PhotometricFit {
+ public:
+  /// Throws InputError for a tag that does not exist or a lens model that cannot be used.
+  PhotometricFit(const std::vector<CameraCalibration>& cameras, const TagCollar& collar,
+                 const PhotometricOptions& options = {});
+  ~PhotometricFit();
+  PhotometricFit(PhotometricFit&&) noexcept;
+  PhotometricFit& operator=(PhotometricFit&&) noexcept;
+
+  /// Gauss-Newton from `start_T_RE`, which must be right to about a cell of the tag. One image
+  /// (null: no picture) and one prior a camera. `coarse`: begin with a widened blur.
+  PhotometricResult Fit(const std::vector<const Image*>& images, const Pose& start_T_RE,
+                        const std::vector<OpticsPrior>& priors, bool coarse = true);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace flextip

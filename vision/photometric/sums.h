@@ -1,0 +1,142 @@
+// Sums over the pixels of a face: robust weights, normal equations, noise.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "vision/photometric/tag_blur.h"
+
+namespace flextip {
+
+/// How residuals are weighted.
+enum class Robustness {
+  kHuber,        ///< ever less beyond the scale
+  kTukey,        ///< the biweight: nothing beyond 4.7 times the scale
+  kTukeyNewton,  ///< the same, and the normal matrix counts how the weights change with a step,
+                 ///< which takes fewer steps near the minimum
+};
+
+class RobustRule {
+ public:
+  RobustRule(double scale_grey, Robustness kind)
+      : scale_(static_cast<float>(scale_grey)),
+        inverse_cut2_(1 / (kCut * kCut * scale_ * scale_)),
+        kind_(kind) {}
+
+  float Weight(float residual) const {
+    if (kind_ != Robustness::kHuber) {
+      const float t = 1 - residual * residual * inverse_cut2_;
+      return t > 0 ? t * t : 0.0f;
+    }
+    const float size = std::abs(residual);
+    return size < scale_ ? 1.0f : scale_ / size;
+  }
+
+  /// Of a pixel with that weight in the normal matrix; positive where the weight is.
+  float Curvature(float weight) const {
+    if (kind_ != Robustness::kTukeyNewton) return weight;
+    const float t = std::sqrt(weight);
+    return std::max(t * (5 * t - 4), kLeastCurvature * weight);
+  }
+
+ private:
+  static constexpr float kCut = 4.7f, kLeastCurvature = 0.1f;
+  float scale_, inverse_cut2_;
+  Robustness kind_;
+};
+
+/// Parameters of a face's pixels: pose (dw, dc) about a pivot in C, blur, gamma, print offset, the
+/// face's light; the last entry of a row is the residual.
+struct FaceColumns {
+  static constexpr int kBlur = 6, kGamma = 9, kOffset = 10, kLevels = 11, kResidual = 17;
+  static constexpr int kSize = 18;
+};
+
+/// In grey values.
+class FaceSums {
+ public:
+  using Row = Eigen::Matrix<float, FaceColumns::kSize, 1>;
+
+  struct Pixel {
+    float weight, curvature;  ///< of RobustRule
+    float measured, predicted;
+    float fu, fv;  ///< the place on the tag, -1 to 1
+  };
+
+  /// `row` is multiplied by the root of `curvature` already, its residual by weight over that root.
+  void Add(const Row& row, const Pixel& pixel) {
+    rows_.col(filled_++) = row;
+    if (filled_ == kBlock) Flush();
+    scores_.col(PatchOf(pixel.fu, pixel.fv)) +=
+        row[FaceColumns::kResidual] * row.head<FaceColumns::kResidual>();
+    const float weight = pixel.weight, measured = pixel.measured, predicted = pixel.predicted;
+    squares_ += pixel.weight * pixel.weight * (measured - predicted) * (measured - predicted);
+    curvature_ += pixel.curvature;
+    moments_[0] += weight;
+    moments_[1] += weight * predicted;
+    moments_[2] += weight * measured;
+    moments_[3] += weight * predicted * predicted;
+    moments_[4] += weight * measured * measured;
+    moments_[5] += weight * predicted * measured;
+  }
+  /// `half_contrast`: of the face (grey values).
+  void CountError(float residual, float half_contrast) {
+    brighter_ += residual > half_contrast;
+    darker_ += residual < -half_contrast;
+    // A fit that goes astray may predict anything: the last bin takes it.
+    const float last = kBins - 1;
+    ++errors_[static_cast<int>(std::min(last, std::abs(residual) * kBinsPerGrey))];
+    ++pixels_;
+  }
+  /// After the last pixel. `spread`: what belongs to the rows of pose and print offset besides.
+  void Finish(const SpreadByMotion& spread);
+
+  const Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize>& A() const { return A_; }
+  int Pixels() const { return pixels_; }
+  double Weight() const { return moments_[0]; }
+  /// The part of the pixels that are white for black, or black for white if those are fewer. What
+  /// covers a tag does one or the other; another tag does both.
+  double Contradicted() const {
+    return static_cast<double>(std::min(brighter_, darker_)) / std::max(1, pixels_);
+  }
+  /// Of measured and predicted grey values, weighted.
+  double Correlation() const;
+
+  /// The gradient of each patch of the tag. Their scatter tells what the pixels' number does not:
+  /// residuals that go together.
+  static constexpr int kPatchesAcross = 4, kPatches = kPatchesAcross * kPatchesAcross;
+  using Scores = Eigen::Matrix<float, FaceColumns::kResidual, kPatches>;
+  const Scores& PatchScores() const { return scores_; }
+  /// Sums over the pixels of (weight residual)^2 and of the curvature.
+  double WeightedSquares() const { return squares_; }
+  double Curvature() const { return curvature_; }
+
+  /// Adds how many |residuals| fall into each bin of 1/8 grey level.
+  static constexpr int kBinsPerGrey = 8, kBins = 256;
+  using Histogram = std::array<int, kBins>;
+  void AddErrorsTo(Histogram& histogram) const;
+
+ private:
+  static constexpr int kBlock = 64;  // rows are multiplied together, in single precision
+  void Flush();
+  static int PatchOf(float fu, float fv) {
+    const auto along = [](float f) {
+      return std::clamp(static_cast<int>((f + 1) * (0.5f * kPatchesAcross)), 0, kPatchesAcross - 1);
+    };
+    return kPatchesAcross * along(fu) + along(fv);
+  }
+
+  Eigen::Matrix<float, FaceColumns::kSize, kBlock> rows_ =
+      Eigen::Matrix<float, FaceColumns::kSize, kBlock>::Zero();
+  int filled_ = 0, pixels_ = 0, brighter_ = 0, darker_ = 0;
+  Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize> A_ =
+      Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize>::Zero();
+  std::array<float, 6> moments_{};
+  Scores scores_ = Scores::Zero();
+  float squares_ = 0, curvature_ = 0;
+  Histogram errors_{};
+};
+
+}  // namespace flextip
