@@ -4,9 +4,10 @@
 # and exported as flextip::<name>. PUBLIC targets show in the folder's headers; foreign libraries are
 # PRIVATE. COLD: nothing in it runs often, so it is optimised less.
 set(FLEXTIP_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
-# g++ 12 warns of overlapping copies inside std::string where there are none (GCC bug 105651).
+# g++ 12 warns of overlapping and overlong copies inside std::string where there are none (GCC bug
+# 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  list(APPEND FLEXTIP_WARNINGS -Wno-restrict)
+  list(APPEND FLEXTIP_WARNINGS -Wno-restrict -Wno-stringop-overflow)
 endif()
 # One setting for libraries and programs, so that they share their precompiled headers.
 add_compile_options(-fPIC)
