@@ -127,7 +127,7 @@ TimeNs CsvReader::Integer(std::size_t column) const {
 
 CsvWriter::CsvWriter(const std::vector<std::string>& columns, bool from_recorder)
     : width_(columns.size()) {
-  if (from_recorder) text_ = "#";
+  if (from_recorder) text_ += '#';
   for (const auto& column : columns) Add(column);
   EndRow();
 }
