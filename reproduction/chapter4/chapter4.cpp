@@ -1,6 +1,3 @@
-#include <cmath>
-#include <numeric>
-
 #include "reproduction/chapter4/parts.h"
 
 namespace flextip::reproduction {
@@ -19,17 +16,6 @@ report::FigureTrace PathTrace(const std::vector<Eigen::Vector3d>& path,
     trace.y.push_back(1e3 * (p - origin).y());
   }
   return trace;
-}
-
-MeanSd MeanAndSd(const std::vector<double>& values) {
-  if (values.empty()) return {};
-  const double n = static_cast<double>(values.size());
-  MeanSd result;
-  result.mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
-  double sum2 = 0.0;
-  for (const double v : values) sum2 += (v - result.mean) * (v - result.mean);
-  result.sd = n > 1.0 ? std::sqrt(sum2 / (n - 1.0)) : 0.0;
-  return result;
 }
 
 ChapterResult ReproduceChapter4(const ReproduceOptions& options, const ChapterProgress& progress) {

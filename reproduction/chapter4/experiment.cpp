@@ -116,7 +116,7 @@ ChapterResult Ch4Experiment(const ReproduceOptions& options, const ChapterProgre
   double straight_mm = 0.0;
   for (std::size_t r = 0; r < kReadings.size(); ++r) {
     for (const Ch4Kind kind : kTried) {
-      const MeanSd stat = MeanAndSd(Deviations(kReadings[r], kind, options));
+      const MeanSd stat = MeanSdOf(Deviations(kReadings[r], kind, options));
       std::optional<double> published;
       if (kind == Ch4Kind::kStraight) published = 1.9;
       if (kind == Ch4Kind::kPrintedWithLine) published = 1.1;

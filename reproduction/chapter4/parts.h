@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "core/mean_sd.h"
 #include "reproduction/chapter.h"
 #include "reproduction/chapter4/steps.h"
 
@@ -24,10 +25,5 @@ extern const std::array<Eigen::Vector3d, 4> kCh4Moves;
 /// Points of a path, from its start (mm).
 report::FigureTrace PathTrace(const std::vector<Eigen::Vector3d>& path,
                               const Eigen::Vector3d& origin);
-
-struct MeanSd {
-  double mean = 0.0, sd = 0.0;
-};
-MeanSd MeanAndSd(const std::vector<double>& values);
 
 }  // namespace flextip::reproduction

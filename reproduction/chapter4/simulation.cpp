@@ -144,7 +144,7 @@ void AddDeviations(const std::vector<Case>& cases, std::vector<TableRow>& rows) 
   for (const bool along_y : {false, true}) {
     double Four::*const member = along_y ? &Four::max_y_mm : &Four::max_mm;
     for (const Case& c : cases) {
-      const MeanSd stat = MeanAndSd(Values(c, member));
+      const MeanSd stat = MeanSdOf(Values(c, member));
       const std::optional<double> published = Published(c.kind, along_y);
       rows.push_back(
           {fmt::format("4.3.1 largest deviation{}, {}, {}, {}", along_y ? " of moves along y" : "",
@@ -159,12 +159,12 @@ void AddReadings(const std::vector<Case>& cases, std::vector<TableRow>& rows) {
     const Case& c = Find(cases, kExactPlant, kAsStated, kind);
     rows.push_back({fmt::format("4.3.1 largest deviation of the measured tip, {}, noise as stated",
                                 Name(kind)),
-                    Published(kind, false), MeanAndSd(Values(c, &Four::measured_mm)).mean, "mm",
+                    Published(kind, false), MeanSdOf(Values(c, &Four::measured_mm)).mean, "mm",
                     "what the controller believes of the tip, over the same runs"});
     rows.push_back(
         {fmt::format("4.3.1 updates a move, {}, noise as stated", Name(kind)),
          {},
-         MeanAndSd(Values(c, &Four::updates)).mean,
+         MeanSdOf(Values(c, &Four::updates)).mean,
          "",
          "until the tip is known to be 0.5 mm from the goal, at most 20; the thesis states "
          "no distance"});

@@ -95,18 +95,6 @@ Incursion MeasureIncursion(const std::vector<Eigen::Vector3d>& tips, double wall
   return incursion;
 }
 
-double MeanSd::StandardError() const { return count > 0 ? sd / std::sqrt(count) : 0.0; }
-
-MeanSd MeanSdOf(const std::vector<double>& values) {
-  MeanSd of;
-  of.count = static_cast<int>(values.size());
-  if (values.empty()) return of;
-  for (const double value : values) of.mean += value / of.count;
-  for (const double value : values) of.sd += std::pow(value - of.mean, 2);
-  of.sd = of.count > 1 ? std::sqrt(of.sd / (of.count - 1)) : 0.0;
-  return of;
-}
-
 double StudentP(const MeanSd& a, const MeanSd& b) {
   assert(a.count > 1 && b.count > 1);
   const double freedom = a.count + b.count - 2;

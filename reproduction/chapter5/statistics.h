@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "core/mean_sd.h"
+
 namespace flextip::reproduction {
 
 /// The measures of 5.3, for tip positions at a constant rate and a wall at x = `wall_x_m` with the
@@ -23,13 +25,6 @@ Incursion MeasureIncursion(const std::vector<Eigen::Vector3d>& tips, double wall
 double SweptArea(const std::vector<Eigen::Vector3d>& tips, double wall_x_m);
 /// Union of the areas between wall and path inside, seen along axis `along` (1: y, 2: z).
 double OutlineArea(const std::vector<Eigen::Vector3d>& tips, double wall_x_m, int along);
-
-struct MeanSd {
-  double mean = 0.0, sd = 0.0;  ///< sd of the sample, with n - 1
-  int count = 0;
-  double StandardError() const;
-};
-MeanSd MeanSdOf(const std::vector<double>& values);
 
 /// Two-sided p of Student's t-test that two independent samples with one variance have the same
 /// mean. 1 where neither varies and the means are the same, 0 where neither varies and they are
