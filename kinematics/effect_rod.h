@@ -1,7 +1,7 @@
-// Model 4: the rod of rod.h with everything that may act on a real shaft besides (docs/models.md):
-// an unloaded curvature, a port and an arm that yield, a port that resists rotation and sliding,
-// and a load spread over the part beyond the port; a stiffness that tapers. With derivatives of
-// everything by every input but the taper.
+// Model 4: the rod of rod.h with everything that may act on a real shaft besides
+// (docs/method/models.md): an unloaded curvature, a port and an arm that yield, a port that resists
+// rotation and sliding, and a load spread over the part beyond the port; a stiffness that tapers.
+// With derivatives of everything by every input but the taper.
 #pragma once
 
 #include <Eigen/Dense>

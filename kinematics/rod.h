@@ -1,6 +1,6 @@
 // The exact statics of an inextensible Kirchhoff rod with a circular section: pinned at the wrist,
 // sliding through a frictionless port that pushes only sideways, loaded at the tip by a force and
-// along its length by its weight (docs/models.md, model 3):
+// along its length by its weight (docs/method/models.md, model 3):
 //   p' = t,  t' = kappa x t,  n' = -q,  m' = n x t,  kappa = m / EI.
 #pragma once
 
