@@ -11,7 +11,7 @@
 #include "bench/calibration/chain_picture.h"
 #include "bench/tool.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 struct Arguments {
@@ -143,9 +143,10 @@ void Run(Arguments& a) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  return flextip::RunTool<flextip::Arguments>(
-      argc, argv, "Whether the chain's error budget is true", flextip::AddOptions, flextip::Run);
+  return flextip::bench::RunTool<flextip::bench::Arguments>(
+      argc, argv, "Whether the chain's error budget is true", flextip::bench::AddOptions,
+      flextip::bench::Run);
 }

@@ -13,7 +13,7 @@
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/csv.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,4 +174,4 @@ ChainRun RunChain(const ChainScene& scene, const fs::path& program, const fs::pa
   return run;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -19,7 +19,7 @@
 #include "vision/camera_model.h"
 #include "vision/tags/reprojection.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 struct Arguments {
@@ -298,11 +298,11 @@ void Run(Arguments& a) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  using flextip::Arguments;
-  return flextip::RunTool<Arguments>(
+  using flextip::bench::Arguments;
+  return flextip::bench::RunTool<Arguments>(
       argc, argv, "Hand-eye calibration beside OpenCV's",
       [](CLI::App& app, Arguments& a) {
         app.add_option("--scope", a.scope,
@@ -315,5 +315,5 @@ int main(int argc, char** argv) {
         app.add_option("--position-noise", a.position_noise_m, "Of the tracker (m)");
         app.add_flag("--refine-intrinsics", a.refine_intrinsics, "Focal lengths and centre too");
       },
-      flextip::Run);
+      flextip::bench::Run);
 }

@@ -2,7 +2,7 @@
 
 #include "bench/diagnosis_matrix/rival.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 Eigen::MatrixXd PosteriorCovariance(const Eigen::MatrixXd& H, const Eigen::VectorXd& prior_sd) {
   Eigen::MatrixXd M = prior_sd.asDiagonal() * H * prior_sd.asDiagonal();
@@ -27,4 +27,4 @@ std::vector<diagnosis::EffectFit> CramerRaoBounds(TrueModel& truth) {
   return bounds;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -5,7 +5,7 @@
 #include "bench/diagnosis_matrix/rival.h"
 #include "diagnosis/search/hypotheses.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr int kFolds = 4;   // as MeasureHeldOut has them
@@ -78,4 +78,4 @@ double TrueHeldOutError(TrueModel& truth,
   return squares.count > 0.0 ? std::sqrt(squares.sum / squares.count) : 0.0;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -7,7 +7,7 @@
 #include "diagnosis/evidence/probabilities.h"
 #include "diagnosis/search/hypotheses.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr double kWidth = 3.0;  // of a present effect's prior, in typical sizes
@@ -114,4 +114,4 @@ Separation NearestKnown(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, doub
                  SimpleFirst(diagnosis::KnownHypotheses(layout.EffectCount(), true)), 0.0, layout);
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -7,7 +7,7 @@
 #include "vision/camera_model.h"
 #include "vision/tags/reprojection.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Eigen::Vector2d;
@@ -186,4 +186,4 @@ TipBounds BoundTip(const PixelModels& models) {
           models.all.Bound(false)};
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

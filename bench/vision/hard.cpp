@@ -18,7 +18,7 @@
 #include "vision/outline/tube_geometry.h"
 #include "vision/tracking/tip_tracker.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 struct Arguments {
@@ -211,9 +211,9 @@ void Run(Arguments& arguments) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  return flextip::RunTool(argc, argv, "How a tracker does on frames in which the tip hides",
-                          flextip::AddOptions, flextip::Run);
+  return flextip::bench::RunTool(argc, argv, "How a tracker does on frames in which the tip hides",
+                                 flextip::bench::AddOptions, flextip::bench::Run);
 }

@@ -9,7 +9,7 @@
 #include "core/rotation.h"
 #include "diagnosis/model/model_at.h"
 #include "simulation/closed_loop/closed_loop.h"
-#include "simulation/plant/instrument_effects.h"
+#include "simulation/effects/catalogue.h"
 
 namespace flextip::simulation {
 namespace {
@@ -114,12 +114,12 @@ diagnosis::ExtendedModel Simulated(diagnosis::ExtendedModel model,
 }
 
 /// What the simulation has a parameter for: it turns a pose by the focal length as it must.
-std::map<std::string, hidden::EffectParameters> ValuesOf(const diagnosis::ExtendedModel& model) {
-  std::map<std::string, hidden::EffectParameters> values;
+EffectValues ValuesOf(const diagnosis::ExtendedModel& model) {
+  EffectValues values;
   for (const auto* list : {&model.effects, &model.within_tolerance}) {
     for (const diagnosis::EffectFit& fit : *list) {
       if (fit.effect == kRegistration) continue;
-      const hidden::EffectParameters& known = NeutralEffects().at(fit.effect);
+      const EffectParameters& known = NeutralEffects().at(fit.effect);
       for (const diagnosis::ReportedParameter& parameter : fit.parameters)
         if (known.contains(parameter.name)) values[fit.effect][parameter.name] = parameter.value;
     }
@@ -150,7 +150,7 @@ LoopSetup MakeSetup(const Recording& recording, const diagnosis::ExtendedModel& 
     plant.load.constant_N =
         Mean(recording.load0->f_tip_N, [](const Eigen::Vector3d& f) { return f; });
   }
-  const InstrumentEffects effects = EffectsByName(ValuesOf(model), recording.instrument);
+  const InstrumentEffects effects = EffectsOfWholeMass(ValuesOf(model), recording.instrument);
   plant.effects = effects.plant;
   setup.plant_options = {kLinks, kLinks};
   setup.sensor_effects = effects.sensors;

@@ -7,7 +7,7 @@
 #include "recording/cameras/camera_file.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/yaml_map.h"
-#include "simulation/plant/instrument_effects.h"
+#include "simulation/effects/catalogue.h"
 
 namespace flextip::simulation {
 namespace {
@@ -220,7 +220,7 @@ class ScenarioReader {
     if (!top_.Has("effects")) return;
     const YamlMap map = Section(top_, "effects");
     LoopSetup& loop = scenario_.loop;
-    std::map<std::string, hidden::EffectParameters> values;
+    EffectValues values;
     const Eigen::Vector3d to_port = (loop.base.p_RP - loop.p_RW_start).normalized();
     Eigen::Vector3d em_centre = loop.p_RW_start + loop.base.instrument.length_m * to_port;
     for (const std::string& name : map.Keys()) {
@@ -233,7 +233,7 @@ class ScenarioReader {
       }
       CheckEffect(map, name, values);
     }
-    const InstrumentEffects effects = EffectsByName(values, loop.base.instrument);
+    const InstrumentEffects effects = EffectsOfWholeMass(values, loop.base.instrument);
     loop.plant.effects = effects.plant;
     loop.plant.gravity_m_s2 = loop.base.gravity_m_s2;
     loop.sensor_effects = effects.sensors;
@@ -242,12 +242,11 @@ class ScenarioReader {
   }
 
   /// So that a complaint names the line.
-  void CheckEffect(const YamlMap& map, const std::string& name,
-                   const std::map<std::string, hidden::EffectParameters>& values) const {
+  void CheckEffect(const YamlMap& map, const std::string& name, const EffectValues& values) const {
     const bool of_camera = name == "hand_eye" || name == "focal_length";
     if (of_camera && !scenario_.has_camera) throw map.Error(name, "needs a section camera");
     try {
-      EffectsByName(values, scenario_.loop.base.instrument);
+      EffectsOfWholeMass(values, scenario_.loop.base.instrument);
     } catch (const InputError& error) {
       throw map.Error(name, error.what());
     }

@@ -5,7 +5,7 @@
 #include "simulation/render/film.h"
 #include "vision/tags/reprojection.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -87,4 +87,4 @@ TEST(TipBound, MoreKnownOrMoreSeenBoundsLower) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench

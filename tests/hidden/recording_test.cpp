@@ -181,7 +181,7 @@ TEST_P(EveryEffect, StandsOutFromTheNoise) {
 }
 
 std::vector<std::string> AllForms() {
-  std::vector<std::string> names = CatalogueEffects();
+  std::vector<std::string> names = simulation::CatalogueEffects();
   names.insert(names.end(), OtherForms().begin(), OtherForms().end());
   return names;
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """mrcal's figures on the corners that flextip_calibration_compare wrote.
 
-Usage: calibration_mrcal.py FOLDER [--models LENSMODEL_...,...]
+Usage: mrcal.py FOLDER [--models LENSMODEL_...,...]
 
 FOLDER holds set.json (images, board, image size, working distance) and corners.vnl; mrcal.json is
 written there, one row a model. Needs Debian's python3-mrcal and mrcal; run with /usr/bin/python3.
