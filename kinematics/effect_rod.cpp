@@ -30,7 +30,7 @@ bool IsPlausible(const EffectRodProblem& problem, std::span<const RodStation> st
   return problem.effects.y_wrist.norm() > 0.0;
 }
 
-/// The shaft straight, with the port's force that the lever asks for.
+/// Returns the straight shaft, with the port's force that the lever asks for.
 EffectRodUnknowns StraightGuess(const ScaledProblem& problem) {
   const double d = problem.span().norm();
   const Eigen::Vector3d t = problem.span() / d;
@@ -49,7 +49,7 @@ void Move(const Eigen::Vector3d& y, const Eigen::Vector3d& z, const UnknownVecto
 
 bool OnShaft(double s_port) { return s_port > kMinStretch && s_port < 1.0 - kMinStretch; }
 
-/// The number of evaluations it took; 0 where it did not converge.
+/// Returns the number of evaluations; 0 where the iteration did not converge.
 int Newton(const ScaledProblem& problem, EffectRodUnknowns& x, EffectShot& shot) {
   double last = 1e300;
   for (int i = 1; i <= kMaxNewton; ++i) {
@@ -89,7 +89,8 @@ class StateWriter {
              const FlowColumns* columns, EffectRodState& state) const;
 
  private:
-  /// Of the turn, the scaled moment and the scaled way from the given wrist, by the inputs in SI.
+  /// Derivatives of the turn, the scaled moment and the scaled way from the given wrist, by the
+  /// inputs in SI.
   struct Total {
     InputDerivative turn, m, P;
   };

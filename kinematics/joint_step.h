@@ -31,9 +31,9 @@ struct JointStepResult {
   double smallest_singular_value_m = 0.0;
 };
 
-/// One step of (3.4). Along a direction with singular value s below the limit e the inverse is
-/// s / e^2 instead of 1 / s: continuous at e and zero at s = 0, so the joints never move by more
-/// than |p_desired - p_t| / e. All vectors of one call in the same frame.
+/// Makes one step of (3.4). Along a direction with singular value s below the limit e, the inverse
+/// is s / e^2 instead of 1 / s: continuous at e and zero at s = 0. So the joints never move by more
+/// than |p_desired - p_t| / e. All vectors of one call are in the same frame.
 template <int N>
 JointStepResult<N> JointStep(const JointStepInput<N>& input) noexcept {
   JointStepResult<N> result;

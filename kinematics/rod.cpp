@@ -44,8 +44,8 @@ struct RodSolver::Scaled {
   }
 };
 
-/// The whole rod for given unknowns: states at the port and at the wrist, and what is left of the
-/// conditions (port - wrist, no moment at the wrist, no force along the shaft at the port).
+/// The whole rod for given unknowns: states at port and wrist, and the residual of the conditions
+/// (port - wrist, no moment at the wrist, no force along the shaft at the port).
 struct RodSolver::Evaluation {
   RodFlow<9> port, wrist;
   Eigen::Matrix<double, 3, 2> turn_basis;
@@ -84,8 +84,9 @@ bool AdvanceTipStretch(const Eigen::Vector3d& t_tip, const Eigen::Matrix<double,
   return true;
 }
 
-/// From the port (state `flow`) `length` towards the wrist. Moving the port along the shaft moves
-/// the jump of the internal force, which shows as an initial change of the moment's derivative.
+/// Carries `flow` from the port by `length` towards the wrist. Moving the port along the shaft
+/// moves the jump of the internal force, which shows as an initial change of the moment's
+/// derivative.
 bool AdvanceWristStretch(const Eigen::Vector3d& n_beyond, const Eigen::Vector3d& r,
                          const Eigen::Vector3d& q, double length, RodFlow<9>& flow) {
   RodForce<9> force;
@@ -155,7 +156,7 @@ void RodSolver::Evaluate(const Scaled& scaled, const Unknowns& x, Evaluation& e)
   e.ok = e.residual.allFinite() && e.derivative.allFinite();
 }
 
-/// The states follow the unknowns to first order: what is left out is of the order of the squared
+/// Moves the states with the unknowns to first order. The rest is of the order of the squared
 /// correction, below rounding where the residual is below kNearlyThere.
 void RodSolver::Evaluation::Correct(const Vector6& dx) {
   for (RodFlow<9>* flow : {&port, &wrist}) {

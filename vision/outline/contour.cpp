@@ -15,8 +15,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr int kMaxIterations = 12, kWideIterations = 2;
 constexpr int kWideSearch_px = 8;  // after the vote
-// Squared step over the covariance. Scan lines move with the pose and see another bit of the
-// background: six would be another draw of all errors.
+// Limit of the squared step over the covariance. Scan lines move with the pose and see another part
+// of the background: at six, all errors would be drawn anew.
 constexpr double kSettled = 1e-2, kNearlySettled = 3.0;
 constexpr int kLeastOfPart = 3;
 
@@ -27,7 +27,7 @@ void CheckGrey(const Image& image) {
   }
 }
 
-// The pose that brings the outline's points nearest to their new places, in the light of the prior.
+// Returns the pose that brings the outline's points nearest to their new places, with the prior.
 Vector6 StepToward(const std::vector<ContourPoint>& points, const std::vector<double>& outward_px,
                    const Matrix6& information, bool sides, bool end) {
   Matrix6 A = information;
@@ -78,8 +78,8 @@ ContourTerm ShaftContour::Linearise(const Image& grey, const Pose& T_CE,
   return MakeTerm(lines, prior);
 }
 
-// The sides first: where they are the end's lines cross the end. False where another place fits
-// nearly as well.
+// Finds the sides first: at their place the end's lines cross the end. Returns false where another
+// place fits nearly as well.
 bool ShaftContour::FindRoughly(const Image& grey, const Matrix6& information, Pose& T_CE) const {
   bool clear = true;
   for (const bool along : {false, true}) {
@@ -93,8 +93,8 @@ bool ShaftContour::FindRoughly(const Image& grey, const Matrix6& information, Po
   return clear;
 }
 
-// Where the tube's end is says only the end itself: an occluder's edge that crosses the tube may
-// look like part of one, so most of it must agree.
+// Judges the term. Only the end itself tells the end's place. An occluder's edge across the tube
+// may look like a part of the end, so most of the end must agree.
 ContourStatus ShaftContour::Judge(const ContourTerm& term) const {
   const auto [left, right, end] = term.points_of;
   if (term.points < options_.least_points || left < kLeastOfPart || right < kLeastOfPart ||

@@ -15,7 +15,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 constexpr int kJoinSearch_px = 4, kJoinSteps = 2;
 constexpr double kMargin_px = 45.0;
 constexpr double kBlurChange = 0.15;  // of the blur, from which on it is worth a new edge model
-// Squared distances over their covariances: beyond them it is another thing's outline.
+// Squared distances over their covariances above which an outline belongs to another thing.
 constexpr double kDisagree = 25.0, kFarFromExpected = 30.0;  // of 5 and of 6 degrees of freedom
 
 ContourOptions WithBlur(ContourOptions options, double blur_px) {
@@ -32,8 +32,9 @@ bool HasEnd(const ContourTerm& term, const ContourOptions& options) {
   return term.lines_of[2] > 0 && term.points_of[2] >= options.least_end * term.lines_of[2];
 }
 
-// The squared distance of the outline's own pose from one with `information`, at which the term
-// was made, over the covariance of both. (Roll, which the outline does not know, costs nothing.)
+// Returns the squared distance of the outline's own pose from a pose with `information`, at which
+// the term was made, over the covariance of both. Roll, which the outline does not know, costs
+// nothing.
 double Disagreement(const ContourTerm& term, const Matrix6& information) {
   const Matrix6 alone = term.JtJ + 1e-6 * information, both = term.JtJ + information;
   return term.Jtr.dot(alone.ldlt().solve(term.Jtr) - both.ldlt().solve(term.Jtr));
@@ -67,7 +68,7 @@ void TipOutline::VisitState(StateText& state) {
   }
 }
 
-// Grey values where the outline may be looked for.
+// Makes grey values where the outline may be looked for.
 const Image& TipOutline::GreyAround(View& view, const Image& image, const Pose& T_CE) const {
   if (image.channels == 1) return image;
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);

@@ -14,8 +14,8 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// A stage ends with a step below so many pixels, the last with one whose square is below so
-// many of its own variances.
+// A stage ends with a step below this many pixels; the last stage ends with a step whose square is
+// below this many of its own variances.
 constexpr double kCoarseStep_px = 0.8, kFineStep_px = 0.25, kLastStep_px = 0.05;
 constexpr double kClearScatter = 2.0;   // over that of noise, which 32 patches seldom reach
 constexpr double kLeastLikeness = 0.4;  // of a tag that is within reach
@@ -90,7 +90,7 @@ struct PhotometricFit::Impl {
     return sums;
   }
 
-  // False where a picture's blur is not settled yet.
+  // Returns false where a picture's blur is not settled yet.
   bool Step(const Vector6& step_R) {
     bool settled = true;
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -100,7 +100,7 @@ struct PhotometricFit::Impl {
     return settled;
   }
 
-  // How far the collar moves in the pictures when E goes from one pose to the other (px).
+  // Returns the motion of the collar in the pictures when E goes from one pose to the other (px).
   double MovedPx(const Pose& from_T_RE, const Pose& to_T_RE) const {
     double most = 0;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -113,8 +113,8 @@ struct PhotometricFit::Impl {
     return most;
   }
 
-  // Keeps the first stages, which see few pixels through a wide blur, near where they began: by
-  // some pixels across, and in proportion along the line of sight and in rotation.
+  // Keeps the first stages near their start, since they see few pixels through a wide blur: by some
+  // pixels across, and in proportion along the line of sight and in rotation.
   Matrix6 StayNear(const Pose& T_RE) const {
     Eigen::Vector3d centre_E = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& x_E : points_E) centre_E += x_E;
@@ -133,7 +133,7 @@ struct PhotometricFit::Impl {
     return to_centre.transpose() * about_centre * to_centre;
   }
 
-  // Gauss-Newton until a step is small.
+  // Makes Gauss-Newton steps until a step is small.
   bool Iterate(Pose& T_RE, Sums& sums, int max_iterations, double small_px, Robustness kind,
                const Matrix6& near_start = Matrix6::Zero()) {
     const Pose start = T_RE;
@@ -175,8 +175,9 @@ struct PhotometricFit::Impl {
   PhotometricResult Report(const Pose& T_RE, const Sums& sums, bool converged) const;
 };
 
-// By the sandwich of M-estimators: the gradient's scatter over patches of the tags stands for the
-// noise, where it clearly exceeds that of independent pixels (glare, smoke, dirt, a wrong pattern).
+// Returns the covariance by the sandwich of M-estimators. The gradient's scatter over patches of
+// the tags stands for the noise where it clearly exceeds that of independent pixels (glare, smoke,
+// dirt, a wrong pattern).
 Matrix6 PhotometricFit::Impl::ResidualCovariance(const Matrix6& JtJ) const {
   Matrix6 scatter = Matrix6::Zero();
   double white = 0;
@@ -197,7 +198,8 @@ Matrix6 PhotometricFit::Impl::ResidualCovariance(const Matrix6& JtJ) const {
   return out * noise.asDiagonal() * out.transpose();
 }
 
-// As if the corners of all tags were measured with the model's noise.
+// Returns the covariance of the pose as if the corners of all tags were measured with the model's
+// noise.
 Matrix6 PhotometricFit::Impl::ModelCovariance(const Pose& T_RE) const {
   Matrix6 information = Matrix6::Zero();
   for (std::size_t i = 0; i < views.size(); ++i) {

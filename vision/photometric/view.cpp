@@ -39,7 +39,7 @@ void PhotometricView::Begin(const Image& image, const Pose& T_CE, const OpticsPr
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     if (faces_[i].IsSeen(camera_, T_CE)) seen_.push_back({i, true, false, {}, {}});
   }
-  // A face seen much aslant says little, and that little is the least certain.
+  // A face seen much aslant tells little, and tells it unsurely.
   const bool any = std::any_of(seen_.begin(), seen_.end(), [&](const SeenFace& s) {
     return faces_[s.face].Cosine(T_CE) > kAslant;
   });
@@ -143,7 +143,7 @@ std::vector<Eigen::Vector3d> PhotometricView::Normals() const {
   return normals;
 }
 
-// From the median size of the residuals.
+// Learns the noise from the median size of the residuals.
 void PhotometricView::LearnNoise() {
   FaceSums::Histogram errors{};
   int count = 0, below = 0;
@@ -291,7 +291,7 @@ OpticsPrior PhotometricView::Learned(const Eigen::Matrix<double, 6, 6>& covarian
       (optics_variance_ + (by_pose * covariance * by_pose.transpose()).diagonal()).cwiseSqrt();
   OpticsPrior next = prior_;
   next.mean = optics_;
-  // The least seen so far, which may grow slowly.
+  // The least noise seen so far, which may grow slowly.
   next.noise_grey =
       prior_.noise_grey > 0 ? std::min(noise_grey_, kNoiseGrowth * prior_.noise_grey) : noise_grey_;
   next.blur_sd_px2 = kBlurChange * (optics_.blur_px2[0] + optics_.blur_px2[2]) + 0.1;
