@@ -133,7 +133,7 @@ TEST(TipPath, ContinuousFollowsItsLegsAtItsSpeed) {
   setup.waypoints_m = {{0.01, 0, 0}, {0.01, 0.02, 0}};
   setup.speed_m_s = 0.03;
   setup.settle_s = 0.1;
-  TipPath path(setup, {1, 2, 3}, 30.0);
+  TipPath path(setup, {Eigen::Matrix3d::Identity(), {1, 2, 3}}, 30.0);
   Eigen::Vector3d last(1, 2, 3);
   double length = 0.0;
   int updates = 0;
@@ -154,7 +154,7 @@ TEST(TipPath, StepsWaitAtTheEndUntilTheTipIsThere) {
   PathSetup setup;
   setup.mode = PathMode::kSteps;
   setup.waypoints_m = {{0.01, 0, 0}};
-  TipPath path(setup, {0, 0, 0}, 30.0);
+  TipPath path(setup, Pose(), 30.0);
   for (int i = 1; i <= 5; ++i) EXPECT_NEAR(path.Advance({0, 0, 0}).x(), 0.002 * i, 1e-15);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(path.Advance({0.009, 0, 0}).x(), 0.01);
   EXPECT_FALSE(path.Done());
