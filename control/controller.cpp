@@ -135,6 +135,10 @@ const char* Name(ControlStatus status) {
       return "no_model";
     case ControlStatus::kStraightInstead:
       return "straight_instead";
+    case ControlStatus::kNoGoal:
+      return "no_goal";
+    case ControlStatus::kNoWrist:
+      return "no_wrist";
   }
   return "";
 }

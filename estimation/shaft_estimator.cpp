@@ -71,6 +71,16 @@ const char* Name(EstimateStatus status) {
   return "";
 }
 
+EstimatorOptions EstimatorOptionsFor(const Instrument& instrument, const Eigen::Vector3d& p_RP,
+                                     const Eigen::Vector3d& gravity_m_s2, double port_prior_m) {
+  EstimatorOptions options;
+  options.instrument = instrument;
+  options.p_RP = p_RP;
+  options.gravity_m_s2 = gravity_m_s2;
+  options.port_prior_m = port_prior_m;
+  return options;
+}
+
 ShaftEstimator::ShaftEstimator(const EstimatorOptions& options) : options_(options) {}
 
 void ShaftEstimator::Reset() { *this = ShaftEstimator(options_); }

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/rotation.h"
 #include "estimation/shaft_estimator.h"
-#include "pipeline/measurements_at.h"
+#include "pipeline/sensor_readings.h"
 #include "recording/recording_reader.h"
 #include "recording/text/text.h"
 #include "testdata/hidden/recording.h"

@@ -38,7 +38,7 @@ void OutlineFollower::Join(const std::vector<const Image*>& images, Sight& sight
   sight.outline_used = true;
 }
 
-void OutlineFollower::LeaveFrom(const TipFilter& filter, TimeNs t_ns) {
+void OutlineFollower::LeaveFrom(const ConstantVelocityFilter& filter, TimeNs t_ns) {
   by_tags_ = filter;
   last_seen_ns_ = t_ns;
 }

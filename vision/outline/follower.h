@@ -25,7 +25,7 @@ class OutlineFollower {
   void Join(const std::vector<const Image*>& images, Sight& sight);
 
   /// Takes over the state of `filter` after the tags were seen at `t_ns`.
-  void LeaveFrom(const TipFilter& filter, TimeNs t_ns);
+  void LeaveFrom(const ConstantVelocityFilter& filter, TimeNs t_ns);
   /// Forgets the tags, which were not seen for long.
   void Forget() { by_tags_.reset(); }
 
@@ -44,9 +44,9 @@ class OutlineFollower {
 
   TrackerOptions options_;
   TipOutline outline_;
-  std::optional<TipFilter> by_tags_;  // as the tags left it, before an outline came in
-  TimeNs last_seen_ns_ = 0;           // of the last tags
-  double agreement_ = 0;              // with the tags, fading
+  std::optional<ConstantVelocityFilter> by_tags_;  // as the tags left it, before an outline came in
+  TimeNs last_seen_ns_ = 0;                        // of the last tags
+  double agreement_ = 0;                           // with the tags, fading
   int checks_ = 0, frames_since_ = 0;
 };
 

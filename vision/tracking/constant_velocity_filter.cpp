@@ -13,7 +13,7 @@ constexpr double kJump = 100.0;
 
 // x' = F x, P' = F P F^T + Q with white acceleration. (A constant acceleration between two frames
 // would double every velocity error once positions are exact.)
-void TipFilter::Advance(TimeNs t_ns, Vector6& x, Matrix6& P) const {
+void ConstantVelocityFilter::Advance(TimeNs t_ns, Vector6& x, Matrix6& P) const {
   const double dt = 1e-9 * static_cast<double>(t_ns - t_ns_);
   const double q = acceleration_noise_m_s2_ * acceleration_noise_m_s2_ * kAccelerationTime_s;
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
@@ -24,8 +24,8 @@ void TipFilter::Advance(TimeNs t_ns, Vector6& x, Matrix6& P) const {
   P = F * P * F.transpose() + q * Q;
 }
 
-void TipFilter::Measure(TimeNs t_ns, const Eigen::Vector3d& p,
-                        const Eigen::Matrix3d& covariance_m2) {
+void ConstantVelocityFilter::Measure(TimeNs t_ns, const Eigen::Vector3d& p,
+                                     const Eigen::Matrix3d& covariance_m2) {
   if (!started_) {
     x_ << p, Eigen::Vector3d::Zero();
     P_.setZero();
@@ -50,8 +50,8 @@ void TipFilter::Measure(TimeNs t_ns, const Eigen::Vector3d& p,
 }
 
 // The velocity given the position stays as it is; the position's distribution is another.
-void TipFilter::Replace(TimeNs t_ns, const Eigen::Vector3d& p,
-                        const Eigen::Matrix3d& covariance_m2) {
+void ConstantVelocityFilter::Replace(TimeNs t_ns, const Eigen::Vector3d& p,
+                                     const Eigen::Matrix3d& covariance_m2) {
   if (!started_) return Measure(t_ns, p, covariance_m2);
   Advance(t_ns, x_, P_);
   t_ns_ = t_ns;
@@ -65,7 +65,7 @@ void TipFilter::Replace(TimeNs t_ns, const Eigen::Vector3d& p,
       0.5 * (velocity + velocity.transpose());
 }
 
-TipFilter::Prediction TipFilter::At(TimeNs t_ns) const {
+ConstantVelocityFilter::Prediction ConstantVelocityFilter::At(TimeNs t_ns) const {
   Vector6 x = x_;
   Matrix6 P = P_;
   Advance(t_ns, x, P);
