@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <cstdint>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 
 enum class JointStepStatus : std::uint8_t {
@@ -44,12 +46,11 @@ JointStepResult<N> JointStep(const JointStepInput<N>& input) noexcept {
   if (!J.allFinite() || !move.allFinite() || !input.theta.allFinite() || !(limit > 0)) {
     return result;
   }
-  const Eigen::JacobiSVD<Eigen::Matrix<double, N, N>> svd(
-      J, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const auto& s = svd.singularValues();
+  const Svd<N> svd(J);
+  const auto& s = svd.sigma;
   Eigen::Matrix<double, N, 1> inverse;
   for (int i = 0; i < N; ++i) inverse[i] = s[i] >= limit ? 1.0 / s[i] : s[i] / (limit * limit);
-  result.theta_desired += svd.matrixV() * inverse.cwiseProduct(svd.matrixU().transpose() * move);
+  result.theta_desired += svd.V * inverse.cwiseProduct(svd.U.transpose() * move);
   result.smallest_singular_value_m = s[N - 1];
   result.status = s[N - 1] < limit ? JointStepStatus::kDamped : JointStepStatus::kOk;
   return result;

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "kinematics/load_steps.h"
 #include "kinematics/rod_flow.h"
@@ -185,7 +186,7 @@ int RodSolver::Newton(const Scaled& scaled, Unknowns& x, Evaluation& e) {
     if (size < kConverged) return i;
     if (i > 4 && size > 0.9 * last) return 0;  // it should converge quadratically by now
     last = size;
-    Vector6 dx = -e.derivative.leftCols<6>().partialPivLu().solve(e.residual);
+    Vector6 dx = -Lu(e.derivative.leftCols<6>()).Solve(e.residual);
     if (!dx.allFinite()) return 0;
     const double turn = dx.head<2>().norm();
     if (turn > kMaxTurn) dx *= kMaxTurn / turn;
@@ -261,7 +262,7 @@ void RodSolver::Keep(const RodProblem& problem, const Unknowns& x, const Evaluat
   dR.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / L;
   dR.block<3, 3>(0, 3) = -Eigen::Matrix3d::Identity() / L;
   dR.rightCols<3>() = e.derivative.rightCols<3>() * (L * L / problem.bending_stiffness_Nm2);
-  dx_ = -e.derivative.leftCols<6>().partialPivLu().solve(dR);
+  dx_ = -Lu(e.derivative.leftCols<6>()).Solve(dR);
 }
 
 RodSection RodSolver::MakeSection(const RodFlow<9>& flow, const RodSection* tip, double s_m) const {

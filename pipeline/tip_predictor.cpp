@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -43,7 +44,7 @@ TipPrediction Join(const TipPrediction& a, const TipPrediction& b) {
   Vector6 difference;
   difference << LogRotation(b.T_RE.R * a.T_RE.R.transpose()), b.T_RE.p - a.T_RE.p;
   const Matrix6 sum = a.covariance + b.covariance;
-  const Matrix6 gain = sum.ldlt().solve(a.covariance).transpose();
+  const Matrix6 gain = Ldlt(sum).Solve(a.covariance).transpose();
   const Vector6 step = gain * difference;
   TipPrediction joined;
   joined.T_RE = {ExpRotation(step.head<3>()) * a.T_RE.R, a.T_RE.p + step.tail<3>()};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 
 namespace flextip {
 namespace {
@@ -181,7 +182,7 @@ std::optional<Eigen::Vector3d> CameraModel::Unproject(const Eigen::Vector2d& px)
   Eigen::Matrix2d J;
   Eigen::Vector2d error = Distort(m, &J) - d;
   for (int i = 0; i < 100 && error.norm() > 1e-16; ++i) {  // Newton with halved steps
-    const Eigen::Vector2d step = J.fullPivLu().solve(error);
+    const Eigen::Vector2d step = FullLu(J).Solve(error);
     double scale = 1.0;
     Eigen::Vector2d next = m, next_error = error;
     for (; scale > 1e-6; scale *= 0.5) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "diagnosis/model/model_at.h"
 #include "simulation/closed_loop/closed_loop.h"
@@ -81,10 +82,9 @@ TipSensorSetup TipSensor(const Recording& recording, const Eigen::Vector3d& p_ti
     ++count;
   }
   if (count == 0) return tip;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance / count);
-  tip.depth_noise_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
-  tip.across_noise_m =
-      std::sqrt(std::max(0.0, 0.5 * (eigen.eigenvalues()[0] + eigen.eigenvalues()[1])));
+  const Eigen::Vector3d variances = SymmetricEigenvalues(covariance / count);
+  tip.depth_noise_m = std::sqrt(std::max(0.0, variances[2]));
+  tip.across_noise_m = std::sqrt(std::max(0.0, 0.5 * (variances[0] + variances[1])));
   tip.direction_noise_rad = recording.vision0->direction_noise_rad;
   return tip;
 }

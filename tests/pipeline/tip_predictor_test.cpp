@@ -1,5 +1,6 @@
 // The predicted tip against the truth of simulated recordings, whose plant shares no code with the
 // model and is a little off its data sheet in everything.
+#include "core/linear_algebra.h"
 #include "pipeline/tip_predictor.h"
 
 #include <gtest/gtest.h>
@@ -67,7 +68,7 @@ struct Sum {
   void Add(const TipPrediction& prediction, const Pose& truth) {
     Vector6 e;
     e << LogRotation(truth.R * prediction.T_RE.R.transpose()), truth.p - prediction.T_RE.p;
-    nees += e.dot(prediction.covariance.ldlt().solve(e));
+    nees += MahalanobisSquared(e, prediction.covariance);
     squared_m2 += e.tail<3>().squaredNorm();
     stated_m2 += prediction.covariance.bottomRightCorner<3, 3>().trace();
     ++n;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "vision/outline/contour_coarse.h"
 #include "vision/tags/reprojection.h"
 
@@ -38,7 +39,7 @@ Vector6 StepToward(const std::vector<ContourPoint>& points, const std::vector<do
     A += points[i].J_pose.transpose() * points[i].J_pose;
     b += points[i].J_pose.transpose() * outward_px[i];
   }
-  return A.ldlt().solve(b);
+  return Ldlt(A).Solve(b);
 }
 
 }  // namespace
@@ -109,7 +110,7 @@ ContourStatus ShaftContour::Judge(const ContourTerm& term) const {
 ContourFit ShaftContour::Fit(const Image& grey, const Pose& predicted,
                              const Matrix6& covariance) const {
   CheckGrey(grey);
-  const Matrix6 information = covariance.ldlt().solve(Matrix6::Identity());
+  const Matrix6 information = Ldlt(covariance).Inverse();
   ContourFit fit;
   fit.T_CE = predicted;
   fit.bend = options_.bend_mean;
@@ -124,8 +125,8 @@ ContourFit ShaftContour::Fit(const Image& grey, const Pose& predicted,
     if (fit.term.points == 0) return fit;
     const Matrix6 A = fit.term.JtJ + information;
     const Vector6 b = fit.term.Jtr + information * PoseDifference(predicted, fit.T_CE);
-    const Vector6 step = -A.ldlt().solve(b);
-    fit.covariance = A.ldlt().solve(Matrix6::Identity());
+    const Vector6 step = -Ldlt(A).Solve(b);
+    fit.covariance = Ldlt(A).Inverse();
     if (!step.allFinite()) break;
     fit.T_CE = MovePose(fit.T_CE, step);
     fit.bend += fit.term.bend_step + fit.term.bend_by_pose * step;

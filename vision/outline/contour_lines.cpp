@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -95,7 +96,7 @@ Equations Sum(const std::vector<ContourLine>& lines, const std::vector<VectorAll
 // determine stay.
 VectorAll OwnStep(Equations e) {
   for (int i = 0; i < kPose; ++i) e.A(i, i) += 1e-9 + 1e-7 * e.A(i, i);
-  return -e.A.ldlt().solve(e.b);
+  return -Ldlt(e.A).Solve(e.b);
 }
 
 void SetVariances(std::vector<ContourLine>& lines, const ContourErrors& errors) {
@@ -159,9 +160,9 @@ void Reweigh(std::vector<ContourLine>& lines, const std::vector<VectorAll>& rows
 
 void Eliminate(const Equations& e, ContourTerm& term) {
   const auto H_po = e.A.topRightCorner<kPose, kOther>();
-  const auto inverse = e.A.bottomRightCorner<kOther, kOther>().ldlt();
-  const Eigen::Matrix<double, kOther, kPose> by_pose = -inverse.solve(H_po.transpose());
-  const Eigen::Matrix<double, kOther, 1> step = -inverse.solve(e.b.tail<kOther>());
+  const Ldlt H_oo(e.A.bottomRightCorner<kOther, kOther>());
+  const Eigen::Matrix<double, kOther, kPose> by_pose = -H_oo.Solve(H_po.transpose());
+  const Eigen::Matrix<double, kOther, 1> step = -H_oo.Solve(e.b.tail<kOther>());
   term.JtJ = e.A.topLeftCorner<kPose, kPose>() + H_po * by_pose;
   term.Jtr = e.b.head<kPose>() + H_po * step;
   term.chi2 = e.squares + e.b.tail<kOther>().dot(step);

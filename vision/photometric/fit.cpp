@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "vision/tags/collar_faces.h"
 #include "vision/tags/reprojection.h"
@@ -142,7 +143,7 @@ struct PhotometricFit::Impl {
       sums = Linearise(T_RE, kind);
       if (sums.pixels == 0) return false;
       const Vector6 gone = PoseDifference(start, T_RE);
-      Vector6 step = (sums.JtJ + near_start).ldlt().solve(sums.Jtr - near_start * gone);
+      Vector6 step = Ldlt(sums.JtJ + near_start).Solve(sums.Jtr - near_start * gone);
       if (!step.allFinite()) return false;
       const double size = step.dot(sums.JtJ * step);
       const double turn = step.head<3>().norm();
@@ -189,12 +190,12 @@ Matrix6 PhotometricFit::Impl::ResidualCovariance(const Matrix6& JtJ) const {
                (variance * variance);
     white = std::max(white, of_view);
   }
-  const Eigen::LLT<Matrix6> root(JtJ);
-  const Matrix6 half = root.matrixL().solve(scatter);
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(root.matrixL().solve(half.transpose()));
-  Vector6 noise = solver.eigenvalues();
+  const Llt root(JtJ);
+  const Matrix6 half = root.SolveL(scatter);
+  const SymmetricEigen axes(root.SolveL(half.transpose()));
+  Vector6 noise = axes.values;
   for (double& n : noise) n = n > kClearScatter * white ? n : white;
-  const Matrix6 out = root.matrixU().solve(solver.eigenvectors());
+  const Matrix6 out = root.SolveLTransposed(axes.vectors);
   return out * noise.asDiagonal() * out.transpose();
 }
 
@@ -213,7 +214,7 @@ Matrix6 PhotometricFit::Impl::ModelCovariance(const Pose& T_RE) const {
     }
   }
   if (information.isZero()) return Matrix6::Zero();
-  return information.ldlt().solve(Matrix6::Identity());
+  return Ldlt(information).Inverse();
 }
 
 PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sums,
@@ -223,8 +224,7 @@ PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sum
   result.pixels = sums.pixels;
   result.faces = Faces();
   result.one_plane = OnePlane();
-  const Eigen::LDLT<Matrix6> solver(sums.JtJ);
-  const bool solvable = solver.info() == Eigen::Success && solver.isPositive();
+  const bool solvable = Ldlt(sums.JtJ).IsPositive();
   const Matrix6 covariance = solvable ? ResidualCovariance(sums.JtJ) : Matrix6::Zero();
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (present[i]) result.faces_in_view += views[i].FacesInView(cameras[i]->T_CR * T_RE);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "vision/tags/collar_pose.h"
 
@@ -227,9 +228,9 @@ void PhotometricView::EliminateLevels(SeenFace& s, Matrix11& A, Vector11& b) con
   }
   for (const int i : {0, 3}) H(i, i) += 1e-3 * noise2;
   const Eigen::Matrix<double, 6, 11> C = s.sums.A().block<6, 11>(kL, 0);
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(H);
-  s.levels.constant = solver.solve(r);
-  s.levels.by_rest = solver.solve(C);
+  const Ldlt solver(H);
+  s.levels.constant = solver.Solve(r);
+  s.levels.by_rest = solver.Solve(C);
   A += s.sums.A().topLeftCorner<11, 11>() - C.transpose() * s.levels.by_rest;
   b += s.sums.A().block<11, 1>(0, kR) - C.transpose() * s.levels.constant;
 }
@@ -246,11 +247,11 @@ PoseTerm PhotometricView::EliminateOptics(Matrix11 A, Vector11 b) {
     A(6 + i, 6 + i) += noise2 / (sd[i] * sd[i]);
     b[6 + i] -= noise2 / (sd[i] * sd[i]) * off[i];
   }
-  const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(A.bottomRightCorner<5, 5>());
+  const Ldlt solver(A.bottomRightCorner<5, 5>());
   const Eigen::Matrix<double, 5, 6> C = A.bottomLeftCorner<5, 6>();
-  optics_elimination_.constant = solver.solve(b.tail<5>());
-  optics_elimination_.by_rest = solver.solve(C);
-  optics_variance_ = noise2 * solver.solve(Eigen::Matrix<double, 5, 5>::Identity()).diagonal();
+  optics_elimination_.constant = solver.Solve(b.tail<5>());
+  optics_elimination_.by_rest = solver.Solve(C);
+  optics_variance_ = noise2 * solver.Inverse().diagonal();
   const Eigen::Matrix<double, 6, 6> JtJ =
       A.topLeftCorner<6, 6>() - C.transpose() * optics_elimination_.by_rest;
   const Eigen::Matrix<double, 6, 1> Jtr =

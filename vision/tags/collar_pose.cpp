@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "vision/tags/planar_pose.h"
 #include "vision/tags/reprojection.h"
 
@@ -177,10 +178,9 @@ CollarPose EstimateCollarPose(const CameraModel& camera, const TagCollar& collar
   pose.dof = 8 * pose.tags_used - 6;
   pose.corner_noise_px = CornerNoise(*chosen, pose.dof, options);
   ResolveAmbiguity(minima, near_T_CE, pose, chosen);
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> information(chosen->error.JtJ);
-  if (information.info() != Eigen::Success || information.rcond() < 1e-18) return pose;
-  pose.covariance += pose.corner_noise_px * pose.corner_noise_px *
-                     information.solve(Eigen::Matrix<double, 6, 6>::Identity());
+  const Ldlt information(chosen->error.JtJ);
+  if (!information.Succeeded() || information.ReciprocalCondition() < 1e-18) return pose;
+  pose.covariance += pose.corner_noise_px * pose.corner_noise_px * information.Inverse();
   pose.T_CE = chosen->T_CE;
   pose.squared_error_px2 = chosen->error.squared_px2;
   pose.rms_px = Rms(*chosen, seen.size());

@@ -1,5 +1,7 @@
 #include "vision/tracking/constant_velocity_filter.h"
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 
 // An instrument's tip seldom moves faster than this: the spread of the unknown first velocity.
@@ -39,11 +41,11 @@ void ConstantVelocityFilter::Measure(TimeNs t_ns, const Eigen::Vector3d& p,
   t_ns_ = t_ns;
   const Eigen::Matrix3d S = P_.topLeftCorner<3, 3>() + covariance_m2;
   const Eigen::Vector3d innovation = p - x_.head<3>();
-  if (innovation.dot(S.ldlt().solve(innovation)) > kJump) {
+  if (MahalanobisSquared(innovation, S) > kJump) {
     started_ = false;
     return Measure(t_ns, p, covariance_m2);
   }
-  const Eigen::Matrix<double, 6, 3> K = S.ldlt().solve(P_.topRows<3>()).transpose();
+  const Eigen::Matrix<double, 6, 3> K = Ldlt(S).Solve(P_.topRows<3>()).transpose();
   x_ += K * innovation;
   const Matrix6 updated = P_ - K * P_.topRows<3>();
   P_ = 0.5 * (updated + updated.transpose());
@@ -56,7 +58,7 @@ void ConstantVelocityFilter::Replace(TimeNs t_ns, const Eigen::Vector3d& p,
   Advance(t_ns, x_, P_);
   t_ns_ = t_ns;
   const Eigen::Matrix3d before = P_.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d gain = before.ldlt().solve(P_.topRightCorner<3, 3>()).transpose();
+  const Eigen::Matrix3d gain = Ldlt(before).Solve(P_.topRightCorner<3, 3>()).transpose();
   const Eigen::Matrix3d velocity =
       P_.bottomRightCorner<3, 3>() + gain * (covariance_m2 - before) * gain.transpose();
   x_.tail<3>() += gain * (p - x_.head<3>());
