@@ -12,9 +12,6 @@
 
 namespace flextip {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 /// The numbers that all views share, in this order: steps (dw, dp) of T_FC and of T_KB, the time
 /// offset (s), fu, fv, cu, cv (px).
 constexpr int kShared = 17, kTimeColumn = 12, kIntrinsicsColumn = 13;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/levenberg_marquardt.h"
+
 namespace flextip {
 namespace {
 
@@ -34,7 +36,7 @@ std::optional<Linearised> Linearise(const HandEyeProblem& problem, const HandEye
 
 struct Step {
   SharedVector shared = SharedVector::Zero();
-  std::vector<Vector6> wrists;
+  std::vector<Vector6d> wrists;
 };
 
 // Both blocks are damped by their diagonals.
@@ -42,9 +44,9 @@ Step Solve(const Linearised& at, const std::vector<int>& unknowns, double dampin
   SharedMatrix H = at.U;
   H.diagonal() *= 1 + damping;
   SharedVector g = SharedVector::Zero();
-  std::vector<Eigen::LDLT<Matrix6>> solvers;
+  std::vector<Eigen::LDLT<Matrix6d>> solvers;
   for (const ViewNormal& view : at.views) {
-    Matrix6 V = view.V;
+    Matrix6d V = view.V;
     V.diagonal() *= 1 + damping;
     const auto& solver = solvers.emplace_back(V);
     H.noalias() -= view.W * solver.solve(view.W.transpose());
@@ -98,12 +100,12 @@ HandEyeVariances VariancesOf(const HandEyeProblem& problem, const Linearised& at
   for (std::size_t i = 0; i < at.views.size(); ++i) {
     const ViewNormal& view = at.views[i];
     const double share = problem.views[i].wrist.noise_share;
-    const Matrix6 prior = problem.noise.WristCovariance(share).inverse();
-    const Matrix6 inverse = view.V.inverse();
+    const Matrix6d prior = problem.noise.WristCovariance(share).inverse();
+    const Matrix6d inverse = view.V.inverse();
     const Eigen::MatrixXd W = view.W(unknowns, Eigen::all);
-    const Matrix6 posterior = inverse + inverse * (W.transpose() * covariance * W) * inverse;
-    const Vector6 known = (prior * posterior).diagonal();
-    const Vector6 chi2 = view.wrist_step.cwiseProduct(prior * view.wrist_step);
+    const Matrix6d posterior = inverse + inverse * (W.transpose() * covariance * W) * inverse;
+    const Vector6d known = (prior * posterior).diagonal();
+    const Vector6d chi2 = view.wrist_step.cwiseProduct(prior * view.wrist_step);
     chi2_w += chi2.head<3>().sum();
     chi2_p += chi2.tail<3>().sum();
     redundancy_w += 3 - known.head<3>().sum();
@@ -119,11 +121,11 @@ HandEyeVariances VariancesOf(const HandEyeProblem& problem, const Linearised& at
 
 }  // namespace
 
-Matrix6 HandEyeNoise::WristCovariance(double share) const {
-  Vector6 variance;
+Matrix6d HandEyeNoise::WristCovariance(double share) const {
+  Vector6d variance;
   variance << Eigen::Vector3d::Constant(orientation_rad * orientation_rad),
       Eigen::Vector3d::Constant(position_m * position_m);
-  return Matrix6((share * variance).asDiagonal());
+  return Matrix6d((share * variance).asDiagonal());
 }
 
 std::vector<int> HandEyeProblem::Unknowns() const {
@@ -151,11 +153,11 @@ std::optional<ViewNormal> NormalOf(const HandEyeProblem& problem, const FitView&
   n.h.noalias() = weight * corners->J_wrist.transpose() * corners->r_px;
   n.corners_chi2 = weight * corners->r_px.squaredNorm();
 
-  const Vector6 velocity = view.wrist.velocity.value_or(Vector6::Zero());
+  const Vector6d velocity = view.wrist.velocity.value_or(Vector6d::Zero());
   const Pose measured = MovePose(view.wrist.T_RW, velocity * state.time_step_s);
-  const Matrix6 prior = problem.noise.WristCovariance(view.wrist.noise_share).inverse();
+  const Matrix6d prior = problem.noise.WristCovariance(view.wrist.noise_share).inverse();
   n.wrist_step = PoseDifference(measured, T_RW);
-  const Vector6 pull = prior * n.wrist_step;
+  const Vector6d pull = prior * n.wrist_step;
   n.V += prior;
   n.h += pull;
   n.wrist_chi2 = n.wrist_step.dot(pull);
@@ -172,26 +174,23 @@ std::optional<HandEyeFit> FitHandEye(const HandEyeProblem& problem, HandEyeState
   HandEyeFit fit{std::move(start), {}, {}, {}, 0.0};
   auto at = Linearise(problem, fit.state);
   if (!at) return {};
-  double damping = 1e-6;
-  bool converged = false;
-  double last_gain = HUGE_VAL;
-  for (int i = 0; i < kMaxIterations && !converged; ++i) {
-    const HandEyeState next = Moved(fit.state, Solve(*at, unknowns, damping));
-    auto there = next.camera.fu_px > 0 && next.camera.fv_px > 0 && next.T_FC.p.allFinite()
-                     ? Linearise(problem, next)
-                     : std::nullopt;
-    if (there && there->cost <= at->cost) {
-      last_gain = at->cost - there->cost;
-      converged = last_gain < kConverged * (1 + at->cost);
-      fit.state = next;
-      at = std::move(there);
-      damping = std::max(1e-12, 0.1 * damping);
-    } else {
-      damping = std::max(1e-9, 10 * damping);
-      converged = damping > 1e8;  // only rounding is left
-    }
-  }
-  if (!converged && last_gain > kMeansNothing) return {};
+  HandEyeState next;
+  std::optional<Linearised> there;
+  const auto try_step = [&](double damping) -> TrialStep {
+    next = Moved(fit.state, Solve(*at, unknowns, damping));
+    const bool valid = next.camera.fu_px > 0 && next.camera.fv_px > 0 && next.T_FC.p.allFinite();
+    there = valid ? Linearise(problem, next) : std::nullopt;
+    return {.cost = there ? there->cost : HUGE_VAL};
+  };
+  const auto accept = [&] {
+    fit.state = std::move(next);
+    at = std::move(there);
+  };
+  const DescentResult descent =
+      Descend(at->cost, try_step, accept,
+              {.max_iterations = kMaxIterations, .relative_gain = kConverged});
+  // Exhausted: only rounding is left.
+  if (!descent.settled && !descent.exhausted && descent.last_gain > kMeansNothing) return {};
   fit.cost = at->cost;
   fit.covariance = CovarianceOf(*at, unknowns);
   fit.variances = VariancesOf(problem, *at, unknowns, fit.covariance);

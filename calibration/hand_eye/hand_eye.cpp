@@ -26,8 +26,8 @@ void JudgeViews(HandEyeWork& work) {
     view.chi2 = HUGE_VAL;
     for (std::size_t i = 0; i < view.board.poses.size(); ++i) {
       const BoardPose& pose = view.board.poses[i];
-      const Vector6 r = PoseDifference(pose.T_CB, chain);
-      const Matrix6 C = work.DifferenceCovariance(view, pose.information_px2, !view.used);
+      const Vector6d r = PoseDifference(pose.T_CB, chain);
+      const Matrix6d C = work.DifferenceCovariance(view, pose.information_px2, !view.used);
       const double worse = pose.squared_px2 - view.board.poses.front().squared_px2;
       const double chi2 =
           r.dot(C.ldlt().solve(r)) + worse / (work.noise.corner_px * work.noise.corner_px);
@@ -70,9 +70,9 @@ void ScaleByMedian(HandEyeWork& work) {
 }
 
 std::string WhyNotUsed(const HandEyeWork& work, const WorkView& view) {
-  const Vector6 r = PoseDifference(view.SeenPose(), work.ChainPose(view));
+  const Vector6d r = PoseDifference(view.SeenPose(), work.ChainPose(view));
   const auto& pose = view.board.poses[static_cast<std::size_t>(view.candidate)];
-  const Matrix6 C = work.DifferenceCovariance(view, pose.information_px2, true);
+  const Matrix6d C = work.DifferenceCovariance(view, pose.information_px2, true);
   constexpr double kDegrees = 180 / M_PI;
   return fmt::format(
       "the board is {:.1f} mm and {:.2f} deg away from where the wrist puts it; noise explains "

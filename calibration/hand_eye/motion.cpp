@@ -169,7 +169,7 @@ std::vector<Calibration::Unobservable> UnknownCoordinates(const HandEyeProblem& 
 }
 
 std::string NoTimeOffsetReason(const HandEyeProblem& problem) {
-  const Matrix6 weight = problem.noise.WristCovariance().inverse();
+  const Matrix6d weight = problem.noise.WristCovariance().inverse();
   double velocities = 0, of_noise = 0, steps = 0, bends = 0;
   int with = 0;
   for (const FitView& view : problem.views) {

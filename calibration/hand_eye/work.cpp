@@ -76,11 +76,11 @@ std::vector<PoseView> HandEyeWork::PoseViews() const {
   return pose_views;
 }
 
-Matrix6 HandEyeWork::DifferenceCovariance(const WorkView& view, const Matrix6& information_px2,
+Matrix6d HandEyeWork::DifferenceCovariance(const WorkView& view, const Matrix6d& information_px2,
                                           bool with_frames) const {
   const auto J = ChainJacobian(mount, state.T_FC, state.T_KB, view.wrist->T_RW);
-  const Matrix6 J_wrist = J.rightCols<6>();
-  Matrix6 sum = noise.corner_px * noise.corner_px * information_px2.inverse();
+  const Matrix6d J_wrist = J.rightCols<6>();
+  Matrix6d sum = noise.corner_px * noise.corner_px * information_px2.inverse();
   sum += J_wrist * noise.WristCovariance(view.wrist->noise_share) * J_wrist.transpose();
   if (with_frames && covariance.rows() >= 12) {
     const Eigen::Matrix<double, 6, 12> J_frames = J.leftCols<12>();

@@ -7,6 +7,7 @@
 
 #include "calibration/shaft/known_loads.h"
 #include "calibration/shaft/stiffness_rod.h"
+#include "core/matrix_types.h"
 
 namespace flextip {
 
@@ -70,7 +71,7 @@ class StiffnessFitter {
 
  private:
   struct Hidden {  // true less stated load, true less measured wrist
-    Eigen::Matrix<double, 6, 1> d = Eigen::Matrix<double, 6, 1>::Zero();
+    Vector6d d = Vector6d::Zero();
     Eigen::MatrixXd gain;  // of d by the residual
   };
   StiffnessRows Rows(const LoadHold& hold, const StiffnessVector& x, TaperedRodSolver& solver,

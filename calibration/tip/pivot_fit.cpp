@@ -10,7 +10,6 @@
 namespace flextip {
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Jacobian = Eigen::Matrix<double, 3, 6>;
 
 Jacobian ErrorJacobian(const PivotPose& pose) {

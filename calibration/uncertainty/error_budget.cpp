@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calibration/camera/projection_derivative.h"
+#include "core/matrix_types.h"
 #include "core/rotation.h"
 #include "kinematics/tip_bending.h"
 #include "vision/tags/collar_pose.h"
@@ -21,7 +22,7 @@ const CollarTag* TagOf(const TagCollar& collar, int id) {
 Eigen::MatrixXd PositionByLens(const CameraCalibration& camera, const TagCollar& collar,
                                const std::vector<TagDetection>& tags, const Pose& T_CE) {
   const auto n = static_cast<Eigen::Index>(4 + camera.distortion_coefficients.size());
-  Eigen::Matrix<double, 6, 6> by_pose = Eigen::Matrix<double, 6, 6>::Zero();
+  Matrix6d by_pose = Matrix6d::Zero();
   Eigen::MatrixXd by_lens = Eigen::MatrixXd::Zero(6, n);
   for (const TagDetection& seen : tags) {
     const CollarTag* tag = TagOf(collar, seen.id);

@@ -4,14 +4,13 @@
 #include <limits>
 
 #include "calibration/camera/projection_derivative.h"
+#include "core/matrix_types.h"
 #include "core/median.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 
 namespace flextip {
 namespace {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // (w, t) of the world in the camera as one view's (dw, dp) has it.
 Matrix6d WorldOfPose(const Pose& T_CB) {

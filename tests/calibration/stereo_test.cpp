@@ -11,6 +11,7 @@
 #include "calibration/stereo/stereo_calibration.h"
 #include "core/derivative_check.h"
 #include "core/error.h"
+#include "core/matrix_types.h"
 #include "tests/calibration/stereo_scene.h"
 #include "vision/tags/reprojection.h"
 
@@ -57,7 +58,7 @@ TEST(StereoBundle, CovarianceIsTheSpreadOfWhatIsFound) {
     ASSERT_GT(covariance.rows(), 0);
     const int n = static_cast<int>(error.size());
     nees += error.dot(covariance.topLeftCorner(n, n).ldlt().solve(error)) / n / kRuns;
-    const Eigen::Matrix<double, 6, 6> pair = covariance.block<6, 6>(n - 6, n - 6);
+    const Matrix6d pair = covariance.block<6, 6>(n - 6, n - 6);
     nees_pair += error.tail<6>().dot(pair.ldlt().solve(error.tail<6>())) / 6 / kRuns;
     const Baseline baseline = BaselineOf(s.T_C0C1, pair.bottomRightCorner<3, 3>());
     inside += std::abs(baseline.length_m - scene.T_C0C1.p.norm()) < baseline.sd_m ? 1.0 / kRuns : 0;

@@ -89,7 +89,7 @@ nlohmann::json TipSummary(const std::vector<PivotPose>& poses, const PivotResult
                   {"least_turn_rad", result.turn_rad[0]},
                   {"advice", AdviceText(result, body)}});
   if (!result.IsUsable()) return summary;
-  const Eigen::Matrix<double, 6, 1> sd = result.covariance.diagonal().cwiseSqrt();
+  const Vector6d sd = result.covariance.diagonal().cwiseSqrt();
   summary["tip"] = {{"name", tip_name},
                     {"value_m", Numbers(result.p_BE)},
                     {"standard_deviation_m", Numbers(sd.head<3>())}};

@@ -52,7 +52,7 @@ CalibrationVerdict TipVerdict(const PivotResult& r, const std::string& tip_name,
     return verdict;
   }
   AddReasons(r, verdict);
-  const Eigen::Matrix<double, 6, 1> sd = r.covariance.diagonal().cwiseSqrt();
+  const Vector6d sd = r.covariance.diagonal().cwiseSqrt();
   verdict.says = fmt::format(
       "{} The tip is known to {:.2f} mm; a pose left out puts it {:.2f} mm off along each axis.",
       verdict.grade == CalibrationGrade::kGood ? "Good." : "To be used with care.",
