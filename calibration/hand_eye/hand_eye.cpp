@@ -218,20 +218,27 @@ bool FitsTheOtherWay(HandEyeInput input, const HandEyeOptions& options) {
   return FitViews(work) && !IsDoubtful(work);
 }
 
-// Why nothing can be said; empty where something can.
-std::string WhyNothing(HandEyeWork& work, const HandEyeInput& input) {
+// Why the views tell nothing; `message` is empty where they tell something.
+struct FitFailure {
+  std::string message;
+  bool fits_other_mount = false;
+};
+
+// Fits all views, and where that fails looks for the reason.
+FitFailure FitOrExplain(HandEyeWork& work, const HandEyeInput& input) {
   const bool fits = FitViews(work);
   if (fits && !IsDoubtful(work)) return {};
   if (FitsTheOtherWay(input, work.options)) {
-    return work.mount == HandEyeMount::kEyeToHand
-               ? "the views fit only if the camera is on the wrist (--eye-in-hand)"
-               : "the views fit only if the board is on the wrist (without --eye-in-hand)";
+    return {work.mount == HandEyeMount::kEyeToHand
+                ? "the views fit only if the camera is on the wrist"
+                : "the views fit only if the board is on the wrist",
+            true};
   }
   const auto usable = work.PoseViews().size();
-  if (!fits) return "no frames fit three of the views";
+  if (!fits) return {"no frames fit three of the views"};
   if (2 * work.Used() > static_cast<int>(usable)) return {};
-  return fmt::format("only {} of {} views agree: wrong wrist poses, board or clocks", work.Used(),
-                     usable);
+  return {fmt::format("only {} of {} views agree: wrong wrist poses, board or clocks", work.Used(),
+                      usable)};
 }
 
 }  // namespace
@@ -252,8 +259,9 @@ HandEyeResult CalibrateHandEye(const HandEyeInput& input, const HandEyeOptions& 
         HandEyeStatus::kTooFewViews,
         fmt::format("{} views with board and wrist, at least {} are needed", usable, kMinViews));
   }
-  const std::string why_nothing = WhyNothing(work, input);
-  if (!why_nothing.empty()) return finish(HandEyeStatus::kNotConverged, why_nothing);
+  const FitFailure failure = FitOrExplain(work, input);
+  result.fits_other_mount = failure.fits_other_mount;
+  if (!failure.message.empty()) return finish(HandEyeStatus::kNotConverged, failure.message);
   for (WorkView& view : work.views) {
     if (view.Usable() && !view.used) view.reason = WhyNotUsed(work, view);
     if (view.used) view.reason.clear();

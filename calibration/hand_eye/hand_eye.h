@@ -77,6 +77,7 @@ struct HandEyeMotion {
 struct HandEyeResult {
   HandEyeStatus status = HandEyeStatus::kTooFewViews;
   std::string message;
+  bool fits_other_mount = false;  ///< why it did not converge: `mount` is the wrong one
   HandEyeMount mount = HandEyeMount::kEyeToHand;
   Pose T_FC, T_KB;
   double time_offset_s = 0.0;  ///< to be added to the frames' times

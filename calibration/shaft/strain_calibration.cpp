@@ -63,7 +63,7 @@ class StrainWork {
   std::vector<double> Chi2s(bool used_only) const;
   std::string WhyFar(std::size_t i) const;
   void JudgeColumns();
-  std::string WhyUnknown(const std::vector<int>& columns) const;
+  std::string WhyUnknown(const std::vector<int>& columns);
   void Fill();
   void FillCovariance();
   double HeldoutRms() const;
@@ -172,7 +172,7 @@ std::string StrainWork::WhyFar(std::size_t i) const {
   return why;
 }
 
-std::string StrainWork::WhyUnknown(const std::vector<int>& columns) const {
+std::string StrainWork::WhyUnknown(const std::vector<int>& columns) {
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
   double least = 1e300, most = 0, force_N = 0;
   for (const std::size_t i : hold_of_) {
@@ -195,10 +195,11 @@ std::string StrainWork::WhyUnknown(const std::vector<int>& columns) const {
            "instrument by 90 degrees about its shaft";
   }
   if (most - least < 0.1 * most) {
+    result_.insertions_alike = true;
     return head + fmt::format(
                       "all loads hang with the port at {:.3f} to {:.3f} m along the shaft, "
                       "where the moments of both stations rise together; load at other "
-                      "insertions too, or take the stations as apart (--stations-apart)",
+                      "insertions too, or take the stations as apart",
                       least, most);
   }
   return head +
