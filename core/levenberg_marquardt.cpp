@@ -1,8 +1,9 @@
 #include "core/levenberg_marquardt.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
+
+#include "core/linear_algebra.h"
 
 namespace flextip {
 
@@ -35,7 +36,7 @@ Eigen::VectorXd DampedStep(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, d
   const Eigen::VectorXd unit = H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd scaled = unit.asDiagonal() * H * unit.asDiagonal();
   scaled.diagonal() *= 1.0 + damping;
-  return -unit.cwiseProduct(scaled.ldlt().solve(unit.cwiseProduct(g)));
+  return -unit.cwiseProduct(Ldlt(scaled).Solve(unit.cwiseProduct(g)));
 }
 
 DescentResult MinimiseSquares(

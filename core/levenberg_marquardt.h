@@ -11,8 +11,9 @@ namespace flextip {
 struct DescentOptions {
   int max_iterations = 100;  ///< steps tried, accepted or not
   double start_damping = 1e-6;
-  double shrink = 0.1, grow = 10.0;  ///< of the damping, after a step that helped and one that did not
-  double least_damping = 1e-12;      ///< after a step that helped; smaller ones become `floor`
+  double shrink = 0.1,
+         grow = 10.0;            ///< of the damping, after a step that helped and one that did not
+  double least_damping = 1e-12;  ///< after a step that helped; smaller ones become `floor`
   double floor = 1e-12;
   double least_raised = 1e-9;  ///< after a step that did not help
   double most_damping = 1e8;   ///< ends above this
@@ -25,7 +26,7 @@ struct DescentResult {
   bool settled = false;    ///< by the gain or by the trial's own word
   bool exhausted = false;  ///< the damping rose above the most: no step helps
   int tried = 0;
-  double cost = 0.0;       ///< of the last state accepted
+  double cost = 0.0;            ///< of the last state accepted
   double last_gain = HUGE_VAL;  ///< by which the last accepted step lowered the cost
 };
 
@@ -52,7 +53,8 @@ struct Residuals {
 
 /// Minimises |r(x)|^2 from `x`, which it moves. `evaluate` returns false where there are no
 /// residuals; `x` must not be such a place, or nothing happens.
-DescentResult MinimiseSquares(const std::function<bool(const Eigen::VectorXd& x, Residuals& at)>& evaluate,
-                              Eigen::VectorXd& x, const DescentOptions& options = {});
+DescentResult MinimiseSquares(
+    const std::function<bool(const Eigen::VectorXd& x, Residuals& at)>& evaluate,
+    Eigen::VectorXd& x, const DescentOptions& options = {});
 
 }  // namespace flextip

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/levenberg_marquardt.h"
+#include "core/linear_algebra.h"
 
 namespace flextip {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kMeansNothing = 0.01;
 
 struct Linearised {
   std::vector<ViewNormal> views;
-  SharedMatrix U = SharedMatrix::Zero();
+  SharedMatrix U = SharedMatrix::Zero(kShared, kShared);
   double cost = 0.0;
 };
 
@@ -35,7 +36,7 @@ std::optional<Linearised> Linearise(const HandEyeProblem& problem, const HandEye
 }
 
 struct Step {
-  SharedVector shared = SharedVector::Zero();
+  SharedVector shared = SharedVector::Zero(kShared);
   std::vector<Vector6d> wrists;
 };
 
@@ -43,24 +44,24 @@ struct Step {
 Step Solve(const Linearised& at, const std::vector<int>& unknowns, double damping) {
   SharedMatrix H = at.U;
   H.diagonal() *= 1 + damping;
-  SharedVector g = SharedVector::Zero();
-  std::vector<Eigen::LDLT<Matrix6d>> solvers;
+  SharedVector g = SharedVector::Zero(kShared);
+  std::vector<Ldlt<6>> solvers;
   for (const ViewNormal& view : at.views) {
     Matrix6d V = view.V;
     V.diagonal() *= 1 + damping;
     const auto& solver = solvers.emplace_back(V);
-    H.noalias() -= view.W * solver.solve(view.W.transpose());
-    g += view.g - view.W * solver.solve(view.h);
+    H.noalias() -= view.W * solver.Solve(view.W.transpose());
+    g += view.g - view.W * solver.Solve(view.h);
   }
   Step step;
   const Eigen::MatrixXd H_unknown = H(unknowns, unknowns);
   const Eigen::VectorXd g_unknown = g(unknowns);
-  const Eigen::VectorXd x = -H_unknown.ldlt().solve(g_unknown);
+  const Eigen::VectorXd x = -Ldlt(H_unknown).Solve(g_unknown);
   for (Eigen::Index i = 0; i < x.size(); ++i)
     step.shared[unknowns[static_cast<std::size_t>(i)]] = x[i];
   for (std::size_t i = 0; i < at.views.size(); ++i) {
     const ViewNormal& view = at.views[i];
-    step.wrists.emplace_back(-solvers[i].solve(view.h + view.W.transpose() * step.shared));
+    step.wrists.emplace_back(-solvers[i].Solve(view.h + view.W.transpose() * step.shared));
   }
   return step;
 }
@@ -81,16 +82,16 @@ HandEyeState Moved(const HandEyeState& from, const Step& step) {
 }
 
 Eigen::MatrixXd CovarianceOf(const Linearised& at, const std::vector<int>& unknowns) {
-  SharedMatrix H = SharedMatrix::Zero();
+  SharedMatrix H = SharedMatrix::Zero(kShared, kShared);
   for (const ViewNormal& view : at.views) H += view.Reduced();
   const Eigen::MatrixXd information = H(unknowns, unknowns);
   // Scaled to a unit diagonal: metres, radians and pixels are in it.
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  const Eigen::VectorXd inverse = eigen.eigenvalues().cwiseMax(1e-14).cwiseInverse();
-  return scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
-         eigen.eigenvectors().transpose() * scale.asDiagonal();
+  const SymmetricEigen eigen(scaled);
+  const Eigen::VectorXd inverse = eigen.values.cwiseMax(1e-14).cwiseInverse();
+  return scale.asDiagonal() * eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose() *
+         scale.asDiagonal();
 }
 
 // Foerstner's variance components: each group's chi2 over its share of the redundancy.
@@ -100,8 +101,8 @@ HandEyeVariances VariancesOf(const HandEyeProblem& problem, const Linearised& at
   for (std::size_t i = 0; i < at.views.size(); ++i) {
     const ViewNormal& view = at.views[i];
     const double share = problem.views[i].wrist.noise_share;
-    const Matrix6d prior = problem.noise.WristCovariance(share).inverse();
-    const Matrix6d inverse = view.V.inverse();
+    const Matrix6d prior = Lu(problem.noise.WristCovariance(share)).Inverse();
+    const Matrix6d inverse = Lu(view.V).Inverse();
     const Eigen::MatrixXd W = view.W(unknowns, Eigen::all);
     const Matrix6d posterior = inverse + inverse * (W.transpose() * covariance * W) * inverse;
     const Vector6d known = (prior * posterior).diagonal();
@@ -136,7 +137,7 @@ std::vector<int> HandEyeProblem::Unknowns() const {
   return unknowns;
 }
 
-SharedMatrix ViewNormal::Reduced() const { return U - W * V.ldlt().solve(W.transpose()); }
+SharedMatrix ViewNormal::Reduced() const { return U - W * Ldlt(V).Solve(W.transpose()); }
 
 std::optional<ViewNormal> NormalOf(const HandEyeProblem& problem, const FitView& view,
                                    const CameraModel& camera, const HandEyeState& state,
@@ -155,7 +156,7 @@ std::optional<ViewNormal> NormalOf(const HandEyeProblem& problem, const FitView&
 
   const Vector6d velocity = view.wrist.velocity.value_or(Vector6d::Zero());
   const Pose measured = MovePose(view.wrist.T_RW, velocity * state.time_step_s);
-  const Matrix6d prior = problem.noise.WristCovariance(view.wrist.noise_share).inverse();
+  const Matrix6d prior = Lu(problem.noise.WristCovariance(view.wrist.noise_share)).Inverse();
   n.wrist_step = PoseDifference(measured, T_RW);
   const Vector6d pull = prior * n.wrist_step;
   n.V += prior;
@@ -186,9 +187,8 @@ std::optional<HandEyeFit> FitHandEye(const HandEyeProblem& problem, HandEyeState
     fit.state = std::move(next);
     at = std::move(there);
   };
-  const DescentResult descent =
-      Descend(at->cost, try_step, accept,
-              {.max_iterations = kMaxIterations, .relative_gain = kConverged});
+  const DescentResult descent = Descend(
+      at->cost, try_step, accept, {.max_iterations = kMaxIterations, .relative_gain = kConverged});
   // Exhausted: only rounding is left.
   if (!descent.settled && !descent.exhausted && descent.last_gain > kMeansNothing) return {};
   fit.cost = at->cost;

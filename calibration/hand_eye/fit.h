@@ -46,9 +46,9 @@ struct HandEyeState {
 
 /// The normal equations of one view.
 struct ViewNormal {
-  SharedMatrix U = SharedMatrix::Zero();
-  SharedVector g = SharedVector::Zero();
-  Eigen::Matrix<double, kShared, 6> W = Eigen::Matrix<double, kShared, 6>::Zero();
+  SharedMatrix U = SharedMatrix::Zero(kShared, kShared);
+  SharedVector g = SharedVector::Zero(kShared);
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(kShared, 6);
   Matrix6d V = Matrix6d::Zero();
   Vector6d h = Vector6d::Zero();
   Vector6d wrist_step = Vector6d::Zero();  ///< from the measured wrist to the fitted one

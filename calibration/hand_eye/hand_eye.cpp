@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calibration/hand_eye/work.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -30,7 +31,7 @@ void JudgeViews(HandEyeWork& work) {
       const Matrix6d C = work.DifferenceCovariance(view, pose.information_px2, !view.used);
       const double worse = pose.squared_px2 - view.board.poses.front().squared_px2;
       const double chi2 =
-          r.dot(C.ldlt().solve(r)) + worse / (work.noise.corner_px * work.noise.corner_px);
+          r.dot(Ldlt(C).Solve(r)) + worse / (work.noise.corner_px * work.noise.corner_px);
       if (chi2 >= view.chi2) continue;
       view.chi2 = chi2;
       view.candidate = static_cast<int>(i);

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/levenberg_marquardt.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -29,14 +30,13 @@ struct Match {
 };
 
 // The candidate that fits the chain best.
-Match BestMatch(const PoseView& view, const Pose& T_CB,
-                const Matrix6d& J_wrist) {
+Match BestMatch(const PoseView& view, const Pose& T_CB, const Matrix6d& J_wrist) {
   const Matrix6d of_wrist = J_wrist * view.wrist_covariance * J_wrist.transpose();
   Match best;
   for (std::size_t i = 0; i < view.candidates.size(); ++i) {
     const PoseCandidate& candidate = view.candidates[i];
     const Vector6d r = PoseDifference(candidate.T_CB, T_CB);
-    const Matrix6d weight = (candidate.covariance + of_wrist).inverse();
+    const Matrix6d weight = Lu(candidate.covariance + of_wrist).Inverse();
     const double chi2 = r.dot(weight * r) + candidate.penalty;
     if (chi2 < best.chi2) best = {static_cast<int>(i), chi2, r, weight};
   }
@@ -104,18 +104,16 @@ void FillTranslations(HandEyeMount mount, const std::vector<const PoseView*>& vi
     A.block<3, 3>(row, 3) = T_FK.R;
     b.segment<3>(row) = h.T_FC.R * seen[i]->p - T_FK.p;
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-3);
-  const Eigen::VectorXd p = solver.compute(A).solve(b);
+  const Eigen::VectorXd p = CompleteOrthogonal(A, 1e-3).Solve(b);
   h.T_FC.p = p.head<3>();
   h.T_KB.p = p.tail<3>();
 }
 
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& M) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Svd svd(M);
   Eigen::Matrix3d flip = Eigen::Matrix3d::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return svd.matrixU() * flip * svd.matrixV().transpose();
+  flip(2, 2) = (svd.U * svd.V.transpose()).determinant();
+  return svd.U * flip * svd.V.transpose();
 }
 
 // The rotation of three views with one candidate each, by the axes of their relative motions (Park

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/levenberg_marquardt.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -156,7 +157,7 @@ StiffnessRows StiffnessFitter::RowsOf(const LoadHold& hold, const StiffnessVecto
 
 StiffnessVector StiffnessFitter::PriorInformation() const {
   const auto of = [](double sd) { return sd > 0 ? 1 / Square(sd) : 1e30; };
-  StiffnessVector prior;
+  StiffnessVector prior(kStiffnessUnknowns);
   prior[kLogStiffness] = 1e-6;
   prior[kStiffnessTaper] = of(setup_.taper_prior);
   prior.segment<3>(kStiffnessPort).setConstant(of(setup_.port_noise_m));
@@ -180,11 +181,11 @@ double StiffnessFitter::Evaluate(const StiffnessVector& x, const std::vector<dou
     StiffnessRows& rows = fit.rows[i];
     rows = Rows(holds_[i], x, solvers_[i], hidden_[i]);
     if (!rows.usable) continue;
-    const auto S = rows.covariance.ldlt();
-    const Eigen::VectorXd solved = S.solve(rows.residual);
+    const Ldlt S(rows.covariance);
+    const Eigen::VectorXd solved = S.Solve(rows.residual);
     hidden_[i].d = hidden_[i].gain * solved;  // the most likely ones, for the next time
     if (weights[i] == 0) continue;
-    N += weights[i] * rows.by_unknowns.transpose() * S.solve(rows.by_unknowns);
+    N += weights[i] * rows.by_unknowns.transpose() * S.Solve(rows.by_unknowns);
     gradient += weights[i] * rows.by_unknowns.transpose() * solved;
     cost += weights[i] * rows.residual.dot(solved);
   }
@@ -192,7 +193,8 @@ double StiffnessFitter::Evaluate(const StiffnessVector& x, const std::vector<dou
 }
 
 StiffnessVector StiffnessFitter::Nominal() const {
-  return StiffnessVector::Unit(kLogStiffness) * std::log(setup_.instrument.bending_stiffness_Nm2);
+  return StiffnessVector::Unit(kStiffnessUnknowns, kLogStiffness) *
+         std::log(setup_.instrument.bending_stiffness_Nm2);
 }
 
 /// Damped: towards a taper that the loads say little of, plain steps overshoot.
@@ -221,24 +223,21 @@ StiffnessFit StiffnessFitter::Fit(const std::vector<double>& weights,
     gradient = next_gradient;
     hidden = hidden_;
   };
-  const DescentResult descent =
-      Descend(cost, try_step, accept,
-          {.max_iterations = kMaxIterations,
-           .start_damping = 0.0,
-           .least_damping = 1e-7,
-           .floor = 0.0,
-           .least_raised = 1e-4,
-           .most_damping = 1e6,
-           .relative_gain = 0.0,
-           .allowed_rise = 1e-9});
+  const DescentResult descent = Descend(cost, try_step, accept,
+                                        {.max_iterations = kMaxIterations,
+                                         .start_damping = 0.0,
+                                         .least_damping = 1e-7,
+                                         .floor = 0.0,
+                                         .least_raised = 1e-4,
+                                         .most_damping = 1e6,
+                                         .relative_gain = 0.0,
+                                         .allowed_rise = 1e-9});
   fit.converged = descent.settled;
   hidden_ = hidden;
   const StiffnessVector unit = N.diagonal().cwiseSqrt().cwiseInverse();
   const StiffnessMatrix scaled = unit.asDiagonal() * N * unit.asDiagonal();
   fit.information = N;
-  fit.covariance = unit.asDiagonal() *
-                   StiffnessMatrix(scaled.ldlt().solve(StiffnessMatrix::Identity())) *
-                   unit.asDiagonal();
+  fit.covariance = unit.asDiagonal() * Ldlt(scaled).Inverse() * unit.asDiagonal();
   return fit;
 }
 

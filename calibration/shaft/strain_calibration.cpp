@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -163,10 +164,10 @@ std::string StrainWork::WhyFar(std::size_t i) const {
   // Whether another mass at the same place explains it.
   const Eigen::Vector4d at = fit_.gains * samples_[i].m_Nm;
   const Eigen::Vector4d read = samples_[i].readings - fit_.offset;
-  const Eigen::Vector4d weighted = r.covariance.ldlt().solve(at);
+  const Eigen::Vector4d weighted = Ldlt(r.covariance).Solve(at);
   const double factor = weighted.dot(read) / weighted.dot(at);
   const Eigen::Vector4d left = read - factor * at;
-  if (left.dot(r.covariance.ldlt().solve(left)) < kFar) {
+  if (left.dot(Ldlt(r.covariance).Solve(left)) < kFar) {
     why += fmt::format("; it reads as if the load were {:.2f} times what is stated", factor);
   }
   return why;
@@ -187,9 +188,9 @@ std::string StrainWork::WhyUnknown(const std::vector<int>& columns) {
   std::string names;
   for (const int c : columns) names += (names.empty() ? "" : ", ") + std::string(kChannels[c]);
   const std::string head = fmt::format("what the gages read of {} is not known: ", names);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
-  if (axes.eigenvalues()[1] <= 0) return head + "nothing hangs on the tip across the shaft";
-  if (axes.eigenvalues()[0] < 0.02 * axes.eigenvalues()[1]) {
+  const Eigen::Vector2d axes = SymmetricEigenvalues(spread);
+  if (axes[1] <= 0) return head + "nothing hangs on the tip across the shaft";
+  if (axes[0] < 0.02 * axes[1]) {
     return head +
            "all loads bend the shaft about one axis; hang a mass across it too, or turn the "
            "instrument by 90 degrees about its shaft";
@@ -229,7 +230,7 @@ void StrainWork::JudgeColumns() {
     const double sd = scale * std::sqrt(variance[kGageOffset + row]);
     if (!(sd < kKnown * typical[row] * typical_moment)) result_.offset_known = false;
   }
-  result_.gages_known = unknown.empty() && fit_.gains.fullPivLu().isInvertible();
+  result_.gages_known = unknown.empty() && FullLu<4>(fit_.gains).IsInvertible();
   auto& list = result_.found.unobservable;
   if (!result_.gages_known) list.push_back({"strain0.gage_matrix", WhyUnknown(unknown)});
   if (!result_.offset_known) {
@@ -295,11 +296,11 @@ double StrainWork::HeldoutRms() const {
     std::vector<GageSample> rest = samples_;
     for (std::size_t i = fold; i < rest.size(); i += kFolds) rest[i].weight = 0;
     const GageFit fit = FitGages(rest, options_.fit);
-    const Eigen::FullPivLU<Eigen::Matrix4d> lu(fit.gains);
-    if (!lu.isInvertible()) continue;
+    const FullLu<4> lu(fit.gains);
+    if (!lu.IsInvertible()) continue;
     for (std::size_t i = fold; i < rest.size(); i += kFolds) {
       if (samples_[i].weight == 0) continue;
-      squares += (lu.solve(samples_[i].readings - fit.offset) - samples_[i].m_Nm).squaredNorm();
+      squares += (lu.Solve(samples_[i].readings - fit.offset) - samples_[i].m_Nm).squaredNorm();
       count += 4;
     }
   }
