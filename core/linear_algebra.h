@@ -1,9 +1,10 @@
 // Decompositions of small and dynamic matrices, compiled once. Each class wraps Eigen's of the same
 // name. Eigen's own headers would compile the algorithm again in every file that uses it, which
-// took most of the build's time. Fixed sizes allocate nothing.
+// took most of the build's time. Fixed sizes (see CompiledSize) allocate nothing.
 #pragma once
 
 #include <Eigen/Dense>
+#include <type_traits>
 
 namespace flextip {
 
@@ -21,7 +22,7 @@ class Ldlt {
   using Matrix = Eigen::Matrix<double, N, N>;
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  explicit Ldlt(const Matrix& A);
+  explicit Ldlt(const std::type_identity_t<Matrix>& A);
   template <class A>
   explicit Ldlt(const Eigen::MatrixBase<A>& a) : Ldlt(Matrix(a)) {}
 
@@ -55,7 +56,8 @@ class Llt {
  public:
   using Matrix = Eigen::Matrix<double, N, N>;
 
-  explicit Llt(const Matrix& A);
+  Llt() = default;  // of nothing, to be assigned to
+  explicit Llt(const std::type_identity_t<Matrix>& A);
   template <class A>
   explicit Llt(const Eigen::MatrixBase<A>& a) : Llt(Matrix(a)) {}
 
@@ -105,7 +107,7 @@ class Lu {
  public:
   using Matrix = Eigen::Matrix<double, N, N>;
 
-  explicit Lu(const Matrix& A);
+  explicit Lu(const std::type_identity_t<Matrix>& A);
   template <class A>
   explicit Lu(const Eigen::MatrixBase<A>& a) : Lu(Matrix(a)) {}
 
@@ -132,7 +134,7 @@ class FullLu {
   using Matrix = Eigen::Matrix<double, N, N>;
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  explicit FullLu(const Matrix& A);
+  explicit FullLu(const std::type_identity_t<Matrix>& A);
   template <class A>
   explicit FullLu(const Eigen::MatrixBase<A>& a) : FullLu(Matrix(a)) {}
 
@@ -144,26 +146,18 @@ class FullLu {
   Eigen::FullPivLU<Matrix> lu_;
 };
 
-/// The complete orthogonal decomposition of A (N x N, or of any shape for Dynamic): least-squares
-/// solutions of least norm.
-template <int N>
+/// The complete orthogonal decomposition of A (any shape): least squares of least norm.
 class CompleteOrthogonal {
  public:
-  using Matrix = Eigen::Matrix<double, N, N>;
-  using Vector = Eigen::Matrix<double, N, 1>;
-
   /// Pivots up to `threshold` times the largest count as zero; 0 takes Eigen's own threshold.
-  explicit CompleteOrthogonal(const Matrix& A, double threshold = 0.0);
-  template <class A>
-  explicit CompleteOrthogonal(const Eigen::MatrixBase<A>& a, double threshold = 0.0)
-      : CompleteOrthogonal(Matrix(a), threshold) {}
+  explicit CompleteOrthogonal(const Eigen::MatrixXd& A, double threshold = 0.0);
 
   /// Returns the x of least norm among those that minimise |A x - b|.
-  Vector Solve(const Vector& b) const;
-  Matrix PseudoInverse() const;
+  Eigen::VectorXd Solve(const Eigen::VectorXd& b) const;
+  Eigen::MatrixXd PseudoInverse() const;
 
  private:
-  Eigen::CompleteOrthogonalDecomposition<Matrix> qr_;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> qr_;
 };
 
 /// A = vectors diag(values) vectors^T for a symmetric A (N x N; its lower triangle is read).
@@ -175,7 +169,7 @@ struct SymmetricEigen {
   Vector values;   ///< ascending
   Matrix vectors;  ///< unit columns, in the order of the values
 
-  explicit SymmetricEigen(const Matrix& A);
+  explicit SymmetricEigen(const std::type_identity_t<Matrix>& A);
   template <class A>
   explicit SymmetricEigen(const Eigen::MatrixBase<A>& a) : SymmetricEigen(Matrix(a)) {}
 
@@ -183,7 +177,7 @@ struct SymmetricEigen {
   static Vector Values(const Matrix& A);
 };
 
-/// A = U diag(sigma) V^T for any A (N x N, or of any shape for Dynamic), by Jacobi rotations.
+/// A = U diag(sigma) V^T for any A (N x N; 2 and 3), by Jacobi rotations.
 template <int N>
 struct Svd {
   using Matrix = Eigen::Matrix<double, N, N>;
@@ -193,7 +187,7 @@ struct Svd {
   Vector sigma;  ///< descending
   Matrix V;
 
-  explicit Svd(const Matrix& A);
+  explicit Svd(const std::type_identity_t<Matrix>& A);
   template <class A>
   explicit Svd(const Eigen::MatrixBase<A>& a) : Svd(Matrix(a)) {}
 
@@ -201,26 +195,29 @@ struct Svd {
   static Vector Values(const Matrix& A);
 };
 
+/// The size a decomposition of so many rows is compiled for: 2, 3, 6 and `also` have code of their
+/// own, all others are taken as dynamic.
+constexpr int CompiledSize(int rows, int also = 6) {
+  return rows == 2 || rows == 3 || rows == 6 || rows == also ? rows : Eigen::Dynamic;
+}
+
 template <class A>
-Ldlt(const Eigen::MatrixBase<A>&) -> Ldlt<A::RowsAtCompileTime>;
+Ldlt(const Eigen::MatrixBase<A>&) -> Ldlt<CompiledSize(A::RowsAtCompileTime, 9)>;
 template <class A>
-Llt(const Eigen::MatrixBase<A>&) -> Llt<A::RowsAtCompileTime>;
+Llt(const Eigen::MatrixBase<A>&) -> Llt<CompiledSize(A::RowsAtCompileTime)>;
 template <class A>
-Lu(const Eigen::MatrixBase<A>&) -> Lu<A::RowsAtCompileTime>;
+Lu(const Eigen::MatrixBase<A>&) -> Lu<CompiledSize(A::RowsAtCompileTime)>;
 template <class A>
-FullLu(const Eigen::MatrixBase<A>&) -> FullLu<A::RowsAtCompileTime>;
+FullLu(const Eigen::MatrixBase<A>&) -> FullLu<CompiledSize(A::RowsAtCompileTime)>;
 template <class A>
-CompleteOrthogonal(const Eigen::MatrixBase<A>&, double = 0.0)
-    -> CompleteOrthogonal<A::RowsAtCompileTime>;
-template <class A>
-SymmetricEigen(const Eigen::MatrixBase<A>&) -> SymmetricEigen<A::RowsAtCompileTime>;
+SymmetricEigen(const Eigen::MatrixBase<A>&) -> SymmetricEigen<CompiledSize(A::RowsAtCompileTime)>;
 template <class A>
 Svd(const Eigen::MatrixBase<A>&) -> Svd<A::RowsAtCompileTime>;
 
 /// Returns the eigenvalues of a symmetric matrix, ascending.
 template <class A>
 auto SymmetricEigenvalues(const Eigen::MatrixBase<A>& a) {
-  return SymmetricEigen<A::RowsAtCompileTime>::Values(a);
+  return SymmetricEigen<CompiledSize(A::RowsAtCompileTime)>::Values(a);
 }
 
 /// Returns the singular values of a square matrix, descending.
@@ -232,8 +229,7 @@ auto SingularValues(const Eigen::MatrixBase<A>& a) {
 /// Returns e^T C^-1 e, the squared Mahalanobis distance of an error `e` of covariance C.
 template <class E, class C>
 double MahalanobisSquared(const Eigen::MatrixBase<E>& e, const Eigen::MatrixBase<C>& c) {
-  const SolutionOf<C::RowsAtCompileTime, E> error = e;
-  return error.dot(Ldlt<C::RowsAtCompileTime>(c).Solve(error));
+  return e.dot(Ldlt(c).Solve(e));
 }
 
 /// Returns the x that minimises |A x - b|, by a QR decomposition with column pivoting.

@@ -230,7 +230,7 @@ void StrainWork::JudgeColumns() {
     const double sd = scale * std::sqrt(variance[kGageOffset + row]);
     if (!(sd < kKnown * typical[row] * typical_moment)) result_.offset_known = false;
   }
-  result_.gages_known = unknown.empty() && FullLu<4>(fit_.gains).IsInvertible();
+  result_.gages_known = unknown.empty() && FullLu(fit_.gains).IsInvertible();
   auto& list = result_.found.unobservable;
   if (!result_.gages_known) list.push_back({"strain0.gage_matrix", WhyUnknown(unknown)});
   if (!result_.offset_known) {
@@ -296,7 +296,7 @@ double StrainWork::HeldoutRms() const {
     std::vector<GageSample> rest = samples_;
     for (std::size_t i = fold; i < rest.size(); i += kFolds) rest[i].weight = 0;
     const GageFit fit = FitGages(rest, options_.fit);
-    const FullLu<4> lu(fit.gains);
+    const FullLu lu(fit.gains);
     if (!lu.IsInvertible()) continue;
     for (std::size_t i = fold; i < rest.size(); i += kFolds) {
       if (samples_[i].weight == 0) continue;

@@ -4,7 +4,7 @@
 namespace flextip {
 
 template <int N>
-Ldlt<N>::Ldlt(const Matrix& A) : ldlt_(A) {}
+Ldlt<N>::Ldlt(const std::type_identity_t<Matrix>& A) : ldlt_(A) {}
 
 template <int N>
 void Ldlt<N>::SolveInPlace(double* columns, Eigen::Index count) const {
@@ -40,11 +40,8 @@ double Ldlt<N>::ReciprocalCondition() const requires(N == 6) {
 
 template class Ldlt<2>;
 template class Ldlt<3>;
-template class Ldlt<4>;
-template class Ldlt<5>;
 template class Ldlt<6>;
 template class Ldlt<9>;
-template class Ldlt<12>;
 template class Ldlt<Eigen::Dynamic>;
 
 }  // namespace flextip

@@ -4,7 +4,7 @@
 namespace flextip {
 
 template <int N>
-Llt<N>::Llt(const Matrix& A) : llt_(A) {}
+Llt<N>::Llt(const std::type_identity_t<Matrix>& A) : llt_(A) {}
 
 template <int N>
 void Llt<N>::SolveInPlace(double* columns, Eigen::Index count) const {

@@ -4,7 +4,7 @@
 namespace flextip {
 
 template <int N>
-Lu<N>::Lu(const Matrix& A) : lu_(A) {}
+Lu<N>::Lu(const std::type_identity_t<Matrix>& A) : lu_(A) {}
 
 template <int N>
 void Lu<N>::SolveInPlace(double* columns, Eigen::Index count) const {
@@ -23,7 +23,7 @@ auto Lu<N>::Inverse() const -> Matrix {
 }
 
 template <int N>
-FullLu<N>::FullLu(const Matrix& A) : lu_(A) {}
+FullLu<N>::FullLu(const std::type_identity_t<Matrix>& A) : lu_(A) {}
 
 template <int N>
 auto FullLu<N>::Solve(const Vector& b) const -> Vector {
@@ -41,6 +41,6 @@ template class Lu<6>;
 template class Lu<Eigen::Dynamic>;
 
 template class FullLu<2>;
-template class FullLu<4>;
+template class FullLu<Eigen::Dynamic>;
 
 }  // namespace flextip

@@ -3,7 +3,7 @@
 namespace flextip {
 
 template <int N>
-Svd<N>::Svd(const Matrix& A) {
+Svd<N>::Svd(const std::type_identity_t<Matrix>& A) {
   const Eigen::JacobiSVD<Matrix> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
   U = svd.matrixU();
   sigma = svd.singularValues();

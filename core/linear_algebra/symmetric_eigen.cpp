@@ -3,7 +3,7 @@
 namespace flextip {
 
 template <int N>
-SymmetricEigen<N>::SymmetricEigen(const Matrix& A) {
+SymmetricEigen<N>::SymmetricEigen(const std::type_identity_t<Matrix>& A) {
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(A);
   values = solver.eigenvalues();
   vectors = solver.eigenvectors();

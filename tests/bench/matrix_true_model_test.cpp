@@ -10,7 +10,7 @@
 #include "bench/diagnosis_matrix/heldout.h"
 #include "diagnosis/evidence/linear_problem.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 std::array<double, diagnosis::kChannelCount> StatedNoise() {
@@ -154,4 +154,4 @@ TEST(TrueHeldOut, WhatTheLabelDoesNotNameIsFitted) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
