@@ -64,8 +64,7 @@ class CornerError : public ceres::CostFunction {
     }
     Eigen::Matrix<double, 2, 3> dm_dx;
     dm_dx << 1, 0, -m.x(), 0, 1, -m.y();
-    const Eigen::Matrix<double, 2, 3> J_x =
-        focal_px.asDiagonal() * lens.by_m * dm_dx / x_C.z();
+    const Eigen::Matrix<double, 2, 3> J_x = focal_px.asDiagonal() * lens.by_m * dm_dx / x_C.z();
     if (jacobians[1]) {
       Eigen::Vector3d normal;
       const Eigen::Vector3d out = R_.col(2);

@@ -20,7 +20,7 @@ struct PoseCandidate {
 struct PoseView {
   Pose T_RW;
   Matrix6d wrist_covariance = Matrix6d::Zero();  ///< of (dw, dp) in R
-  std::vector<PoseCandidate> candidates;       ///< at least one
+  std::vector<PoseCandidate> candidates;         ///< at least one
 };
 
 struct HandEyeStart {

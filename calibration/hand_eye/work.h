@@ -50,7 +50,7 @@ struct HandEyeWork {
   /// Of the chain's pose of the board less the one seen with `information_px2`, the wrist as
   /// measured; `with_frames` also for what is not known of both frames.
   Matrix6d DifferenceCovariance(const WorkView& view, const Matrix6d& information_px2,
-                               bool with_frames) const;
+                                bool with_frames) const;
   Pose ChainPose(const WorkView& view) const;
 };
 

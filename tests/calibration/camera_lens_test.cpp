@@ -52,8 +52,8 @@ TEST(LensDerivative, AgreesWithVisionAndWithDifferences) {
   AgreesWithVision(Distortion::kRadialTangential, {-0.3, 0.1, 0.001, -0.002});
   AgreesWithVision(Distortion::kOpenCv, {-0.3, 0.1, 0.001, -0.002, -0.01});
   AgreesWithVision(Distortion::kOpenCv, {0.1, -0.2, 0.001, -0.002, 0.05, 0.3, -0.1, 0.02});
-  AgreesWithVision(Distortion::kOpenCv, {0.1, -0.2, 0.001, -0.002, 0.05, 0.3, -0.1, 0.02, 0.01,
-                                         -0.02, 0.03, -0.04});
+  AgreesWithVision(Distortion::kOpenCv,
+                   {0.1, -0.2, 0.001, -0.002, 0.05, 0.3, -0.1, 0.02, 0.01, -0.02, 0.03, -0.04});
   AgreesWithVision(Distortion::kEquidistant, {0.05, -0.02, 0.01, -0.003});
 }
 
