@@ -15,8 +15,6 @@
 namespace flextip {
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-
 Vector6d ErrorOf(const PivotResult& result, const PivotScene& scene) {
   Vector6d e;
   e << result.p_BE - scene.p_BE, result.p_R - scene.p_R;

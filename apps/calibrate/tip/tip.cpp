@@ -9,11 +9,14 @@
 
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/tip/output.h"
+#include "apps/calibrate/verdict_json.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
 #include "apps/track/input.h"
+#include "calibration/entries.h"
 #include "calibration/tip/tip_poses.h"
+#include "calibration/verdict/tip.h"
 #include "core/error.h"
 #include "pipeline/instrument_tracker.h"
 #include "recording/frames/frames.h"
@@ -115,13 +118,13 @@ void RunCalibrateTip(const CalibrateTipOptions& options, bool quiet) {
   if (!result.IsUsable()) {
     output.Warn(fmt::format("{} cannot be named: {}", body.tip_name, result.unobservable));
   }
-  WriteCalibration(output.folder() / "calibration.yaml", TipCalibration(result, body.tip_name));
+  WriteCalibration(output.folder() / "calibration.yaml", TipEntries(result, body.tip_name));
   if (!result.residuals.empty()) {
     WriteTextFile(output.folder() / "residuals.csv", TipResidualTable(body.poses, result));
     report::WriteFigures(output.folder() / "figures.json", TipFigures(body.poses, result));
   }
   auto summary = TipSummary(body.poses, result, body.tip_name, body.frame);
-  summary["verdict"] = VerdictJson(TipVerdict(result, body.tip_name, body.frame));
+  summary["verdict"] = VerdictJson(JudgeTip(result, body.tip_name, body.frame));
   output.WriteSummary(summary);
   report::WriteCalibrateReport(output.folder());
   output.Commit();

@@ -1,4 +1,4 @@
-#include "apps/calibrate/stereo/files.h"
+#include "calibration/stereo/rectification_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,9 +1,12 @@
+#include "calibration/verdict/tip.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
-#include "apps/calibrate/tip/output.h"
+#include "core/matrix_types.h"
 
 namespace flextip {
 namespace {
@@ -18,15 +21,9 @@ std::string SdText(const Eigen::Vector3d& sd_m) {
 
 void AddReasons(const PivotResult& r, CalibrationVerdict& verdict) {
   const auto outliers = r.residuals.size() - static_cast<std::size_t>(r.used);
-  if (outliers > 0) {
-    const std::string text =
-        Counted(outliers, "pose") + " put the tip elsewhere and do not count (crosses below)";
-    if (static_cast<double>(outliers) > kManyOutliers * static_cast<double>(r.residuals.size())) {
-      verdict.Beware(text);
-    } else {
-      verdict.reasons.push_back(text);
-    }
-  }
+  verdict.MentionCount(
+      outliers, static_cast<double>(r.residuals.size()), kManyOutliers,
+      Counted(outliers, "pose") + " put the tip elsewhere and do not count (crosses below)");
   const double scale = std::max(r.position_noise_scale, r.orientation_noise_scale);
   if (scale > kNoisier) {
     verdict.Beware(
@@ -39,10 +36,33 @@ void AddReasons(const PivotResult& r, CalibrationVerdict& verdict) {
   }
 }
 
+/// The name of an axis of the body where it is one of them, else its components.
+std::string AxisName(const Eigen::Vector3d& axis) {
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(axis[i]) > 0.999) return std::string(1, "xyz"[i]);
+  }
+  return fmt::format("({:.2f} {:.2f} {:.2f})", axis.x(), axis.y(), axis.z());
+}
+
 }  // namespace
 
-CalibrationVerdict TipVerdict(const PivotResult& r, const std::string& tip_name,
-                              const std::string& body) {
+std::string AdviceText(const PivotResult& result, const std::string& body) {
+  constexpr double kDeg = 180.0 / std::numbers::pi;
+  const PivotAdvice& advice = result.advice;
+  const double sd_m = std::sqrt(result.covariance.topLeftCorner<3, 3>().trace());
+  const std::string turn =
+      fmt::format("{} further poses turned by {:.0f} deg to both sides about the {} axis of {}",
+                  advice.poses, kDeg * advice.angle_rad, AxisName(advice.axis_B), body);
+  if (!std::isfinite(advice.sd_after_m)) return turn + " would help most";
+  if (!result.IsUsable()) {
+    return fmt::format("{} would give the tip to {:.3f} mm", turn, 1e3 * advice.sd_after_m);
+  }
+  return fmt::format("{} would lower the tip's standard deviation from {:.3f} to {:.3f} mm", turn,
+                     1e3 * sd_m, 1e3 * advice.sd_after_m);
+}
+
+CalibrationVerdict JudgeTip(const PivotResult& r, const std::string& tip_name,
+                            const std::string& body) {
   CalibrationVerdict verdict;
   if (!r.residuals.empty()) verdict.next = AdviceText(r, body);
   if (!r.IsUsable()) {
@@ -52,11 +72,10 @@ CalibrationVerdict TipVerdict(const PivotResult& r, const std::string& tip_name,
     return verdict;
   }
   AddReasons(r, verdict);
-  const Eigen::Matrix<double, 6, 1> sd = r.covariance.diagonal().cwiseSqrt();
+  const Vector6d sd = r.covariance.diagonal().cwiseSqrt();
   verdict.says = fmt::format(
       "{} The tip is known to {:.2f} mm; a pose left out puts it {:.2f} mm off along each axis.",
-      verdict.grade == CalibrationGrade::kGood ? "Good." : "To be used with care.",
-      1e3 * sd.head<3>().norm(), 1e3 * r.heldout_rms_m);
+      verdict.Judged(), 1e3 * sd.head<3>().norm(), 1e3 * r.heldout_rms_m);
   verdict.Add("tip in " + body + ", " + tip_name, PlaceText(r.p_BE), SdText(sd.head<3>()));
   verdict.Add("pivot in R, pivot.p_R", PlaceText(r.p_R), SdText(sd.tail<3>()));
   verdict.Add("residual an axis", fmt::format("{:.3f} mm RMS", 1e3 * r.rms_m));

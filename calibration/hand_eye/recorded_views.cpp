@@ -1,4 +1,4 @@
-#include "apps/calibrate/hand_eye/views.h"
+#include "calibration/hand_eye/recorded_views.h"
 
 #include <fmt/format.h>
 

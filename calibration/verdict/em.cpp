@@ -1,8 +1,8 @@
+#include "calibration/verdict/em.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
-
-#include "apps/calibrate/em/output.h"
 
 namespace flextip {
 namespace {
@@ -31,13 +31,8 @@ void AddReasons(const EmResult& r, CalibrationVerdict& verdict) {
                     r.noise_scale));
   }
   const auto outliers = r.residuals.size() - static_cast<std::size_t>(r.used);
-  if (outliers == 0) return;
-  const std::string text = Counted(outliers, "sample") + " did not agree and do not count";
-  if (static_cast<double>(outliers) > kManyOutliers * static_cast<double>(r.residuals.size())) {
-    verdict.Beware(text);
-  } else {
-    verdict.reasons.push_back(text);
-  }
+  verdict.MentionCount(outliers, static_cast<double>(r.residuals.size()), kManyOutliers,
+                       Counted(outliers, "sample") + " did not agree and do not count");
 }
 
 void AddValues(const EmResult& r, CalibrationVerdict& verdict) {
@@ -71,7 +66,7 @@ std::string LagText(const EmResult& r) {
       1e3 * std::abs(r.lag.late_s), r.lag.late_s > 0 ? "behind" : "ahead of", 1e3 * r.lag.sd_s);
 }
 
-CalibrationVerdict EmVerdict(const EmResult& r) {
+CalibrationVerdict JudgeEm(const EmResult& r) {
   CalibrationVerdict verdict;
   verdict.not_found = r.unobservable;
   if (!r.unobservable.empty()) {
@@ -89,8 +84,8 @@ CalibrationVerdict EmVerdict(const EmResult& r) {
   verdict.says = fmt::format(
       "{} The EM system's place is known to {:.2f} mm; where it was not fitted it is {:.2f} mm off "
       "along each axis.",
-      verdict.grade == CalibrationGrade::kGood ? "Good." : "To be used with care.",
-      1e3 * sd.segment<3>(3).norm(), 1e3 * (chosen ? chosen->heldout_rms_m : r.rms_after_m));
+      verdict.Judged(), 1e3 * sd.segment<3>(3).norm(),
+      1e3 * (chosen ? chosen->heldout_rms_m : r.rms_after_m));
   AddValues(r, verdict);
   return verdict;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct BoardPictures {
 /// One picture is held at a time. What one picture tells of a charuco board's layout holds for all.
 /// Throws InputError for pictures of several sizes, for none, and for a `corners` file of another
 /// board or without one of the images.
-CornersFile CornersOf(const BoardPictures& pictures, bool quiet);
+/// `progress` is told how many pictures were looked at, of how many.
+CornersFile CornersOf(const BoardPictures& pictures,
+                      const std::function<void(std::size_t done, std::size_t all)>& progress = {});
 
 }  // namespace flextip

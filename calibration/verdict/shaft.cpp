@@ -1,4 +1,4 @@
-#include "apps/calibrate/shaft/verdict.h"
+#include "calibration/verdict/shaft.h"
 
 #include <fmt/format.h>
 
@@ -17,22 +17,13 @@ void JudgeHolds(const std::vector<Hold>& holds, CalibrationVerdict& verdict) {
   const auto rejected = static_cast<std::size_t>(
       std::count_if(holds.begin(), holds.end(), [](const Hold& h) { return !h.used; }));
   verdict.Add("loads used", fmt::format("{} of {}", holds.size() - rejected, holds.size()));
-  if (rejected == 0) return;
-  const std::string text = Counted(rejected, "load") + " did not fit and do not count, see below";
-  if (static_cast<double>(rejected) > kManyRejected * static_cast<double>(holds.size())) {
-    verdict.Beware(text);
-  } else {
-    verdict.reasons.push_back(text);
-  }
-}
-
-std::string Judged(const CalibrationVerdict& verdict) {
-  return verdict.grade == CalibrationGrade::kGood ? "Good." : "To be used with care.";
+  verdict.MentionCount(rejected, static_cast<double>(holds.size()), kManyRejected,
+                       Counted(rejected, "load") + " did not fit and do not count, see below");
 }
 
 }  // namespace
 
-CalibrationVerdict StrainVerdict(const StrainCalibration& r) {
+CalibrationVerdict JudgeStrain(const StrainCalibration& r) {
   CalibrationVerdict verdict;
   verdict.next = r.advice;
   verdict.not_found = r.found.unobservable;
@@ -73,7 +64,7 @@ CalibrationVerdict StrainVerdict(const StrainCalibration& r) {
     verdict.Beware("loads that were held out are predicted far worse than those fitted: too few");
   }
   verdict.says = fmt::format("{} Moments are measured to {:.3g} mNm, {:.1f} % of the largest.",
-                             Judged(verdict), 1e3 * error, 100 * error / r.largest_moment_Nm);
+                             verdict.Judged(), 1e3 * error, 100 * error / r.largest_moment_Nm);
   return verdict;
 }
 
@@ -82,8 +73,8 @@ std::vector<std::string> StiffnessDoubts(const StiffnessCalibration& r) {
   if (r.status == StiffnessStatus::kModelIncomplete) {
     doubts.push_back(fmt::format(
         "no stiffness explains these shapes to their noise (chi2 {:.1f} a degree of freedom): "
-        "something else gives way too, and the stiffness found makes up for it; flextip diagnose "
-        "says what it may be. The uncertainty stated is wider by that",
+        "something else gives way too, and the stiffness found makes up for it; a diagnosis of "
+        "the recording says what it may be. The uncertainty stated is wider by that",
         r.chosen().chi2_per_dof));
   }
   if (r.port_shift_m.norm() > 4 * r.port_noise_m) {
@@ -95,7 +86,7 @@ std::vector<std::string> StiffnessDoubts(const StiffnessCalibration& r) {
   return doubts;
 }
 
-CalibrationVerdict StiffnessVerdict(const StiffnessCalibration& r) {
+CalibrationVerdict JudgeStiffness(const StiffnessCalibration& r) {
   CalibrationVerdict verdict;
   verdict.next = r.advice;
   verdict.not_found = r.found.unobservable;
@@ -121,7 +112,7 @@ CalibrationVerdict StiffnessVerdict(const StiffnessCalibration& r) {
       "{} The stiffness is known to {:.2g} %; loads held out put the tip {:.2f} mm off, of {:.1f} "
       "mm "
       "that it bends.",
-      Judged(verdict), 100 * m.stiffness_sd_Nm2 / m.stiffness_Nm2, 1e3 * m.heldout_tip_rms_m,
+      verdict.Judged(), 100 * m.stiffness_sd_Nm2 / m.stiffness_Nm2, 1e3 * m.heldout_tip_rms_m,
       1e3 * r.bend_m);
   return verdict;
 }

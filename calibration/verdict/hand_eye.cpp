@@ -1,10 +1,10 @@
+#include "calibration/verdict/hand_eye.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-
-#include "apps/calibrate/hand_eye/output.h"
 
 namespace flextip {
 namespace {
@@ -32,10 +32,9 @@ std::string InWords(const std::string& name) {
   return it == words.end() ? name : it->second + ", " + name;
 }
 
-void AddValues(const HandEyeResult& r, const Calibration& calibration,
-               CalibrationVerdict& verdict) {
-  for (const auto& [name, pose] : calibration.poses) {
-    const Eigen::MatrixXd C = calibration.CovarianceOf(name);
+void AddValues(const HandEyeResult& r, const Calibration& found, CalibrationVerdict& verdict) {
+  for (const auto& [name, pose] : found.poses) {
+    const Eigen::MatrixXd C = found.CovarianceOf(name);
     verdict.Add(InWords(name), PlaceText(pose.p),
                 fmt::format("{} and {}", PositionSd(C), TurnSd(C)));
   }
@@ -57,15 +56,9 @@ void AddReasons(const HandEyeResult& r, CalibrationVerdict& verdict) {
   const auto disagree = static_cast<std::size_t>(
       std::count_if(r.views.begin(), r.views.end(),
                     [](const HandEyeViewResult& v) { return v.seen && !v.used; }));
-  if (disagree > 0) {
-    const std::string text =
-        Counted(disagree, "view") + " did not agree with the others, see the warnings";
-    if (static_cast<double>(disagree) > kManyRejected * static_cast<double>(r.views.size())) {
-      verdict.Beware(text);
-    } else {
-      verdict.reasons.push_back(text);
-    }
-  }
+  verdict.MentionCount(
+      disagree, static_cast<double>(r.views.size()), kManyRejected,
+      Counted(disagree, "view") + " did not agree with the others, see the warnings");
   const double scale = std::max(r.orientation_noise_scale, r.position_noise_scale);
   if (scale > kNoisierWrist) {
     verdict.Beware(fmt::format(
@@ -83,9 +76,9 @@ void AddReasons(const HandEyeResult& r, CalibrationVerdict& verdict) {
 
 }  // namespace
 
-CalibrationVerdict HandEyeVerdict(const HandEyeResult& r, const Calibration& calibration) {
+CalibrationVerdict JudgeHandEye(const HandEyeResult& r, const Calibration& found) {
   CalibrationVerdict verdict;
-  verdict.not_found = calibration.unobservable;
+  verdict.not_found = found.unobservable;
   AddReasons(r, verdict);
   if (!r.knows_camera) {
     verdict.grade = CalibrationGrade::kNotFound;
@@ -93,16 +86,14 @@ CalibrationVerdict HandEyeVerdict(const HandEyeResult& r, const Calibration& cal
                                  : "These views do not tell where camera and board are.";
   } else {
     const Eigen::MatrixXd C = r.covariance.topLeftCorner(6, 6);
-    verdict.says =
-        fmt::format("{} The camera's place is known to {} and {}",
-                    verdict.grade == CalibrationGrade::kGood ? "Good." : "To be used with care.",
-                    PositionSd(C), TurnSd(C));
+    verdict.says = fmt::format("{} The camera's place is known to {} and {}", verdict.Judged(),
+                               PositionSd(C), TurnSd(C));
     verdict.says +=
         std::isfinite(r.held_out_mm)
             ? fmt::format("; a board it had not seen is predicted to {:.2f} mm.", r.held_out_mm)
             : ".";
   }
-  AddValues(r, calibration, verdict);
+  AddValues(r, found, verdict);
   if (!r.motions.empty()) {
     const HandEyeMotion& m = r.motions.front();
     verdict.next = m.words;

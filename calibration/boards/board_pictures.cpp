@@ -1,11 +1,10 @@
-#include "apps/calibrate/camera/board_pictures.h"
+#include "calibration/boards/board_pictures.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-#include "apps/common/progress.h"
 #include "core/error.h"
 #include "recording/frames/frames.h"
 
@@ -13,6 +12,7 @@ namespace flextip {
 namespace {
 
 namespace fs = std::filesystem;
+using TellProgress = std::function<void(std::size_t, std::size_t)>;
 
 Image ReadSized(const fs::path& file, const CornersFile& corners) {
   Image image = ReadImageFile(file);
@@ -41,16 +41,16 @@ void DetectAgain(const BoardPictures& pictures, BoardSpec board, CornersFile& co
 }
 
 // Finds the board in every picture; only one picture is held at a time.
-CornersFile Detect(const BoardPictures& pictures, const BoardSpec& board, bool quiet) {
+CornersFile Detect(const BoardPictures& pictures, const BoardSpec& board,
+                   const TellProgress& progress) {
   if (pictures.images.empty()) throw InputError("no images to find the board in");
   CornersFile corners{.board = pictures.board, .width_px = 0, .height_px = 0, .views = {}};
-  Progress progress("images", pictures.images.size(), quiet);
   for (const fs::path& file : pictures.images) {
     const Image image = ReadSized(file, corners);
     corners.width_px = image.width_px;
     corners.height_px = image.height_px;
     corners.views.push_back({file.string(), DetectBoard(image, board)});
-    progress.Update(corners.views.size());
+    if (progress) progress(corners.views.size(), pictures.images.size());
   }
   DetectAgain(pictures, board, corners);
   return corners;
@@ -81,10 +81,10 @@ CornersFile Reload(const BoardPictures& pictures) {
 
 }  // namespace
 
-CornersFile CornersOf(const BoardPictures& pictures, bool quiet) {
+CornersFile CornersOf(const BoardPictures& pictures, const TellProgress& progress) {
   const BoardSpec board = ParseBoardSpec(pictures.board);
   if (!pictures.corners.empty() && fs::exists(pictures.corners)) return Reload(pictures);
-  const CornersFile corners = Detect(pictures, board, quiet);
+  const CornersFile corners = Detect(pictures, board, progress);
   if (!pictures.corners.empty()) WriteCorners(pictures.corners, corners);
   return corners;
 }

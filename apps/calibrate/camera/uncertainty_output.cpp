@@ -1,4 +1,4 @@
-#include "apps/calibrate/budget/uncertainty.h"
+#include "apps/calibrate/camera/uncertainty_output.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 namespace flextip {
 namespace {
 
-constexpr std::size_t kNextViews = 3;
 // Colours end at so many times the mean: the corners of a picture without a board are far worse.
 constexpr double kHighestOfMean = 3.0;
 
@@ -55,12 +54,12 @@ report::FigureTrace HullOfCorners(const std::vector<SolvedView>& views) {
   return line;
 }
 
-report::Figure MapFigure(const CameraUncertainty& u, const UncertaintyMap& map,
+report::Figure MapFigure(const UncertaintyMap& map, const std::string& camera,
                          const std::string& name, const std::string& where,
                          const std::vector<SolvedView>& views) {
   report::Figure figure;
-  figure.name = fmt::format("{}-uncertainty-{}", u.camera, name);
-  figure.title = fmt::format("{}: projection uncertainty {}", u.camera, where);
+  figure.name = fmt::format("{}-uncertainty-{}", camera, name);
+  figure.title = fmt::format("{}: projection uncertainty {}", camera, where);
   figure.caption =
       "Standard deviation, in its worst direction, of where a point that stands still relative to "
       "the boards is seen after calibrating again from as noisy corners. The line is around all "
@@ -98,33 +97,14 @@ void AddRows(const UncertaintyMap& map, std::string& text) {
   }
 }
 
-CameraUncertainty Mapped(const std::string& camera, const ProjectionUncertainty& uncertainty,
-                         double depth_m) {
-  return {.camera = camera,
-          .near = MapUncertainty(uncertainty, depth_m),
-          .far = MapUncertainty(uncertainty, HUGE_VAL),
-          .next = {}};
+std::string UncertaintyTable(const CameraUncertainty& u) {
+  std::string text = "#x [px],y [px],depth [m],sd [px],sd_across [mm]\n";
+  AddRows(u.near, text);
+  AddRows(u.far, text);
+  return text;
 }
 
 }  // namespace
-
-std::optional<CameraUncertainty> FindUncertainty(const StereoSolution& solution, int eye) {
-  const auto uncertainty = ProjectionUncertainty::Of(solution, eye);
-  if (!uncertainty) return {};
-  return Mapped(fmt::format("cam{}", eye), *uncertainty, MedianBoardDepth(solution, eye));
-}
-
-std::optional<CameraUncertainty> FindUncertainty(const CameraSolution& solution,
-                                                 const std::vector<Eigen::Vector3d>& x_B) {
-  const auto uncertainty = ProjectionUncertainty::Of(solution);
-  if (!uncertainty) return {};
-  const double depth_m = MedianBoardDepth(solution);
-  CameraUncertainty u = Mapped("cam0", *uncertainty, depth_m);
-  if (x_B.empty()) return u;
-  u.next = RankNextViews(*uncertainty, CandidateViews(solution, x_B), x_B, {.depth_m = depth_m});
-  if (u.next.size() > kNextViews) u.next.resize(kNextViews);
-  return u;
-}
 
 nlohmann::json UncertaintyJson(const CameraUncertainty& u) {
   nlohmann::json next = nlohmann::json::array();
@@ -138,29 +118,13 @@ nlohmann::json UncertaintyJson(const CameraUncertainty& u) {
           {"next_views", next}};
 }
 
-std::vector<report::Figure> UncertaintyFigures(const CameraUncertainty& u,
-                                               const std::vector<SolvedView>& views) {
-  return {MapFigure(u, u.near, "near", fmt::format("at {:.0f} mm", 1e3 * u.near.depth_m), views),
-          MapFigure(u, u.far, "far", "at infinity", views)};
-}
-
-std::string UncertaintyTable(const CameraUncertainty& u) {
-  std::string text = "#x [px],y [px],depth [m],sd [px],sd_across [mm]\n";
-  AddRows(u.near, text);
-  AddRows(u.far, text);
-  return text;
-}
-
-void AddUncertainty(const std::filesystem::path& folder, const CameraSolution& solution,
-                    const std::vector<Eigen::Vector3d>& x_B, nlohmann::json& summary,
-                    std::vector<report::Figure>& figures) {
-  const auto uncertainty = FindUncertainty(solution, x_B);
-  if (!uncertainty) return;
-  summary["projection_uncertainty"] = UncertaintyJson(*uncertainty);
-  WriteTextFile(folder / "cam0_uncertainty.csv", UncertaintyTable(*uncertainty));
-  for (report::Figure& figure : UncertaintyFigures(*uncertainty, solution.views)) {
-    figures.push_back(std::move(figure));
-  }
+void WriteUncertainty(const std::filesystem::path& folder, const std::string& camera,
+                      const CameraUncertainty& u, const std::vector<SolvedView>& views,
+                      std::vector<report::Figure>& figures) {
+  WriteTextFile(folder / (camera + "_uncertainty.csv"), UncertaintyTable(u));
+  const std::string near = fmt::format("at {:.0f} mm", 1e3 * u.near.depth_m);
+  figures.push_back(MapFigure(u.near, camera, "near", near, views));
+  figures.push_back(MapFigure(u.far, camera, "far", "at infinity", views));
 }
 
 }  // namespace flextip
