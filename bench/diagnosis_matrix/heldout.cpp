@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bench/diagnosis_matrix/rival.h"
+#include "core/linear_algebra.h"
 #include "diagnosis/search/hypotheses.h"
 
 namespace flextip::bench {
@@ -56,7 +57,7 @@ Eigen::VectorXd FitFree(const diagnosis::NormalSums& sums, const std::vector<int
   const Eigen::VectorXd left = sums.g - sums.H * theta, g = sd.asDiagonal() * left(free).eval();
   Eigen::MatrixXd M = sd.asDiagonal() * sums.H(free, free).eval() * sd.asDiagonal();
   M.diagonal().array() += 1.0;
-  theta(free) = sd.asDiagonal() * Eigen::VectorXd(M.llt().solve(g));
+  theta(free) = sd.asDiagonal() * Eigen::VectorXd(Llt(M).Solve(g));
   return theta;
 }
 

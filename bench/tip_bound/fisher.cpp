@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/linear_algebra.h"
 #include "vision/camera_model.h"
 #include "vision/tags/reprojection.h"
 
@@ -161,7 +162,7 @@ Eigen::Matrix<double, 6, 1> PixelModel::Step(const Image& grey) const {
              (grey.data[static_cast<std::size_t>(pixels[static_cast<std::size_t>(r)])] - mean[r]);
   }
   const auto of_pose = J.leftCols<6>();
-  return (of_pose.transpose() * of_pose).ldlt().solve(of_pose.transpose() * off);
+  return Ldlt(of_pose.transpose() * of_pose).Solve(of_pose.transpose() * off);
 }
 
 PixelModels ModelPixels(const simulation::Laparoscope& laparoscope,

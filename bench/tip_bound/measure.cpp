@@ -3,6 +3,7 @@
 #include <functional>
 #include <random>
 
+#include "core/linear_algebra.h"
 #include "simulation/render/film.h"
 #include "vision/outline/contour.h"
 #include "vision/tags/reprojection.h"
@@ -23,7 +24,7 @@ struct Sums {
     ++score.found;
     error += e;
     score.rms_m += e.squaredNorm();
-    score.nees += e.dot(covariance.ldlt().solve(e));
+    score.nees += MahalanobisSquared(e, covariance);
   }
   TipErrors Done() {
     if (score.found == 0) return score;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "diagnosis/model/model_at.h"
 #include "simulation/closed_loop/closed_loop.h"
@@ -55,6 +56,13 @@ std::optional<Stream> Empty(std::optional<Stream> stream, Samples Stream::*sampl
   return stream;
 }
 
+/// An EM sensor of the simulation stands in R as it says.
+std::optional<EmStream> EmptyEm(const std::optional<EmStream>& recorded) {
+  auto em = Empty(recorded, &EmStream::samples);
+  if (em) em->registration_noise_m = em->registration_noise_rad = 0.0;
+  return em;
+}
+
 TipSensorSetup TipSensor(const Recording& recording, const Eigen::Vector3d& p_tip,
                          const Eigen::Vector3d& to_port) {
   TipSensorSetup tip;
@@ -74,10 +82,9 @@ TipSensorSetup TipSensor(const Recording& recording, const Eigen::Vector3d& p_ti
     ++count;
   }
   if (count == 0) return tip;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance / count);
-  tip.depth_noise_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
-  tip.across_noise_m =
-      std::sqrt(std::max(0.0, 0.5 * (eigen.eigenvalues()[0] + eigen.eigenvalues()[1])));
+  const Eigen::Vector3d variances = SymmetricEigenvalues(covariance / count);
+  tip.depth_noise_m = std::sqrt(std::max(0.0, variances[2]));
+  tip.across_noise_m = std::sqrt(std::max(0.0, 0.5 * (variances[0] + variances[1])));
   tip.direction_noise_rad = recording.vision0->direction_noise_rad;
   return tip;
 }
@@ -157,8 +164,8 @@ LoopSetup MakeSetup(const Recording& recording, const diagnosis::ExtendedModel& 
   setup.sensor_effects.em_centre_m = model.centre_m;
 
   setup.sensors.wrist = Empty(recording.wrist0, &WristStream::samples);
-  setup.sensors.em0 = Empty(recording.em0, &EmStream::samples);
-  setup.sensors.em1 = Empty(recording.em1, &EmStream::samples);
+  setup.sensors.em0 = EmptyEm(recording.em0);
+  setup.sensors.em1 = EmptyEm(recording.em1);
   setup.sensors.strain = Empty(recording.strain0, &StrainStream::moments_Nm);
   setup.sensors.load = Empty(recording.load0, &LoadStream::f_tip_N);
   setup.sensors.tip = TipSensor(recording, p_tip, to_port);

@@ -24,26 +24,28 @@ const std::map<std::string, Names>& Arrows() {
       {"vision", {"core"}},
       {"recording", {"core"}},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
+      {"pipeline", {"core", "kinematics", "estimation", "control", "vision", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core"}},
       {"workspace", {"core", "kinematics", "control", "recording"}},
       {"reproduction",
-       {"core", "kinematics", "estimation", "control", "simulation", "workspace", "report",
-        "recording", "apps"}},
+       {"core", "kinematics", "estimation", "control", "pipeline", "simulation", "workspace",
+        "report", "recording", "apps"}},
       {"testdata", {"core", "recording", "simulation", "bench"}},
       {"apps",
        {"core", "kinematics", "estimation", "control", "vision", "recording", "calibration",
-        "simulation", "diagnosis", "report", "workspace"}},
+        "pipeline", "simulation", "diagnosis", "report", "workspace"}},
       {"bench",
        {"core", "kinematics", "estimation", "control", "vision", "recording", "calibration",
-        "simulation", "diagnosis", "report", "workspace", "testdata"}},
+        "pipeline", "simulation", "diagnosis", "report", "workspace", "testdata"}},
   };
   return arrows;
 }
 
 /// The files of the target closed_loop join the plant with the controllers, and no others do.
-const Names kClosedLoop{"core", "recording", "vision", "control", "estimation"};
+const Names kClosedLoop{"core",       "recording", "vision",   "control",
+                        "estimation", "pipeline",  "diagnosis"};
 
 /// Foreign header's beginning -> the folders whose .cpp files may include it.
 const std::map<std::string, Names>& ForeignHeaders() {

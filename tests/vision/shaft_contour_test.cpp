@@ -1,4 +1,5 @@
 // The shaft's outline found in rendered frames, the pose beside the truth.
+#include "core/linear_algebra.h"
 #include "vision/outline/contour.h"
 
 #include <gtest/gtest.h>
@@ -121,7 +122,7 @@ double NormalisedError(const ContourFit& fit, const Pose& truth) {
   pick.topLeftCorner<2, 3>() = NormalBasis(truth.R.col(0)).transpose();
   pick.bottomRightCorner<3, 3>().setIdentity();
   const Eigen::Matrix<double, 5, 1> e = pick * PoseDifference(truth, fit.T_CE);
-  return e.dot((pick * fit.covariance * pick.transpose()).ldlt().solve(e));
+  return e.dot(Ldlt(pick * fit.covariance * pick.transpose()).Solve(e));
 }
 
 ContourOptions LightAtLens() {

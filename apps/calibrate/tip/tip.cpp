@@ -57,12 +57,14 @@ TipBody CollarBody(const CalibrateTipOptions& options, OutputFolder& output, boo
   source.calibrations = options.input.calibrations;
   TrackInput input = OpenTrackInput(source);
   output.Warn(input.warnings);
-  TipFollower follower(input.recording, {}, false);
+  InstrumentTracker tracker(TrackerSetupOf(input.recording, {}, false));
   Progress progress("frames", input.frames->Count(), quiet, "fps");
   TipBody body{"tags0.p_E", "E", {}, false};
   std::size_t frames = 0;
   while (const auto set = input.frames->Next()) {
-    if (const auto pose = CollarPivotPose(follower.Follow(*set), set->t_ns)) {
+    if (const auto pose = CollarPivotPose(
+            tracker.Follow(set->Pointers(), set->t_ns, ReadingsAt(input.recording, set->t_ns)),
+            set->t_ns)) {
       body.poses.push_back(*pose);
     }
     progress.Update(++frames);
