@@ -20,7 +20,7 @@ struct Squares {
            std::size_t k) {
     if (!replay.Samples()[k].ok) return;
     const diagnosis::Rows sd = replay.RowNoise(k);
-    for (int r = 0; r < row::kCount; ++r) {
+    for (int r = 0; r < diagnosis::row::kCount; ++r) {
       if (!replay.Set().samples[k].present[r]) continue;
       sum += std::pow(residuals[k][r] / sd[r], 2);
       count += 1.0;
