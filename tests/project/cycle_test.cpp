@@ -22,7 +22,7 @@ long LinesOf(const std::string& text, const std::string& head) {
   if (begin == std::string::npos) return 0;
   const std::size_t end = text.find("\n}\n", begin);
   const auto first = text.begin() + static_cast<std::ptrdiff_t>(begin + 1);
-  return std::count(first, text.begin() + static_cast<std::ptrdiff_t>(end + 2), '\n');
+  return 1 + std::count(first, text.begin() + static_cast<std::ptrdiff_t>(end + 2), '\n');
 }
 
 TEST(Cycle, OneFunctionOfAtMostFortyLinesCarriesIt) {
