@@ -3,6 +3,7 @@
 # flextip_library(NAME SOURCES ... [PUBLIC targets...] [PRIVATE targets...] [COLD]): a library, used
 # and exported as flextip::<name>. PUBLIC targets show in the folder's headers; foreign libraries are
 # PRIVATE. COLD: nothing in it runs often, so it is optimised less.
+include(FlextipUnity)
 set(FLEXTIP_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 # g++ 12 warns of overlapping and overlong copies inside std::string where there are none (GCC bug
 # 105651).
@@ -33,6 +34,7 @@ function(flextip_options target)
     set(ARG_PCH common)
   endif()
   target_precompile_headers(${target} REUSE_FROM flextip_pch_${ARG_PCH})
+  flextip_unity(${target})
 endfunction()
 
 function(flextip_library name)
