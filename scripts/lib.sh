@@ -68,18 +68,21 @@ build() {
     progress
 }
 
-# progress: turns ninja's lines "@done all seconds what" into one a quarter of a minute, passing on
-# all others (warnings, errors).
+# progress: turns ninja's lines "@done all seconds what" into a few, and passes on all others
+# (warnings, errors).
 progress() {
-  awk '
-    /^@[0-9]+ [0-9]+ [0-9.]+ / {
-      done = substr($1, 2); all = $2; s = $3
-      if (s < next_s && done != all) next
-      next_s = s + 15
-      left = done >= 5 ? sprintf(", about %d min left", s * (all - done) / done / 60 + 1) : ""
-      if (done == all) left = ""
-      printf "    %d of %d steps, %d min %02d s%s\n", done, all, s / 60, s % 60, left
-      fflush(); next
-    }
-    { print; fflush() }'
+  local line finished all s next_s=0 left
+  while IFS= read -r line; do
+    if ! [[ $line =~ ^@([0-9]+)\ ([0-9]+)\ ([0-9]+) ]]; then
+      printf '%s\n' "$line"
+      continue
+    fi
+    finished=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} s=${BASH_REMATCH[3]} left=
+    if [ "$s" -lt "$next_s" ] && [ "$finished" -lt "$all" ]; then continue; fi
+    next_s=$((s + 15))
+    if [ "$finished" -ge 5 ] && [ "$finished" -lt "$all" ]; then
+      left=", about $((s * (all - finished) / finished / 60 + 1)) min left"
+    fi
+    printf '    %d of %d steps, %d min %02d s%s\n' "$finished" "$all" $((s / 60)) $((s % 60)) "$left"
+  done
 }
