@@ -11,7 +11,7 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
-#include "apps/track/score.h"
+#include "recording/tip_score.h"
 #include "core/error.h"
 #include "diagnosis/model/model_at.h"
 #include "estimation/shaft_estimator.h"

@@ -13,7 +13,7 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/vector_option.h"
-#include "apps/shape/model.h"
+#include "kinematics/shaft_shape.h"
 #include "apps/shape/picture.h"
 #include "apps/shape/table.h"
 #include "core/error.h"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/track/score.h"
+#include "recording/tip_score.h"
 #include "core/tag_collar.h"
 #include "recording/recording.h"
 #include "recording/text/csv.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "calibration/em/field.h"
+#include "recording/calibrations/em_field.h"
 #include "calibration/em/pairs.h"
 
 namespace flextip {

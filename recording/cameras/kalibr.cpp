@@ -18,7 +18,7 @@ std::string ChooseCamera(const YamlMap& chain, const std::string& wanted) {
   std::string list;
   for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
   throw chain.Error(names.empty() ? "cam0" : names.front(),
-                    fmt::format("found {} cameras ({}), expected one to be named (--camera NAME)",
+                    fmt::format("found {} cameras ({}), expected the name of one of them",
                                 names.size(), list));
 }
 

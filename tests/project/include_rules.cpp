@@ -26,7 +26,7 @@ const std::map<std::string, Names>& Arrows() {
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
-      {"report", {"core"}},
+      {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording"}},
       {"reproduction",
        {"core", "kinematics", "estimation", "control", "simulation", "workspace", "report"}},
@@ -53,7 +53,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"tbb/", {"vision", "simulation", "diagnosis", "workspace", "reproduction", "apps", "bench"}},
       {"geos", {"reproduction"}},
       {"boost/", {"workspace", "reproduction"}},
-      {"nlohmann/", {"report", "diagnosis", "apps", "bench"}},
+      {"nlohmann/", {"report", "apps", "bench"}},
       {"CLI/", {"apps", "bench"}},
   };
   return foreign;

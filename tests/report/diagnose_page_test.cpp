@@ -40,8 +40,10 @@ std::string Residuals(int samples, double friction) {
 
 /// The page without the plotting library.
 std::string Own(std::string html) {
-  const auto at = html.find(PlotlyJs());
-  if (at != std::string::npos) html.erase(at, PlotlyJs().size());
+  for (const auto plotly : {PlotlyJs(), PlotlyFlatJs()}) {
+    const auto at = html.find(plotly);
+    if (at != std::string::npos) html.erase(at, plotly.size());
+  }
   return html;
 }
 

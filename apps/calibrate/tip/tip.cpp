@@ -12,7 +12,7 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
-#include "apps/track/input.h"
+#include "recording/frames/track_input.h"
 #include "calibration/tip/tip_poses.h"
 #include "core/error.h"
 #include "pipeline/instrument_tracker.h"
