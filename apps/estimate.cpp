@@ -11,7 +11,6 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
-#include "recording/tip_score.h"
 #include "core/error.h"
 #include "diagnosis/model/model_at.h"
 #include "estimation/shaft_estimator.h"
@@ -19,6 +18,7 @@
 #include "pipeline/measurements_at.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
+#include "recording/tip_score.h"
 #include "report/pages.h"
 
 namespace flextip {

@@ -46,8 +46,9 @@ Lead SimulateLead(const Json& summary) {
                                 Value(run, "max_deviation_m"), Value(run, "rms_deviation_m"))};
   if (runs.size() > 1) {
     const auto& [worst, other] = runs.back();
-    lead.more = fmt::format("It is the best of {} controllers; the worst, {}, lets it go {} astray.",
-                            runs.size(), worst, Value(other, "max_deviation_m"));
+    lead.more =
+        fmt::format("It is the best of {} controllers; the worst, {}, lets it go {} astray.",
+                    runs.size(), worst, Value(other, "max_deviation_m"));
   }
   return lead;
 }
@@ -75,9 +76,9 @@ Lead EstimateLead(const Json& summary) {
   Lead lead{.says = fmt::format("Load, port and shape were found at {} of {} samples.",
                                 Count(statuses, "ok"), Count(summary, "samples"))};
   if (Has(summary, "chi2_per_measurement")) {
-    lead.more = fmt::format(
-        "The fit leaves {} of the sensors' variance a measurement; 1 is noise alone.",
-        Value(summary, "chi2_per_measurement"));
+    lead.more =
+        fmt::format("The fit leaves {} of the sensors' variance a measurement; 1 is noise alone.",
+                    Value(summary, "chi2_per_measurement"));
   }
   if (Has(summary, "tip_rms_error_m")) {
     lead.more += fmt::format("{}Against the truth the tip was {} off (RMS).",

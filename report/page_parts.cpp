@@ -105,7 +105,8 @@ std::vector<double> Scaled(const ResultTable& table, const std::string& column, 
   return scaled;
 }
 
-FigureTrace PathTrace(const ResultTable& table, const std::string& prefix, const std::string& name) {
+FigureTrace PathTrace(const ResultTable& table, const std::string& prefix,
+                      const std::string& name) {
   constexpr double kMmPerM = 1000.0;
   FigureTrace trace;
   trace.name = name;

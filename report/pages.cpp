@@ -39,10 +39,10 @@ void WriteEstimateReport(const fs::path& folder) {
     const auto path = PathTrace(table, "p_RE", "tip");
     if (!path.x.empty()) {
       report.AddFigure({.title = "Path of the tip",
-                      .x_label = kX,
-                      .y_label = kY,
-                      .z_label = kZ,
-                      .traces = {path}});
+                        .x_label = kX,
+                        .y_label = kY,
+                        .z_label = kZ,
+                        .traces = {path}});
     }
     AddColumnsOverTime(report, table);
   }

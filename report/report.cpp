@@ -112,8 +112,7 @@ Report::Report(std::string title, std::string subtitle)
 
 void Report::AddLead(const std::string& says, const std::string& more) {
   if (says.empty()) return;
-  body_ += fmt::format("<section class=\"verdict\">\n<p class=\"says\">{}</p>\n",
-                       EscapeHtml(says));
+  body_ += fmt::format("<section class=\"verdict\">\n<p class=\"says\">{}</p>\n", EscapeHtml(says));
   if (!more.empty()) body_ += fmt::format("<p class=\"gains\">{}</p>\n", EscapeHtml(more));
   body_ += "</section>\n";
 }
@@ -138,10 +137,6 @@ void Report::AddWarnings(const std::vector<std::string>& warnings) {
 
 void Report::AddHeading(const std::string& text) {
   body_ += fmt::format("<h2>{}</h2>\n", EscapeHtml(text));
-}
-
-void Report::AddText(const std::string& text) {
-  body_ += fmt::format("<p>{}</p>\n", EscapeHtml(text));
 }
 
 void Report::AddTable(const Table& table) {

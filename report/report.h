@@ -31,7 +31,6 @@ class Report {
   /// A list of remarks in a box that cannot be overlooked; nothing where it is empty.
   void AddWarnings(const std::vector<std::string>& warnings);
   void AddHeading(const std::string& text);
-  void AddText(const std::string& text);
   void AddTable(const Table& table);
   /// As it stands: for parts that a page draws itself. Its texts must be escaped already.
   void AddHtml(const std::string& html) { body_ += html; }

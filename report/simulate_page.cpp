@@ -56,15 +56,15 @@ void StyleController(FigureTrace& trace) {
 
 void AddDeviations(Report& report, const std::vector<Run>& runs) {
   Figure plot{.title = "Deviation from the desired path",
-            .caption =
-                "How far the true tip was from where it was wanted. Solid: the tip is "
-                "measured; dashed: it is calculated from the model.",
-            .x_label = "time (s)",
-            .y_label = "deviation (mm)"};
+              .caption =
+                  "How far the true tip was from where it was wanted. Solid: the tip is "
+                  "measured; dashed: it is calculated from the model.",
+              .x_label = "time (s)",
+              .y_label = "deviation (mm)"};
   for (const auto& run : runs) {
     FigureTrace trace{.name = run.name,
-                    .x = SecondsOf(run.deviation),
-                    .y = Scaled(run.deviation, "deviation", kMmPerM)};
+                      .x = SecondsOf(run.deviation),
+                      .y = Scaled(run.deviation, "deviation", kMmPerM)};
     if (trace.y.size() != trace.x.size()) continue;
     StyleController(trace);
     plot.traces.push_back(std::move(trace));

@@ -80,9 +80,8 @@ void PutNameFirst(std::vector<std::string>& keys) {
 std::string ColumnTitle(const std::string& key, const std::vector<std::string>& keys) {
   if (key == "seconds") return "time";
   const std::string title = Label(key);
-  const auto alike = std::count_if(keys.begin(), keys.end(), [&](const std::string& other) {
-    return Label(other) == title;
-  });
+  const auto alike = std::count_if(keys.begin(), keys.end(),
+                                   [&](const std::string& other) { return Label(other) == title; });
   if (alike < 2) return title;
   std::string full = key;
   std::replace(full.begin(), full.end(), '_', ' ');

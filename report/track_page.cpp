@@ -57,12 +57,13 @@ bool AddTrace(const ThinnedTable& table, std::size_t column, FigureTrace trace, 
 /// The path of the tip, and one trace for each status it had.
 void AddPath(Report& report, const ThinnedTable& table) {
   Figure plot{.title = "Path of the tip as seen",
-            .x_label = "x (mm)",
-            .y_label = "y (mm)",
-            .z_label = "z (mm)"};
+              .x_label = "x (mm)",
+              .y_label = "y (mm)",
+              .z_label = "z (mm)"};
   FigureTrace path{.name = "path", .color = "#0072b2"};
-  FigureTrace ok{.name = "ok", .color = "#009e73", .kind = FigureTrace::Kind::kPoints};
-  FigureTrace predicted{.name = "predicted", .color = kPredicted, .kind = FigureTrace::Kind::kPoints};
+  FigureTrace ok{.name = "ok", .kind = FigureTrace::Kind::kPoints, .color = "#009e73"};
+  FigureTrace predicted{
+      .name = "predicted", .kind = FigureTrace::Kind::kPoints, .color = kPredicted};
   const auto add = [](const ThinnedBucket& bucket, FigureTrace& trace) {
     trace.x.push_back(bucket.columns[0].first);
     trace.y.push_back(bucket.columns[1].first);
@@ -112,25 +113,25 @@ void AddTip(Report& report, const fs::path& file) {
   }
   report.AddFigure(movement);
   Figure sure{.title = "How sure the position is",
-            .caption = std::string("Standard deviation of the position, all three axes "
-                                   "together, on a logarithmic scale.") +
-                       kBandsSay,
-            .x_label = "time (s)",
-            .y_label = "standard deviation (mm)",
-            .log_y = true,
-            .bands = StatusBands(table)};
+              .caption = std::string("Standard deviation of the position, all three axes "
+                                     "together, on a logarithmic scale.") +
+                         kBandsSay,
+              .x_label = "time (s)",
+              .y_label = "standard deviation (mm)",
+              .log_y = true,
+              .bands = StatusBands(table)};
   if (AddTrace(table, 3, {.name = "standard deviation"}, sure)) report.AddFigure(sure);
 }
 
 void AddError(Report& report, const ThinnedTable& table) {
   Figure plot{.title = "Error of the tip",
-            .caption = std::string("How far the tip was from the truth, and what its covariance "
-                                   "says; on a logarithmic scale.") +
-                       kBandsSay,
-            .x_label = "time (s)",
-            .y_label = "error (mm)",
-            .log_y = true,
-            .bands = StatusBands(table)};
+              .caption = std::string("How far the tip was from the truth, and what its covariance "
+                                     "says; on a logarithmic scale.") +
+                         kBandsSay,
+              .x_label = "time (s)",
+              .y_label = "error (mm)",
+              .log_y = true,
+              .bands = StatusBands(table)};
   if (!AddTrace(table, 0, {.name = "error"}, plot)) return;
   AddTrace(table, 1, {.name = "standard deviation", .color = "#555f6b", .dashed = true}, plot);
   report.AddFigure(plot);
@@ -147,10 +148,10 @@ void AddFrames(Report& report, const fs::path& file) {
   const auto add = [&](std::size_t column, const char* title, const char* caption,
                        const char* unit) {
     Figure plot{.title = title,
-              .caption = std::string(caption) + kBandsSay,
-              .x_label = "time (s)",
-              .y_label = unit,
-              .bands = StatusBands(table)};
+                .caption = std::string(caption) + kBandsSay,
+                .x_label = "time (s)",
+                .y_label = unit,
+                .bands = StatusBands(table)};
     if (AddTrace(table, column, {.name = title}, plot)) report.AddFigure(plot);
   };
   add(2, "Noise", "What the fit of the tags' pixels leaves.", "noise (grey levels)");

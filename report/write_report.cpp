@@ -37,9 +37,8 @@ const std::vector<CommandPage>& Pages() {
 /// A run's deviation.csv lies in the folder itself or, of several controllers, in one of each.
 bool HasDeviations(const fs::path& folder) {
   if (fs::exists(folder / "deviation.csv")) return true;
-  return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const auto& at) {
-    return fs::exists(at.path() / "deviation.csv");
-  });
+  return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                     [](const auto& at) { return fs::exists(at.path() / "deviation.csv"); });
 }
 
 }  // namespace
@@ -53,9 +52,9 @@ void WriteReport(const fs::path& folder) {
   }
   const std::string command = CommandOf(folder);
   const std::string first_word = command.substr(0, command.find(' '));
-  const auto page =
-      std::find_if(Pages().begin(), Pages().end(),
-                   [&](const CommandPage& candidate) { return candidate.command == first_word; });
+  const auto page = std::find_if(Pages().begin(), Pages().end(), [&](const CommandPage& candidate) {
+    return candidate.command == first_word;
+  });
   if (page == Pages().end()) refuse(fmt::format("no page is known for the command {}", command));
   for (const char* file : page->needs) {
     if (!fs::exists(folder / file)) refuse(fmt::format("no {}, the page needs it", file));

@@ -8,8 +8,8 @@
 
 namespace flextip {
 
-/// Returns diagnosis.json. `gain`, where there is one, adds `closed_loop_runs`, each controller that
-/// ran, and `closed_loop`, the rod controller that sees the tip.
+/// Returns diagnosis.json. `gain`, where there is one, adds `closed_loop_runs`, each controller
+/// that ran, and `closed_loop`, the rod controller that sees the tip.
 std::string DiagnosisJson(const diagnosis::DiagnosisResult& result,
                           const simulation::ClosedLoopGain* gain = nullptr);
 

@@ -65,8 +65,8 @@ std::vector<std::string> MapColumns(bool with_worst) {
   AddAxes<N>("p_AE", "m", columns);
   AddAxes<N>("p_AW", "m", columns);
   if (N == 3) columns.emplace_back("base [rad]");
-  for (const char* name : {"joint1 [rad]", "joint2 [rad]", "norm_G []", "phi_hat_max [deg]",
-                           "phi_max [deg]"}) {
+  for (const char* name :
+       {"joint1 [rad]", "joint2 [rad]", "norm_G []", "phi_hat_max [deg]", "phi_max [deg]"}) {
     columns.emplace_back(name);
   }
   AddAxes<N>("v_sigma", "", columns);

@@ -39,22 +39,22 @@ void AddInputOptions(CLI::App& command, TrackOptions& options) {
 void AddTrackerOptions(CLI::App& command, TrackOptions& options) {
   command
       .add_option("--decimate", options.tracker.detector.quad_decimate,
-                   "Search tags at 1/this of the resolution: faster, misses small ones")
+                  "Search tags at 1/this of the resolution: faster, misses small ones")
       ->capture_default_str();
   command.add_option("--threads", options.tracker.detector.threads, "Threads")
       ->capture_default_str();
   command.add_flag("--no-model", options.no_model,
-                    "Carry a hidden tip on by its motion alone, not by wrist0 and the shaft");
+                   "Carry a hidden tip on by its motion alone, not by wrist0 and the shaft");
   auto* outline =
       command
           .add_option("--outline", options.end,
-                       "Carry a tip whose tags are covered on by the shaft's outline; its end is "
-                       "round or flat")
+                      "Carry a tip whose tags are covered on by the shaft's outline; its end is "
+                      "round or flat")
           ->check(CLI::IsMember({"round", "flat"}))
           ->type_name("END");
   command
       .add_option("--diameter", options.diameter_m,
-                   "Of the shaft as it is seen; without it the recording's outer_diameter_m")
+                  "Of the shaft as it is seen; without it the recording's outer_diameter_m")
       ->check(CLI::PositiveNumber)
       ->needs(outline)
       ->type_name("METRES");

@@ -104,8 +104,9 @@ void PrintResult(const TrackOptions& options, const nlohmann::json& summary) {
 void RunTrack(TrackOptions options, bool quiet) {
   SilenceVideoCodecs();
   CheckTrackOptions(options);
-  OutputFolder output(options.out, "track",
-                      {.force = options.force, .inputs = options.Files(), .resume = options.resume});
+  OutputFolder output(
+      options.out, "track",
+      {.force = options.force, .inputs = options.Files(), .resume = options.resume});
   TrackInput input = OpenTrackInput(options);
   output.Warn(input.warnings);
   options.tracker.tube = ShaftSeen(options, input);

@@ -375,8 +375,8 @@ void Application::CorrectField() {
   if (outside == 0) return;
   applied_.warnings.insert(
       applied_.warnings.begin(),
-      fmt::format("{}: {} of {} samples of em0 lie beyond where em0.field is known",
-                  file_.string(), outside, samples.size()));
+      fmt::format("{}: {} of {} samples of em0 lie beyond where em0.field is known", file_.string(),
+                  outside, samples.size()));
 }
 
 AppliedCalibration Application::Run() {

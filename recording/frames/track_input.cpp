@@ -56,9 +56,7 @@ TrackInput ReadCameraFiles(const CameraFiles& files, const TrackInputOptions& op
 TrackInput OpenRecordingToTrack(const std::filesystem::path& recording,
                                 const TrackInputOptions& options) {
   ReadResult read = ReadRecording(recording);
-  const auto refuse = [&](const char* what) {
-    throw InputError::At(recording.string(), 0, what);
-  };
+  const auto refuse = [&](const char* what) { throw InputError::At(recording.string(), 0, what); };
   if (!read.recording.cam0) refuse("no cam0/, tracking needs it");
   if (!read.recording.tags0) refuse("no tags0/, tracking needs it");
   TrackInput input{std::move(read.recording), nullptr, std::move(read.warnings), {}};
@@ -71,8 +69,8 @@ TrackInput OpenRecordingToTrack(const std::filesystem::path& recording,
 TrackInput OpenPicturesToTrack(const std::filesystem::path& source, const CameraFiles& files,
                                const TrackInputOptions& options) {
   TrackInput input = ReadCameraFiles(files, options);
-  input.frames = std::make_unique<FrameSets>(OpenPlainFrames(
-      source, input.recording.cam0->calibration, files.rate_hz, options.range));
+  input.frames = std::make_unique<FrameSets>(
+      OpenPlainFrames(source, input.recording.cam0->calibration, files.rate_hz, options.range));
   return input;
 }
 

@@ -220,17 +220,17 @@ std::size_t TellingComponent(const ResultTable& residuals, const DiagnosedSignat
 }
 
 std::optional<Figure> SignaturePlot(const ResultTable& residuals,
-                                  const DiagnosedSignature& signature) {
+                                    const DiagnosedSignature& signature) {
   const auto* x = RegressorColumn(residuals, signature.against);
   const std::size_t i = TellingComponent(residuals, signature);
   const auto unit = RegressorUnit(signature.against);
   const std::string what = ComponentLabel(residuals, signature.channel, i);
   Figure plot{.title = fmt::format("The strongest pattern: {} against {}", what, unit.name),
-            .caption =
-                "Residual in standard deviations of the channel's noise. Lines: means of 20 "
-                "bins. Between the dashed lines lie 95 % of noise alone.",
-            .x_label = unit.unit.empty() ? unit.name : unit.name + " (" + unit.unit + ")",
-            .y_label = "residual / noise"};
+              .caption =
+                  "Residual in standard deviations of the channel's noise. Lines: means of 20 "
+                  "bins. Between the dashed lines lie 95 % of noise alone.",
+              .x_label = unit.unit.empty() ? unit.name : unit.name + " (" + unit.unit + ")",
+              .y_label = "residual / noise"};
   double low = std::numeric_limits<double>::infinity(), high = -low;
   std::vector<FigureTrace> means;
   for (const auto& [model, color, faint] :
@@ -244,7 +244,11 @@ std::optional<Figure> SignaturePlot(const ResultTable& residuals,
     low = std::min(low, *least);
     high = std::max(high, *most);
     const auto few = Thinned(points), bins = BinMeans(points);
-    plot.traces.push_back({.name = model, .x = few.x, .y = few.y, .color = faint, .kind = FigureTrace::Kind::kPoints});
+    plot.traces.push_back({.name = model,
+                           .kind = FigureTrace::Kind::kPoints,
+                           .x = few.x,
+                           .y = few.y,
+                           .color = faint});
     means.push_back(
         {.name = std::string(model) + ", mean", .x = bins.x, .y = bins.y, .color = color});
   }
@@ -257,8 +261,8 @@ std::optional<Figure> TimePlot(const ResultTable& residuals, const DiagnosedSign
   const auto* t = residuals.Column("t_s");
   const std::size_t i = TellingComponent(residuals, signature);
   Figure plot{.title = ComponentLabel(residuals, signature.channel, i) + " over time",
-            .x_label = "time (s)",
-            .y_label = "residual / noise"};
+              .x_label = "time (s)",
+              .y_label = "residual / noise"};
   for (const auto& [model, color] :
        {std::pair{kModels[0], kBaseColor}, std::pair{kModels[1], kExtendedColor}}) {
     const auto points = Outline(Paired(t, Component(residuals, model, signature.channel, i)));

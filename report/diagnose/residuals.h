@@ -31,7 +31,7 @@ std::size_t TellingComponent(const ResultTable& residuals, const DiagnosedSignat
 /// Base and extended residual of that component against the regressor, with the means of 20 bins;
 /// nothing where the table has not what the signature names.
 std::optional<Figure> SignaturePlot(const ResultTable& residuals,
-                                  const DiagnosedSignature& signature);
+                                    const DiagnosedSignature& signature);
 /// The same component over time.
 std::optional<Figure> TimePlot(const ResultTable& residuals, const DiagnosedSignature& signature);
 

@@ -132,7 +132,8 @@ TEST(Csv, BrokenFilesFailWithOneLine) {
 
 TEST(Csv, TextsComeBackAsTheyWereWritten) {
   const TemporaryFolder folder;
-  const std::string texts[] = {"plain", "a, b", "says \"so\"", "\"", ",", " spaces ", "", "\"\",\""};
+  const std::string texts[] = {"plain",    "a, b", "says \"so\"", "\"", ",",
+                               " spaces ", "",     "\"\",\""};
   CsvWriter csv({"name, of", "value"});
   for (const auto& text : texts) csv.Add(text).AddOrEmpty(std::nan("")).EndRow();
   csv.Add("number").Add(1.0 / 3, 6).EndRow();

@@ -62,7 +62,11 @@ TEST_F(DiagnosePage, StandsByItselfAndStatesTheVerdict) {
 
 TEST_F(DiagnosePage, AlwaysShowsNoneAndUnknown) {
   auto json = Friction();
-  for (int i = 0; i < 20; ++i) json["probabilities"]["e" + std::to_string(i)] = 0.01;
+  for (int i = 0; i < 20; ++i) {
+    std::string name = "e";
+    name += std::to_string(i);
+    json["probabilities"][name] = 0.01;
+  }
   const std::string html = Page(json);
   EXPECT_THAT(html, HasSubstr(">none</span>"));
   EXPECT_THAT(html, HasSubstr(">unknown</span>"));

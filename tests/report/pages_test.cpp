@@ -227,10 +227,14 @@ TEST_F(Pages, AreNotMadeWithoutTheFilesTheyStandOn) {
     return std::string("no error");
   };
   EXPECT_THAT(refusal(), HasSubstr("no deviation.csv, the page needs it"));
-  for (const auto& [command, file] : std::map<std::string, std::string>{
-           {"track", "vision0/data.csv"}, {"estimate", "state0/data.csv"}, {"shape", "shapes.csv"},
-           {"detect", "tags.csv"}, {"diagnose", "diagnosis.json"}, {"map", "figures.json"},
-           {"reproduce", "figures.json"}}) {
+  for (const auto& [command, file] :
+       std::map<std::string, std::string>{{"track", "vision0/data.csv"},
+                                          {"estimate", "state0/data.csv"},
+                                          {"shape", "shapes.csv"},
+                                          {"detect", "tags.csv"},
+                                          {"diagnose", "diagnosis.json"},
+                                          {"map", "figures.json"},
+                                          {"reproduce", "figures.json"}}) {
     Write("summary.json", R"({"version": "1", "command": ")" + command + "\"}");
     EXPECT_THAT(refusal(), HasSubstr("no " + file)) << command;
   }

@@ -63,7 +63,7 @@ TEST(Report, HasPlotlyInsideAndNothingFromANetwork) {
 
 TEST(Report, LeavesPlotlyOutWhereNothingIsPlotted) {
   Report report("title");
-  report.AddText("no plot here");
+  report.AddHeading("no plot here");
   EXPECT_LT(report.Html().size(), 50000U);
 }
 
@@ -88,7 +88,8 @@ TEST(Report, KeepsEveryNumberOfAPlot) {
 TEST(Report, TakesTheLargerPlotlyOnlyForPathsInSpace) {
   Report flat("title"), space("title");
   flat.AddFigure({.traces = {{.x = {1}, .y = {2}}}});
-  space.AddFigures({{.traces = {{.x = {1}, .y = {2}}}}, {.traces = {{.x = {1}, .y = {2}, .z = {3}}}}});
+  space.AddFigures(
+      {{.traces = {{.x = {1}, .y = {2}}}}, {.traces = {{.x = {1}, .y = {2}, .z = {3}}}}});
   EXPECT_THAT(flat.Html(), HasSubstr(std::string(PlotlyFlatJs())));
   EXPECT_THAT(space.Html(), HasSubstr(std::string(PlotlyJs())));
   EXPECT_THAT(space.Html(), Not(HasSubstr(std::string(PlotlyFlatJs()))));
@@ -98,7 +99,8 @@ TEST(Report, TakesTextForTextAndNotForHtml) {
   Report report("<b>&title", "'sub\"");
   report.AddWarnings({"<img src=x>"});
   report.AddTable({.header = {"<h>"}, .rows = {{"a<b"}}});
-  report.AddFigure({.traces = {{.name = "</script><script>alert(1)</script>", .x = {1}, .y = {1}}}});
+  report.AddFigure(
+      {.traces = {{.name = "</script><script>alert(1)</script>", .x = {1}, .y = {1}}}});
   const std::string html = WithoutPlotly(report.Html());
   EXPECT_THAT(html, HasSubstr("<title>&lt;b&gt;&amp;title</title>"));
   EXPECT_THAT(html, Not(HasSubstr("<img src=x>")));

@@ -12,11 +12,11 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
-#include "recording/frames/track_input.h"
 #include "calibration/tip/tip_poses.h"
 #include "core/error.h"
 #include "pipeline/instrument_tracker.h"
 #include "recording/frames/frames.h"
+#include "recording/frames/track_input.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
 
