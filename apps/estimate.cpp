@@ -13,9 +13,8 @@
 #include "apps/common/recording_input.h"
 #include "core/error.h"
 #include "diagnosis/model/model_at.h"
-#include "estimation/shaft_estimator.h"
 #include "pipeline/estimate_recording.h"
-#include "pipeline/measurements_at.h"
+#include "pipeline/sensor_readings.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "recording/tip_score.h"
@@ -27,7 +26,8 @@ namespace {
 struct EstimateOptions {
   RecordingInput input;
   std::filesystem::path model;
-  double port_prior_m = 0.0003;
+  double port_prior_m = kPortRegistration_m;
+  int window_samples = 0;
   bool without_positions = false, force = false;
 };
 
@@ -69,24 +69,32 @@ void AddRow(CsvWriter& csv, TimeNs t_ns, const ShaftEstimate& e) {
 }
 
 EstimatorOptions MakeOptions(const Recording& recording, const EstimateOptions& options) {
-  EstimatorOptions estimator;
-  estimator.instrument = recording.instrument;
-  estimator.p_RP = recording.p_RP;
-  estimator.gravity_m_s2 = recording.gravity_m_s2;
-  estimator.port_prior_m = options.port_prior_m;
+  EstimatorOptions estimator = EstimatorOptionsFor(recording.instrument, recording.p_RP,
+                                                   recording.gravity_m_s2, options.port_prior_m);
   estimator.use_positions = !options.without_positions;
   estimator.estimate_tissue = false;  // for the controllers only
   return estimator;
 }
 
-Estimates EstimateAll(const Recording& recording, const EstimateOptions& options, bool quiet) {
-  const EstimatorOptions estimator = MakeOptions(recording, options);
+Estimates EstimateAll(const Recording& recording, const EstimateOptions& options,
+                      InstrumentEstimator& estimator, bool quiet) {
   Progress progress("estimate", EstimationTimes(recording).size(), quiet);
   const auto update = [&](std::size_t done, std::size_t) { progress.Update(done); };
   if (options.model.empty()) return EstimateRecording(recording, estimator, nullptr, update);
   const diagnosis::ExtendedModel found = diagnosis::ReadModel(options.model);
   diagnosis::ModelAt model(found, recording);
   return EstimateRecording(diagnosis::WithoutLatency(recording, found), estimator, &model, update);
+}
+
+/// Where the window says the port is, at the end.
+nlohmann::json WindowJson(const WindowEstimate& window) {
+  const Eigen::Vector3d& shift = window.port_shift_m;
+  const Eigen::Vector3d sd = window.port_covariance_m2.diagonal().cwiseMax(0.0).cwiseSqrt();
+  return {{"samples", window.samples},
+          {"status", Name(window.status)},
+          {"port_shift_m", {shift.x(), shift.y(), shift.z()}},
+          {"port_sd_m", {sd.x(), sd.y(), sd.z()}},
+          {"least_known_sd_m", window.least_known_sd_m}};
 }
 
 /// Scoring only, where the simulation left its truth: each sample's tip as an observation.
@@ -104,7 +112,7 @@ std::optional<TipScore> ScoreAgainstTruth(const std::filesystem::path& recording
 }
 
 nlohmann::json Summary(const EstimateOptions& options, const Recording& recording,
-                       const Estimates& estimates) {
+                       const Estimates& estimates, const WindowEstimate* window) {
   std::map<std::string, int> statuses;
   double chi2 = 0.0;
   int measurements = 0;
@@ -126,6 +134,7 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
   nlohmann::json summary = {
       {"samples", estimates.size()}, {"statuses", statuses}, {"sensors", sensors}};
   if (!options.model.empty()) summary["model"] = options.model.filename().string();
+  if (window != nullptr) summary["window"] = WindowJson(*window);
   if (measurements > 0) summary["chi2_per_measurement"] = chi2 / measurements;
   const auto score = ScoreAgainstTruth(options.input.recording, estimates);
   if (score && score->frames > 0) {
@@ -150,13 +159,14 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   if (recording.cam0 && !recording.vision0) {
     output.Warn("cam0 has not been tracked: run flextip track and pass its folder with --tracked");
   }
-  const Estimates estimates = EstimateAll(recording, options, quiet);
+  InstrumentEstimator estimator(MakeOptions(recording, options), options.window_samples);
+  const Estimates estimates = EstimateAll(recording, options, estimator, quiet);
   if (estimates.empty())
     throw WorkError(options.input.recording.string() + ": no sample could be estimated");
   CsvWriter csv(kColumns);
   for (const auto& e : estimates) AddRow(csv, e.t_ns, e.value);
   WriteTextFile(output.folder() / "state0" / "data.csv", csv.text());
-  nlohmann::json summary = Summary(options, recording, estimates);
+  nlohmann::json summary = Summary(options, recording, estimates, estimator.Window());
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   output.WriteSummary(summary);
   report::WriteEstimateReport(output.folder());
@@ -182,6 +192,12 @@ void AddEstimate(CLI::App& app, AppContext& context) {
       ->add_option("--port-prior", options->port_prior_m,
                    "How well the port is registered: standard deviation per axis (m)")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--window", options->window_samples,
+                   "Find the port's place from so many samples together, spread over where the "
+                   "wrist was; --port-prior may then be wide (several mm)")
+      ->check(CLI::Range(2, 1000))
+      ->type_name("N");
   command->add_flag("--without-positions", options->without_positions,
                     "Leave out the places of tip and EM sensor, as a system without tip tracking");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");

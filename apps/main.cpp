@@ -1,30 +1,19 @@
 // flextip: the program. Exit codes: 0 done, 1 the work failed, 2 wrong usage or unreadable input.
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <exception>
 #include <string>
 
 #include "apps/common/commands.h"
-#include "core/error.h"
+#include "apps/common/exit_code.h"
 #include "core/version.h"
 
 namespace flextip {
 namespace {
 
-constexpr int kDone = 0;
-constexpr int kWorkFailed = 1;
-constexpr int kBadUsage = 2;
-
 std::string Typed(int argc, char** argv) {
   std::string line = "flextip";
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
   return line;
-}
-
-int Complain(const std::string& message, int code) {
-  fmt::print(stderr, "flextip: {}\n", message);
-  return code;
 }
 
 void AddCommands(CLI::App& app, AppContext& context) {
@@ -71,14 +60,5 @@ int Run(int argc, char** argv) {
 }  // namespace flextip
 
 int main(int argc, char** argv) {
-  using namespace flextip;
-  try {
-    return Run(argc, argv);
-  } catch (const InputError& e) {
-    return Complain(e.what(), kBadUsage);
-  } catch (const std::exception& e) {
-    return Complain(e.what(), kWorkFailed);
-  } catch (...) {
-    return Complain("stopped by an error of unknown kind", kWorkFailed);
-  }
+  return flextip::ExitCodeOf([&] { return flextip::Run(argc, argv); });
 }

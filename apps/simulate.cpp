@@ -78,12 +78,16 @@ void WriteDeviation(const fs::path& file, const simulation::LoopResult& result) 
   WriteTextFile(file, csv.text());
 }
 
-nlohmann::json Figures(const simulation::LoopResult& result) {
-  return {
+nlohmann::json Figures(const simulation::LoopSetup& setup, const simulation::LoopResult& result) {
+  nlohmann::json figures = {
       {"max_deviation_m", result.max_deviation_m},   {"rms_deviation_m", result.rms_deviation_m},
       {"final_error_m", result.final_error_m},       {"updates", result.updates.size()},
       {"control_statuses", result.control_statuses}, {"tip_statuses", result.tip_statuses},
       {"steps_limited", result.steps_limited},       {"steps_damped", result.steps_damped}};
+  if (!setup.fixtures.list.empty()) figures["fixture_statuses"] = result.fixture_statuses;
+  if (!setup.path.directions.empty())
+    figures["final_direction_error_rad"] = result.final_direction_error_rad;
+  return figures;
 }
 
 /// One controller's run, written into `folder` as a recording.
@@ -158,7 +162,7 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
   }
   nlohmann::json controllers;
   for (std::size_t i = 0; i < runs; ++i)
-    controllers[Name(scenario.controllers[i])] = Figures(results[i]);
+    controllers[Name(scenario.controllers[i])] = Figures(scenario.loop, results[i]);
   nlohmann::json summary = {{"scenario", options.scenario.filename().string()},
                             {"rendered", options.render},
                             {"controllers", controllers}};

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "kinematics/rod.h"
 
 namespace flextip {
@@ -103,7 +104,7 @@ class TextbookRod {
         moved[j] += 1e-7;
         J.col(j) = (Residual(problem, moved) - r) / 1e-7;
       }
-      x -= J.partialPivLu().solve(r);
+      x -= Lu(J).Solve(r);
     }
     return false;
   }

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// Parses into Arguments and works on them. The exit code: 0 done, 2 wrong usage or InputError,
 /// 1 any other failure, with a line on stderr.
@@ -39,4 +39,4 @@ int RunTool(int argc, char** argv, const char* description,
   }
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "control/wrist_step.h"
+#include "core/linear_algebra.h"
 #include "kinematics/straight.h"
 
 namespace flextip {
@@ -74,18 +75,15 @@ Prediction Predict(const ControlInput& input, const ControllerOptions& options, 
 /// (Nakamura and Hanafusa 1986): the damping grows from nothing at that bound.
 Eigen::Vector3d SolveDamped(const Eigen::Vector3d& dx, const ControllerOptions& options,
                             ControlOutput& output) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(output.J_tip_wrist,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  // A copy: through a reference gcc 12 sees the decomposition as uninitialised.
-  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
-  const Eigen::Vector3d sigma = svd.singularValues();
+  const Svd svd(output.J_tip_wrist);
+  const Eigen::Vector3d& sigma = svd.sigma;
   output.smallest_singular_value = sigma[2];
   const double bound = options.min_singular_value;
   const double missing = 1.0 - std::min(1.0, sigma[2] / bound);
   const double damping2 = missing * bound * bound;
   output.damped = damping2 > 0.0;
   const Eigen::Vector3d inverse = sigma.array() / (sigma.array().square() + damping2);
-  return svd.matrixV() * inverse.cwiseProduct(svd.matrixU().transpose() * dx);
+  return svd.V * inverse.cwiseProduct(svd.U.transpose() * dx);
 }
 
 bool UsesRod(ControllerKind kind) {
@@ -135,6 +133,10 @@ const char* Name(ControlStatus status) {
       return "no_model";
     case ControlStatus::kStraightInstead:
       return "straight_instead";
+    case ControlStatus::kNoGoal:
+      return "no_goal";
+    case ControlStatus::kNoWrist:
+      return "no_wrist";
   }
   return "";
 }

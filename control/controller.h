@@ -50,6 +50,8 @@ enum class ControlStatus {
   kNoTip,            ///< the kind needs a measured tip and there is none: the wrist holds still
   kNoModel,          ///< the shaft model cannot be evaluated (port out of reach): holds still
   kStraightInstead,  ///< flexion not observable now: the straight shaft's Jacobian was used
+  kNoGoal,           ///< nothing is wanted of the tip: the wrist holds still
+  kNoWrist,          ///< the wrist was not measured: there is no command
 };
 
 const char* Name(ControlStatus status);

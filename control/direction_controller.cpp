@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/wrist_step.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -20,22 +21,21 @@ bool IsFinite(const DirectionInput& input) {
 /// The inverse of J on what it moves by more than `least`, damped below (Nakamura and Hanafusa
 /// 1986); directions below a thousandth of `least` are left out.
 Eigen::Matrix3d DampedInverse(const Eigen::Matrix3d& J, double least, bool& damped) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Svd svd(J);
   Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
   for (int i = 0; i < 3; ++i) {
-    const double sigma = svd.singularValues()[i];
+    const double sigma = svd.sigma[i];
     if (sigma < 1e-3 * least) continue;
     const double missing = 1.0 - std::min(1.0, sigma / least);
     damped |= missing > 0.0;
-    inverse += svd.matrixV().col(i) * svd.matrixU().col(i).transpose() * sigma /
-               (sigma * sigma + missing * least * least);
+    inverse +=
+        svd.V.col(i) * svd.U.col(i).transpose() * sigma / (sigma * sigma + missing * least * least);
   }
   return inverse;
 }
 
 int CountAbove(const Eigen::Matrix3d& J, double least) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(J);
-  return static_cast<int>((svd.singularValues().array() > least).count());
+  return static_cast<int>((SingularValues(J).array() > least).count());
 }
 
 /// The change of the unit vector `from` on the way to `to`: across `from`, as long as the angle.
@@ -76,12 +76,11 @@ Eigen::Vector3d DirectionController::Weighted(const Eigen::Vector3d& dp, const E
   error << w_p * dp, w_d * dd;
   // Damped where neither place nor direction moves with the wrist.
   const Eigen::Matrix3d normal = J.transpose() * J;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(normal);
   const double least = w_p * options_.min_singular_value;
-  const double missing = std::max(0.0, least * least - eigen.eigenvalues()[0]);
+  const double missing = std::max(0.0, least * least - SymmetricEigenvalues(normal)[0]);
   output.damped = missing > 0.0;
   const Eigen::Matrix3d damped = normal + missing * Eigen::Matrix3d::Identity();
-  return damped.ldlt().solve(J.transpose() * error);
+  return Ldlt(damped).Solve(J.transpose() * error);
 }
 
 Eigen::Vector3d DirectionController::PositionFirst(const Eigen::Vector3d& dp,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 namespace {
 
@@ -25,13 +27,11 @@ ShaftProblem RodOf(const ShaftModel& model, const Eigen::Vector3d& p_RW) {
 
 Eigen::Matrix3d TrustedStiffness(const Eigen::Matrix3d& K, const Eigen::Matrix3d& compliance,
                                  double limit) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(-0.5 * (K + K.transpose()));
-  const Eigen::Matrix3d root = eigen.eigenvectors() *
-                               eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-                               eigen.eigenvectors().transpose();
+  const SymmetricEigen push(-0.5 * (K + K.transpose()));
+  const Eigen::Matrix3d root =
+      push.vectors * push.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * push.vectors.transpose();
   const Eigen::Matrix3d product = root * (0.5 * (compliance + compliance.transpose())) * root;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> gains(product, Eigen::EigenvaluesOnly);
-  const double largest = gains.eigenvalues()[2];
+  const double largest = SymmetricEigenvalues(product)[2];
   const double part = largest > limit - 1.0 ? (limit - 1.0) / largest : 1.0;
   return -part * root * root;
 }

@@ -11,24 +11,12 @@ struct Pose {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
 
-  static Pose FromQuaternion(const Eigen::Quaterniond& q, const Eigen::Vector3d& p) {
-    return {q.normalized().toRotationMatrix(), p};
-  }
-  static Pose FromMatrix(const Eigen::Matrix4d& T) {
-    return {T.topLeftCorner<3, 3>(), T.topRightCorner<3, 1>()};
-  }
-  Eigen::Matrix4d Matrix() const {
-    Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
-    T.topLeftCorner<3, 3>() = R;
-    T.topRightCorner<3, 1>() = p;
-    return T;
-  }
-  /// Unit, with a non-negative scalar part.
-  Eigen::Quaterniond Quaternion() const {
-    Eigen::Quaterniond q(R);
-    if (q.w() < 0) q.coeffs() *= -1.0;
-    return q.normalized();
-  }
+  /// Returns the pose of the rotation `q` (normalised here) and the origin `p`.
+  static Pose FromQuaternion(const Eigen::Quaterniond& q, const Eigen::Vector3d& p);
+  static Pose FromMatrix(const Eigen::Matrix4d& T);
+  Eigen::Matrix4d Matrix() const;
+  /// Returns the rotation, unit, with a non-negative scalar part.
+  Eigen::Quaterniond Quaternion() const;
   Pose Inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
 };
 

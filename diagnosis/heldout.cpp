@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/linear_algebra.h"
+
 namespace flextip::diagnosis {
 namespace {
 
@@ -123,7 +125,7 @@ Eigen::VectorXd BaseParameters(const NormalSums& sums, const ParameterLayout& la
                         sd.asDiagonal();
     M.diagonal().array() += 1.0;
     const Eigen::VectorXd g = sd.asDiagonal() * sums.g.segment(block.first, block.size);
-    theta.segment(block.first, block.size) = sd.asDiagonal() * M.llt().solve(g);
+    theta.segment(block.first, block.size) = sd.asDiagonal() * Llt(M).Solve(g);
   }
   return theta;
 }

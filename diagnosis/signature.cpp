@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "diagnosis/evidence/generic_basis.h"
 
 namespace flextip::diagnosis {
@@ -55,7 +56,7 @@ double Explained(const RowSeries& series, const Eigen::VectorXd& regressor) {
   y.array() -= y.mean();
   const double total = y.squaredNorm();
   if (total <= 0.0) return 0.0;
-  const Eigen::VectorXd left = y - A * A.colPivHouseholderQr().solve(y);
+  const Eigen::VectorXd left = y - A * LeastSquares(A, y);
   return std::clamp(1.0 - left.squaredNorm() / total, 0.0, 1.0);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -15,8 +16,7 @@ constexpr double kLeastPosition_m = 1e-6, kLeastAngle_rad = 1e-6, kLeastMoment_N
 Eigen::Matrix3d Whitening(const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix3d floored =
       covariance + kLeastPosition_m * kLeastPosition_m * Eigen::Matrix3d::Identity();
-  const Eigen::LLT<Eigen::Matrix3d> cholesky(floored);
-  return cholesky.matrixL().solve(Eigen::Matrix3d::Identity());
+  return Llt(floored).SolveL(Eigen::Matrix3d::Identity());
 }
 
 Eigen::Matrix3d Whitening(double noise_m) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/linear_algebra.h"
 #include "estimation/beam_choice.h"
 #include "estimation/rod_fit.h"
 
@@ -71,15 +72,25 @@ const char* Name(EstimateStatus status) {
   return "";
 }
 
+EstimatorOptions EstimatorOptionsFor(const Instrument& instrument, const Eigen::Vector3d& p_RP,
+                                     const Eigen::Vector3d& gravity_m_s2, double port_prior_m) {
+  EstimatorOptions options;
+  options.instrument = instrument;
+  options.p_RP = p_RP;
+  options.gravity_m_s2 = gravity_m_s2;
+  options.port_prior_m = port_prior_m;
+  return options;
+}
+
 ShaftEstimator::ShaftEstimator(const EstimatorOptions& options) : options_(options) {}
 
 void ShaftEstimator::Reset() { *this = ShaftEstimator(options_); }
 
 void ShaftEstimator::SetPort(const Eigen::Vector3d& shift_m, const Eigen::Matrix3d& covariance_m2) {
-  const Eigen::LLT<Eigen::Matrix3d> cholesky(covariance_m2);
-  assert(cholesky.info() == Eigen::Success);
+  const Llt cholesky(covariance_m2);
+  assert(cholesky.Succeeded());
   port_shift_m_ = shift_m;
-  port_whitening_ = cholesky.matrixL().solve(Eigen::Matrix3d::Identity());
+  port_whitening_ = cholesky.SolveL(Eigen::Matrix3d::Identity());
 }
 
 ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& change) {
@@ -155,7 +166,7 @@ bool ShaftEstimator::Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate)
   estimate.chi2 = residuals.squaredNorm();
   estimate.measurements = fit.MeasurementCount();
   const Matrix9d information = jacobian.transpose() * jacobian;
-  estimate.covariance = information.ldlt().solve(Matrix9d::Identity());
+  estimate.covariance = Ldlt(information).Inverse();
   return estimate.covariance.allFinite();
 }
 

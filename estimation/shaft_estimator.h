@@ -14,17 +14,26 @@
 
 namespace flextip {
 
+/// How well a port is registered where nobody says: standard deviation per axis (m).
+inline constexpr double kPortRegistration_m = 0.0003;
+
 struct EstimatorOptions {
   Instrument instrument;
   Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();  ///< the port as registered
   Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();
-  double port_prior_m = 0.0003;    ///< standard deviation per axis of the registration
+  double port_prior_m = kPortRegistration_m;  ///< standard deviation per axis of p_RP
   double force_prior_units = 4.0;  ///< standard deviation of the tip force in units of EI / L^2
   /// False: only what a system without tip tracking has (orientations, strain, load, no tip or EM
   /// position), for the controllers that calculate the tip.
   bool use_positions = true;
   bool estimate_tissue = true;  ///< df_tip/dp_tip from how the load changed with the tip
 };
+
+/// Returns the options of an instrument whose port was registered at `p_RP`; all in R. Everything
+/// that makes an estimator begins here.
+EstimatorOptions EstimatorOptionsFor(const Instrument& instrument, const Eigen::Vector3d& p_RP,
+                                     const Eigen::Vector3d& gravity_m_s2,
+                                     double port_prior_m = kPortRegistration_m);
 
 enum class EstimateStatus : std::uint8_t {
   kOk,

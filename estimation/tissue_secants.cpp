@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 namespace {
 
@@ -14,9 +16,9 @@ constexpr double kStiffest_N_m = 2000.0;
 
 /// Tissue only pushes back.
 Eigen::Matrix3d PushingBack(const Eigen::Matrix3d& K) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(K);
-  const Eigen::Vector3d values = eigen.eigenvalues().cwiseMin(0.0).cwiseMax(-kStiffest_N_m);
-  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+  const SymmetricEigen axes(K);
+  const Eigen::Vector3d values = axes.values.cwiseMin(0.0).cwiseMax(-kStiffest_N_m);
+  return axes.vectors * values.asDiagonal() * axes.vectors.transpose();
 }
 
 }  // namespace
@@ -39,7 +41,7 @@ void TissueSecants::Add(const Eigen::Vector3d& p_RE, const Eigen::Vector3d& f_ti
     prior << 1.0, 1.0, 1.0, 2.0, 2.0, 2.0;
     Matrix6d with_prior = information_;
     with_prior.diagonal() += prior / (kPrior_N_m * kPrior_N_m);
-    const Vector6d k = with_prior.ldlt().solve(weighted_);
+    const Vector6d k = Ldlt(with_prior).Solve(weighted_);
     Eigen::Matrix3d K;
     K << k[0], k[5], k[4], k[5], k[1], k[3], k[4], k[3], k[2];
     stiffness_N_m_ = PushingBack(K);

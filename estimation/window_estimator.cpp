@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -90,9 +91,9 @@ void WindowEstimator::Add(const Measurements& z, const ShaftChange& change,
 void WindowEstimator::Describe(WindowEstimate& estimate) const {
   const Eigen::Matrix<double, 3, 2> across = NormalBasis(estimate.shaft.d_RE);
   const Eigen::Matrix2d covariance = across.transpose() * estimate.port_covariance_m2 * across;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance);
-  estimate.least_known = across * eigen.eigenvectors().col(1);
-  estimate.least_known_sd_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
+  const SymmetricEigen axes(covariance);
+  estimate.least_known = across * axes.vectors.col(1);
+  estimate.least_known_sd_m = std::sqrt(std::max(0.0, axes.values[1]));
   estimate.status = estimate.least_known_sd_m < kNarrowed * options_.estimator.port_prior_m
                         ? WindowStatus::kOk
                         : WindowStatus::kUnobservable;

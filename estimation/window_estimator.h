@@ -39,7 +39,7 @@ struct WindowEstimate {
 
 /// Unknowns: one shift of the port, and wrist and tip force of every sample. An update fits the
 /// latest sample (ShaftEstimator), adds it and refines the whole window; it allocates nothing and
-/// takes 1 to 2 ms with 30 samples (docs/reproduction/sensors.md). A port that moves needs
+/// takes 1 to 2 ms with 30 samples (docs/results/reproduction/sensors.md). A port that moves needs
 /// Reset().
 class WindowEstimator {
  public:

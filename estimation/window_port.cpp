@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 namespace {
 
@@ -66,13 +68,13 @@ bool WindowPort::Linearise(WindowSample& sample, Part& part, Sum& sum) const {
   Eigen::Matrix<double, RodFit::NUM_RESIDUALS, 6> J_own;
   J_own << J.leftCols<3>(), J.rightCols<3>();
   const auto J_port = J.middleCols<3>(3);
-  part.own.compute(J_own.transpose() * J_own);
+  part.own = Llt<6>(J_own.transpose() * J_own);
   part.mixed = J_own.transpose() * J_port;
   part.gradient = J_own.transpose() * r;
   sum.cost += r.squaredNorm();
   sum.information +=
-      J_port.transpose() * J_port - part.mixed.transpose() * part.own.solve(part.mixed);
-  sum.gradient += J_port.transpose() * r - part.mixed.transpose() * part.own.solve(part.gradient);
+      J_port.transpose() * J_port - part.mixed.transpose() * part.own.Solve(part.mixed);
+  sum.gradient += J_port.transpose() * r - part.mixed.transpose() * part.own.Solve(part.gradient);
   return true;
 }
 
@@ -94,11 +96,11 @@ void WindowPort::DropUnsolvable() {
 
 void WindowPort::ProposeStep(const Sum& sum) {
   shift_before_m_ = shift_m_;
-  shift_step_m_ = -sum.information.ldlt().solve(sum.gradient);
+  shift_step_m_ = -Ldlt(sum.information).Solve(sum.gradient);
   for (int i = 0; i < size_; ++i) {
     Part& part = parts_[i];
     part.before = samples_[i].own;
-    part.step = -part.own.solve(part.gradient + part.mixed * shift_step_m_);
+    part.step = -part.own.Solve(part.gradient + part.mixed * shift_step_m_);
     const double force = part.step.tail<3>().norm();
     if (force > kLongestStep) part.step *= kLongestStep / force;
   }

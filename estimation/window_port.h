@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "core/linear_algebra.h"
 #include "estimation/rod_fit.h"
 
 namespace flextip {
@@ -46,10 +47,10 @@ class WindowPort {
  private:
   /// A sample's share, linearised.
   struct Part {
-    Eigen::LLT<Eigen::Matrix<double, 6, 6>> own;  // J_o^T J_o
-    Eigen::Matrix<double, 6, 3> mixed;            // J_o^T J_port
-    Vector6d gradient;                            // J_o^T r
-    Vector6d before, step;                        // of the sample's own unknowns
+    Llt<6> own;                         // J_o^T J_o
+    Eigen::Matrix<double, 6, 3> mixed;  // J_o^T J_port
+    Vector6d gradient;                  // J_o^T r
+    Vector6d before, step;              // of the sample's own unknowns
   };
   struct Sum {
     double cost = 0.0;

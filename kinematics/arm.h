@@ -22,8 +22,8 @@ enum class ArmStatus : std::uint8_t {
 };
 const char* Name(ArmStatus status);
 
-/// Limits of the two joints' angles (rad from home), as printed in 2.3.1. Of the sum's only the
-/// lower is ever met: the single limits keep it below 2.2.
+/// Limits of the two joints' angles (rad from home), as printed in 2.3.1. Of the sum's limits only
+/// the lower is ever met: the single limits keep the sum below 2.2.
 struct LinkLimits {
   double joint1_min = -1.9, joint1_max = 1.2;
   double joint2_min = -0.7, joint2_max = 1.0;
@@ -49,12 +49,12 @@ class PlanarArm {
   LinkLimits limits;
 
   Eigen::Vector2d Wrist(const Eigen::Vector2d& theta) const noexcept;
-  /// J_r of (3.4): d wrist / d theta (m/rad). Singular with the links in line.
+  /// Returns J_r of (3.4): d wrist / d theta (2x2, m/rad). Singular with the links in line.
   Eigen::Matrix2d Jacobian(const Eigen::Vector2d& theta) const noexcept;
   bool WithinLimits(const Eigen::Vector2d& theta) const noexcept {
     return limits.Allow(theta[0], theta[1]);
   }
-  /// The joint angles for a wrist position, the elbow up as at home.
+  /// Returns the joint angles for a wrist position (z, y) in A (m), the elbow up as at home.
   Inverse Solve(const Eigen::Vector2d& p_wrist) const noexcept;
 };
 
@@ -70,7 +70,7 @@ class PhantomArm {
   PlanarArm links;
   double base_max_rad = 1.2;
 
-  /// (x, y, z) in A.
+  /// Returns the wrist (x, y, z) in A (m) for joint angles (rad).
   Eigen::Vector3d Wrist(const Eigen::Vector3d& theta) const noexcept;
   Eigen::Matrix3d Jacobian(const Eigen::Vector3d& theta) const noexcept;
   bool WithinLimits(const Eigen::Vector3d& theta) const noexcept;

@@ -8,7 +8,7 @@
 
 namespace flextip {
 
-/// Which load a flexion Jacobian holds constant while the wrist moves.
+/// The load that a flexion Jacobian holds constant while the wrist moves.
 enum class BeamLoadLaw : std::uint8_t {
   kPortForce,  ///< F_p, as the thesis assumes (3.2.2)
   kTipForce,   ///< F_t = F_p a / L: a hung mass, soft tissue
@@ -28,7 +28,7 @@ struct BeamFit {
   double a = 0.0;            ///< port's place along x_M (m)
   double length_m = 0.0;
   Eigen::Matrix3d R_RM = Eigen::Matrix3d::Identity();  ///< columns v_x, v_y, v_z (5.29)
-  /// Of (F_p/EI, a), from the stated noise; zero where no noise was stated.
+  /// Covariance of (F_p/EI, a), from the stated noise; zero where no noise was stated.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 
   bool IsUsable() const { return status == BeamStatus::kOk; }
@@ -36,25 +36,27 @@ struct BeamFit {
 
 const char* Name(BeamStatus status);
 
-/// The beam through a known wrist and port under a known tip force (all in R), of which the beam
-/// feels the part across its chord. Registered as (5.4)-(5.7) would: v_y against the force, so that
-/// F_p/EI <= 0. Without a force across, kStraight with `a` known.
+/// Solves the beam through a known wrist and port (m) under a known tip force (N), all in R. The
+/// beam feels the part of the force across its chord. Registered as (5.4)-(5.7) would: v_y against
+/// the force, so that F_p/EI <= 0. Without a force across, the status is kStraight with `a` known.
 BeamFit SolveBeam(const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_RP,
                   const Eigen::Vector3d& f_tip, double bending_stiffness_Nm2,
                   double length_m) noexcept;
 
-/// d tip / d wrist in R (5.28), with the in-plane part corrected; the port stays where it is and
-/// `law` says what the load does. Out of the plane the shaft swings about the port. Needs
-/// 0 < a < length; at F_p/EI = 0 it is the lever's Jacobian for a port at `a`.
+/// Returns d tip / d wrist in R (3x3) by (5.28), with the in-plane part corrected (docs/errata.md).
+/// The port stays where it is, `law` says which load is constant. Out of the plane the shaft swings
+/// about the port. Needs 0 < a < length; at F_p/EI = 0 the result is the lever's Jacobian for a
+/// port at `a`.
 Eigen::Matrix3d BeamJacobian(const BeamFit& fit, BeamLoadLaw law) noexcept;
 
-/// The tip in R by (5.13)-(5.22): along v_x, at the distance the bent shaft leaves.
+/// Returns the tip in R (m) by (5.13)-(5.22): along v_x, at the distance that the bent shaft
+/// leaves.
 Eigen::Vector3d BeamTip(const BeamFit& fit, const Eigen::Vector3d& p_RW) noexcept;
 
-/// The port in R by (3.8).
+/// Returns the port in R (m) by (3.8).
 Eigen::Vector3d BeamPort(const BeamFit& fit, const Eigen::Vector3d& p_RW) noexcept;
 
-/// The tip's load over EI, a vector in R (1/m^2): times EI, the force on the tip (5.15).
+/// Returns the tip's load over EI, a vector in R (1/m^2): times EI, the force on the tip (5.15).
 Eigen::Vector3d BeamTipLoad(const BeamFit& fit) noexcept;
 
 }  // namespace flextip

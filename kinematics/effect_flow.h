@@ -37,7 +37,7 @@ struct FlowState {
   Eigen::Vector3d m = Eigen::Vector3d::Zero();
   Eigen::Vector3d P = Eigen::Vector3d::Zero();
 
-  /// The axes drift off by the truncation error.
+  /// Makes the axes orthonormal again: they drift by the truncation error.
   void MakeOrthonormal() {
     t.normalize();
     y = (y - t.dot(y) * t).normalized();
@@ -45,8 +45,8 @@ struct FlowState {
   }
 };
 
-/// What acts along one stretch, and how stiff it is; `n0` and `stiffness` (over EI) are those at
-/// its start.
+/// The load along one stretch, and its stiffness. `n0` and `stiffness` (over EI) are those at its
+/// start.
 struct FlowLoad {
   Eigen::Vector3d n0 = Eigen::Vector3d::Zero();
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
@@ -54,7 +54,7 @@ struct FlowLoad {
   double stiffness = 1.0, stiffness_rate = 0.0;
 
   double StiffnessAt(double s) const { return stiffness + stiffness_rate * s; }
-  /// At which the axes turn, `s` from the start of the stretch.
+  /// Returns the rate at which the axes turn, `s` from the start of the stretch.
   Eigen::Vector3d RateAt(double s, const FlowState& at) const {
     return at.m / StiffnessAt(s) + curvature.x() * at.y + curvature.y() * at.z;
   }
@@ -69,7 +69,8 @@ struct FlowStep {
 
   void Expand(const FlowState& from, const FlowLoad& load);
   FlowState At(double u) const;
-  /// How far the series may be trusted: where its last two terms reach the tolerance.
+  /// Returns the length over which the series may be trusted: up to where its last two terms reach
+  /// the tolerance.
   double TrustedLength() const;
 };
 
@@ -125,9 +126,10 @@ struct FlowPath {
   FlowLoad load;
   FlowState end;
 
-  /// False where the stretch takes more than kMaxSteps (a load far beyond buckling).
+  /// Walks the stretch from `start`. Returns false where that takes more than kMaxSteps (a load far
+  /// beyond buckling).
   bool Walk(const FlowState& start, const FlowLoad& along, double length);
-  /// The step that holds the place `s` from the start of the stretch.
+  /// Returns the step that holds the place `s` from the start of the stretch.
   int StepOf(double s) const {
     int i = count - 1;
     while (i > 0 && steps[i].s0 > s) --i;
@@ -166,7 +168,8 @@ struct FlowColumns {
   ColumnMatrix turn = ColumnMatrix::Zero(), m = ColumnMatrix::Zero(), P = ColumnMatrix::Zero();
 };
 
-/// What each column changes along the stretch: the force at its start, q, and the curvature.
+/// The change by each column along the stretch: of the force at its start, of q, and of the
+/// curvature.
 struct FlowForcing {
   ColumnMatrix dn0 = ColumnMatrix::Zero(), dq = ColumnMatrix::Zero();
   Eigen::Matrix<double, 2, kMaxColumns, Eigen::RowMajor> dcurvature =
@@ -208,7 +211,7 @@ struct Lanes {
   }
   Lanes operator*(double f) const { return {f * x, f * y, f * z}; }
   Lanes operator-(const Lanes& v) const { return {x - v.x, y - v.y, z - v.z}; }
-  /// This times u, plus v: one step of Horner's rule.
+  /// Multiplies by u and adds v: one step of Horner's rule.
   void Horner(double u, const Lanes& v) { x = u * x + v.x, y = u * y + v.y, z = u * z + v.z; }
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "kinematics/effect_shot.h"
 #include "kinematics/load_steps.h"
@@ -30,7 +31,7 @@ bool IsPlausible(const EffectRodProblem& problem, std::span<const RodStation> st
   return problem.effects.y_wrist.norm() > 0.0;
 }
 
-/// The shaft straight, with the port's force that the lever asks for.
+/// Returns the straight shaft, with the port's force that the lever asks for.
 EffectRodUnknowns StraightGuess(const ScaledProblem& problem) {
   const double d = problem.span().norm();
   const Eigen::Vector3d t = problem.span() / d;
@@ -49,7 +50,7 @@ void Move(const Eigen::Vector3d& y, const Eigen::Vector3d& z, const UnknownVecto
 
 bool OnShaft(double s_port) { return s_port > kMinStretch && s_port < 1.0 - kMinStretch; }
 
-/// The number of evaluations it took; 0 where it did not converge.
+/// Returns the number of evaluations; 0 where the iteration did not converge.
 int Newton(const ScaledProblem& problem, EffectRodUnknowns& x, EffectShot& shot) {
   double last = 1e300;
   for (int i = 1; i <= kMaxNewton; ++i) {
@@ -58,7 +59,7 @@ int Newton(const ScaledProblem& problem, EffectRodUnknowns& x, EffectShot& shot)
     if (size < kConverged) return i;
     if (i > 4 && size > 0.9 * last) return 0;  // it should converge quadratically by now
     last = size;
-    UnknownVector dx = -shot.A.partialPivLu().solve(shot.residual);
+    UnknownVector dx = -Lu(shot.A).Solve(shot.residual);
     if (!dx.allFinite()) return 0;
     const double turn = dx.segment<2>(kTurn).norm();
     if (turn > kMaxTurn) dx *= kMaxTurn / turn;
@@ -89,7 +90,8 @@ class StateWriter {
              const FlowColumns* columns, EffectRodState& state) const;
 
  private:
-  /// Of the turn, the scaled moment and the scaled way from the given wrist, by the inputs in SI.
+  /// Derivatives of the turn, the scaled moment and the scaled way from the given wrist, by the
+  /// inputs in SI.
   struct Total {
     InputDerivative turn, m, P;
   };
@@ -243,7 +245,7 @@ EffectRodState EffectRodSolver::Solve(const EffectRodProblem& problem,
   y_ = shot.wrist.y;
   z_ = shot.wrist.z;
   inputs_ = inputs;
-  dx_ = -shot.A.partialPivLu().solve(scaling.ToInputs<kUnknowns>(shot.B));
+  dx_ = -Lu(shot.A).Solve(scaling.ToInputs<kUnknowns>(shot.B));
   StateWriter(problem, scaling, shot, x_, dx_).Write(stations, asked, columns.data(), state);
   return state;
 }

@@ -1,7 +1,7 @@
-// Model 4: the rod of rod.h with everything that may act on a real shaft besides (docs/models.md):
-// an unloaded curvature, a port and an arm that yield, a port that resists rotation and sliding,
-// and a load spread over the part beyond the port; a stiffness that tapers. With derivatives of
-// everything by every input but the taper.
+// Model 4: the rod of rod.h with all that may act on a real shaft besides (docs/method/models.md):
+// an unloaded curvature, a port and an arm that yield, a port that resists rotation and sliding, a
+// load spread over the part beyond the port, a stiffness that tapers. With derivatives of all
+// outputs by every input but the taper.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,12 +12,12 @@
 
 namespace flextip {
 
-/// What acts on the shaft besides wrist, port, tip force and weight; in R and SI units. All zero:
-/// the plain rod.
+/// Effects on the shaft besides wrist, port, tip force and weight, in R and SI units. All zero: the
+/// plain rod.
 struct RodEffects {
   /// The instrument's y axis at the wrist; its part across the shaft counts. From there the
-  /// section's axes go along the shaft without twist but for what the torsion moment twists it
-  /// (GJ = EI), which is none while the shaft is straight when unloaded.
+  /// section's axes go along the shaft without twist, except that the torsion moment twists them
+  /// (GJ = EI). A shaft that is straight when unloaded has no torsion moment.
   Eigen::Vector3d y_wrist = Eigen::Vector3d::UnitY();
   Eigen::Vector2d curvature_1_m = Eigen::Vector2d::Zero();  ///< unloaded, about the y and z axes
   double port_compliance_m_N = 0.0;   ///< the port moves by this times the lateral force on it
@@ -36,7 +36,7 @@ struct EffectRodProblem {
   RodEffects effects;
 };
 
-/// The inputs that outputs are differentiated by: first column of each in an InputDerivative.
+/// First column of each input in an InputDerivative.
 namespace rod_input {
 inline constexpr int kWrist = 0, kPort = 3, kForce = 6;
 inline constexpr int kStiffness = 9;  ///< by the logarithm of the bending stiffness
@@ -53,15 +53,15 @@ inline constexpr int kCount = 25;
 using InputDerivative = Eigen::Matrix<double, 3, rod_input::kCount>;
 using InputGradient = Eigen::Matrix<double, 1, rod_input::kCount>;
 
-/// Where on the shaft: `s_m` from the wrist, or from the tip (it then moves as the length does).
+/// A place on the shaft: `s_m` from the wrist, or from the tip (then it moves as the length does).
 struct RodStation {
   double s_m = 0.0;
   bool from_tip = false;
 };
 
-/// The shaft at one place, all in R: position, unit tangent, the instrument's y axis carried along
-/// the shaft (z = t x y), internal moment of the part beyond on the part before. At the port itself
-/// the moment is that on the wrist's side.
+/// The shaft at one place, all in R: position (m), unit tangent, the instrument's y axis carried
+/// along the shaft (z = t x y), and the internal moment of the part beyond on the part before (Nm).
+/// At the port itself the moment is that on the wrist's side.
 struct EffectRodSection {
   double s_m = 0.0;  ///< from the wrist
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
@@ -93,7 +93,7 @@ struct EffectRodState {
   bool IsUsable() const { return status == RodStatus::kOk; }
 };
 
-/// What the solver searches, in units of length L, force EI / L^2 and moment EI / L.
+/// The solver's unknowns, in units of length L, force EI / L^2 and moment EI / L.
 struct EffectRodUnknowns {
   Eigen::Vector3d t_wrist = Eigen::Vector3d::UnitX();
   double torsion = 0.0;                         ///< moment at the wrist along the tangent
@@ -105,9 +105,9 @@ struct EffectRodUnknowns {
 /// 120 kB of stack.
 class EffectRodSolver {
  public:
-  /// The equilibrium with its derivatives, and the sections at up to kMaxRodStations stations
-  /// strictly between wrist and tip (a station outside, or more of them, is kBadInput; so is a
-  /// y_wrist along the line from wrist to port).
+  /// Returns the equilibrium with its derivatives, and the sections at up to kMaxRodStations
+  /// stations strictly between wrist and tip. The status is kBadInput for a station outside, for
+  /// more stations, and for a y_wrist along the line from wrist to port.
   EffectRodState Solve(const EffectRodProblem& problem, std::span<const RodStation> stations = {});
 
   void Reset() { warm_ = false; }

@@ -190,7 +190,7 @@ PlaceDerivative EffectShot::Before(const ScaledProblem& problem, const EffectRod
   return d;
 }
 
-/// What the part beyond the port starts from. Where the port moves along the shaft, its jumps of
+/// Sets the start of the part beyond the port. Where the port moves along the shaft, its jumps of
 /// force and moment move with it: the states beyond change by the difference of their rates.
 void EffectShot::PassPort(const ScaledProblem& problem, const EffectRodUnknowns& x,
                           bool with_inputs) {
@@ -210,7 +210,8 @@ void EffectShot::PassPort(const ScaledProblem& problem, const EffectRodUnknowns&
   at_beyond.m_g.middleCols<3>(rod_input::kPortCouple) -= Skew(port.t);
 }
 
-/// The port is where it should be, no moment at the tip, friction at the port.
+/// Fills the residual of the conditions: the port at its place, no moment at the tip, friction at
+/// the port.
 void EffectShot::Conditions(const ScaledProblem& problem, const EffectRodUnknowns& x) {
   const Eigen::Vector3d r = x.r, lateral = r - r.dot(port.t) * port.t;
   const double along = r.dot(port.t), size = std::hypot(lateral.norm(), kMinLateral);

@@ -11,7 +11,7 @@ namespace flextip::effect_flow {
 
 using InputVector = Eigen::Matrix<double, rod_input::kCount, 1>;
 
-/// The inputs in SI units, in the order of rod_input; the stiffness by its logarithm.
+/// Returns the inputs in SI units, in the order of rod_input; the stiffness by its logarithm.
 InputVector Inputs(const EffectRodProblem& problem);
 
 /// The problem in units of L, EI/L^2 and EI/L: `g` in the order of rod_input, where the port's
@@ -21,7 +21,7 @@ struct ScaledProblem {
   Eigen::Vector3d y_wrist = Eigen::Vector3d::UnitY();
   double taper = 0.0;
 
-  /// Along the stretch that starts `s` from the wrist.
+  /// Returns the load along the stretch that starts `s` from the wrist.
   FlowLoad LoadFrom(double s, const Eigen::Vector3d& n0, const Eigen::Vector3d& q) const {
     return {n0, q, curvature(), 1.0 + taper * (s - 0.5), taper};
   }
@@ -34,7 +34,7 @@ struct ScaledProblem {
   double PortCompliance() const { return g[rod_input::kPortCompliance]; }
   double WristCompliance() const { return g[rod_input::kWristCompliance]; }
   double friction() const { return g[rod_input::kPortFriction]; }
-  /// Load and effects by a part only; wrist and port stay.
+  /// Returns the problem with load and effects by a part only; wrist and port stay.
   ScaledProblem WithPart(double part) const;
 };
 
@@ -46,7 +46,7 @@ struct EffectScaling {
 
   explicit EffectScaling(const EffectRodProblem& problem);
 
-  /// Derivatives by the scaled inputs to derivatives by the inputs in SI.
+  /// Turns derivatives by the scaled inputs into derivatives by the inputs in SI.
   template <int R>
   Eigen::Matrix<double, R, rod_input::kCount> ToInputs(
       const Eigen::Matrix<double, R, rod_input::kCount>& by_scaled) const {
@@ -84,13 +84,13 @@ struct EffectShot {
   ByUnknowns port_turn_x;     // the turn there as the port's place moves too
   PlaceDerivative at_beyond;  // the turn and moment just beyond the port, as it moves
 
-  /// Walks the shaft and fills residual and A; false where it cannot be walked.
+  /// Walks the shaft and fills residual and A. Returns false where the shaft cannot be walked.
   bool Shoot(const ScaledProblem& problem, const EffectRodUnknowns& x);
-  /// The other columns, which a converged shot needs: fills B. `places` (of the length, from the
+  /// Fills B, the other columns, which a converged shot needs. `places` (of the length, from the
   /// wrist) take the columns of the stretch they lie in.
   void Differentiate(const ScaledProblem& problem, const EffectRodUnknowns& x,
                      std::span<const double> places, FlowColumns* at_places);
-  /// From the columns of the stretch before the port to derivatives; P from the unyielded wrist.
+  /// Turns the columns of the stretch before the port into derivatives; P from the unyielded wrist.
   PlaceDerivative Before(const ScaledProblem& problem, const EffectRodUnknowns& x,
                          const FlowColumns& columns, bool with_inputs) const;
 

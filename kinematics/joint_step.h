@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <cstdint>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 
 enum class JointStepStatus : std::uint8_t {
@@ -31,9 +33,9 @@ struct JointStepResult {
   double smallest_singular_value_m = 0.0;
 };
 
-/// One step of (3.4). Along a direction with singular value s below the limit e the inverse is
-/// s / e^2 instead of 1 / s: continuous at e and zero at s = 0, so the joints never move by more
-/// than |p_desired - p_t| / e. All vectors of one call in the same frame.
+/// Makes one step of (3.4). Along a direction with singular value s below the limit e, the inverse
+/// is s / e^2 instead of 1 / s: continuous at e and zero at s = 0. So the joints never move by more
+/// than |p_desired - p_t| / e. All vectors of one call are in the same frame.
 template <int N>
 JointStepResult<N> JointStep(const JointStepInput<N>& input) noexcept {
   JointStepResult<N> result;
@@ -44,12 +46,11 @@ JointStepResult<N> JointStep(const JointStepInput<N>& input) noexcept {
   if (!J.allFinite() || !move.allFinite() || !input.theta.allFinite() || !(limit > 0)) {
     return result;
   }
-  const Eigen::JacobiSVD<Eigen::Matrix<double, N, N>> svd(
-      J, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const auto& s = svd.singularValues();
+  const Svd<N> svd(J);
+  const auto& s = svd.sigma;
   Eigen::Matrix<double, N, 1> inverse;
   for (int i = 0; i < N; ++i) inverse[i] = s[i] >= limit ? 1.0 / s[i] : s[i] / (limit * limit);
-  result.theta_desired += svd.matrixV() * inverse.cwiseProduct(svd.matrixU().transpose() * move);
+  result.theta_desired += svd.V * inverse.cwiseProduct(svd.U.transpose() * move);
   result.smallest_singular_value_m = s[N - 1];
   result.status = s[N - 1] < limit ? JointStepStatus::kDamped : JointStepStatus::kOk;
   return result;

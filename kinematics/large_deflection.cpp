@@ -21,7 +21,7 @@ struct Rule {
   std::array<double, kNodes> node{}, weight{};
 };
 
-// Gauss and Legendre's rule on [0, 1], nodes by Newton's method.
+// Makes Gauss and Legendre's rule on [0, 1], nodes by Newton's method.
 Rule MakeRule() {
   Rule rule;
   for (int i = 0; i < kNodes; ++i) {

@@ -11,17 +11,18 @@ struct Cantilever {
   double deflection = 0.0;   ///< across it, toward the force
 };
 
-/// Largest load BendCantilever follows: the free end is then turned by about 82 degrees. A larger
-/// load gives this one's shape.
+/// Largest load that BendCantilever follows: the free end is then turned by about 82 degrees. A
+/// larger load gives this one's shape.
 inline constexpr double kMaxCantileverLoad = 5.0;
 
-/// The bent cantilever for the load parameter alpha = F l^2 / (2 EI) of (5.16), at least zero.
+/// Returns the bent cantilever for the load parameter alpha = F l^2 / (2 EI) of (5.16), at least
+/// zero.
 Cantilever BendCantilever(double alpha) noexcept;
 
-/// Distance of wrist and tip of a shaft of length `length` bent by F = F_p/EI (1/m^2, either sign)
-/// at `a` from the wrist: two cantilevers back to back, rooted at the port (5.14)-(5.21). The
-/// thesis adds their reaches (5.19), which holds for a = L/2; here their unequal deflections count
-/// too.
+/// Returns the distance (m) of wrist and tip of a shaft of length `length` (m) bent by F = F_p/EI
+/// (1/m^2, either sign) at `a` (m) from the wrist: two cantilevers back to back, rooted at the port
+/// (5.14)-(5.21). The thesis adds their reaches (5.19), which holds for a = L/2; here their unequal
+/// deflections count too.
 double BentChord(double F, double a, double length) noexcept;
 
 }  // namespace flextip

@@ -6,10 +6,10 @@
 
 namespace flextip {
 
-/// Solves with a growing part (0 to 1) of a scaled load of size `load`: `guess(part)` starts the
-/// first solve, `newton(part, x)` improves `x` and returns its iterations, 0 where it failed (the
-/// step is then halved). The iterations of all, `failed` for each that failed; 0 where none
-/// arrived, with `x` undefined.
+/// Solves with a growing part (0 to 1) of a scaled load of size `load`. `guess(part)` starts the
+/// first solve. `newton(part, x)` improves `x` and returns its iterations, or 0 where it failed;
+/// the step is then halved. Returns the iterations of all solves, counting `failed` for each that
+/// failed; 0 where the full load was not reached, with `x` undefined.
 template <class Unknowns, class Guess, class Newton>
 int InLoadSteps(double load, int failed, Unknowns& x, Guess guess, Newton newton) {
   constexpr int kMaxLoadSteps = 60;

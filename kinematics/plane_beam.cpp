@@ -7,7 +7,7 @@
 namespace flextip {
 namespace {
 
-// Port height and its derivative at `a` for a load that obeys `law`.
+// Returns the port's height and its derivative at `a`, for a load that obeys `law`.
 struct PortHeight {
   double y, dy_da;
 };
@@ -18,8 +18,8 @@ PortHeight PortHeightUnder(const PlaneBeamProblem& problem, double a) {
   return {BeamPortHeight(F, a, L), BeamPortHeightRate(F, a, L, problem.law)};
 }
 
-// (3.28) for `a`: the root of a^2 + y^2 - distance^2 nearest `distance`, by Newton's method kept
-// inside a bracket. The function is below zero at 0 and not below it at `distance`.
+// Solves (3.28) for `a`: the root of a^2 + y^2 - distance^2 nearest `distance`, by Newton's method
+// kept inside a bracket. The function is below zero at 0 and not below it at `distance`.
 double SolvePortPlace(const PlaneBeamProblem& problem, double distance) {
   double low = 0.0, high = distance, a = distance;
   for (int i = 0; i < 100; ++i) {

@@ -12,13 +12,13 @@
 
 namespace flextip {
 
-/// (3.1): height of the beam at `x` (m).
+/// Returns the height of the beam at `x` (m), (3.1).
 double BeamHeight(double F, double a, double length, double x) noexcept;
-/// (3.2): its slope dy/dx.
+/// Returns the slope dy/dx of the beam at `x`, (3.2).
 double BeamSlope(double F, double a, double length, double x) noexcept;
-/// (3.10): its height at the port.
+/// Returns the height of the beam at the port (m), (3.10).
 double BeamPortHeight(double F, double a, double length) noexcept;
-/// d y_m(a) / d a while the port slides along the shaft under the load law.
+/// Returns d y_m(a) / d a while the port slides along the shaft under the load law.
 double BeamPortHeightRate(double F, double a, double length, BeamLoadLaw law) noexcept;
 
 struct PlaneBeamProblem {
@@ -41,12 +41,12 @@ struct PlaneBeam {
   bool IsUsable() const { return status == BeamStatus::kOk; }
 };
 
-/// The beam through a given wrist and port, bent by a given load. Of several solutions (loads with
-/// F_t L^2/EI > 12, where no beam applies) the one nearest the straight shaft. kNoPort where the
-/// shaft does not reach the port, or the wrist is on it.
+/// Solves the beam through a given wrist and port, bent by a given load. Of several solutions
+/// (loads with F_t L^2/EI > 12, where no beam applies), takes the one nearest the straight shaft.
+/// The status is kNoPort where the shaft does not reach the port, or the wrist is on it.
 PlaneBeam SolvePlaneBeam(const PlaneBeamProblem& problem) noexcept;
 
-/// d tip / d wrist of a beam with its chord at the angle `phi`, 0 < a < length.
+/// Returns d tip / d wrist (2x2) of a beam with its chord at the angle `phi` (rad), 0 < a < length.
 Eigen::Matrix2d PlaneBeamJacobian(double F, double a, double length, double phi,
                                   BeamLoadLaw law) noexcept;
 

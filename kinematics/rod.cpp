@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "kinematics/load_steps.h"
 #include "kinematics/rod_flow.h"
@@ -44,8 +45,8 @@ struct RodSolver::Scaled {
   }
 };
 
-/// The whole rod for given unknowns: states at the port and at the wrist, and what is left of the
-/// conditions (port - wrist, no moment at the wrist, no force along the shaft at the port).
+/// The whole rod for given unknowns: states at port and wrist, and the residual of the conditions
+/// (port - wrist, no moment at the wrist, no force along the shaft at the port).
 struct RodSolver::Evaluation {
   RodFlow<9> port, wrist;
   Eigen::Matrix<double, 3, 2> turn_basis;
@@ -84,8 +85,9 @@ bool AdvanceTipStretch(const Eigen::Vector3d& t_tip, const Eigen::Matrix<double,
   return true;
 }
 
-/// From the port (state `flow`) `length` towards the wrist. Moving the port along the shaft moves
-/// the jump of the internal force, which shows as an initial change of the moment's derivative.
+/// Carries `flow` from the port by `length` towards the wrist. Moving the port along the shaft
+/// moves the jump of the internal force, which shows as an initial change of the moment's
+/// derivative.
 bool AdvanceWristStretch(const Eigen::Vector3d& n_beyond, const Eigen::Vector3d& r,
                          const Eigen::Vector3d& q, double length, RodFlow<9>& flow) {
   RodForce<9> force;
@@ -155,7 +157,7 @@ void RodSolver::Evaluate(const Scaled& scaled, const Unknowns& x, Evaluation& e)
   e.ok = e.residual.allFinite() && e.derivative.allFinite();
 }
 
-/// The states follow the unknowns to first order: what is left out is of the order of the squared
+/// Moves the states with the unknowns to first order. The rest is of the order of the squared
 /// correction, below rounding where the residual is below kNearlyThere.
 void RodSolver::Evaluation::Correct(const Vector6& dx) {
   for (RodFlow<9>* flow : {&port, &wrist}) {
@@ -184,7 +186,7 @@ int RodSolver::Newton(const Scaled& scaled, Unknowns& x, Evaluation& e) {
     if (size < kConverged) return i;
     if (i > 4 && size > 0.9 * last) return 0;  // it should converge quadratically by now
     last = size;
-    Vector6 dx = -e.derivative.leftCols<6>().partialPivLu().solve(e.residual);
+    Vector6 dx = -Lu(e.derivative.leftCols<6>()).Solve(e.residual);
     if (!dx.allFinite()) return 0;
     const double turn = dx.head<2>().norm();
     if (turn > kMaxTurn) dx *= kMaxTurn / turn;
@@ -260,7 +262,7 @@ void RodSolver::Keep(const RodProblem& problem, const Unknowns& x, const Evaluat
   dR.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / L;
   dR.block<3, 3>(0, 3) = -Eigen::Matrix3d::Identity() / L;
   dR.rightCols<3>() = e.derivative.rightCols<3>() * (L * L / problem.bending_stiffness_Nm2);
-  dx_ = -e.derivative.leftCols<6>().partialPivLu().solve(dR);
+  dx_ = -Lu(e.derivative.leftCols<6>()).Solve(dR);
 }
 
 RodSection RodSolver::MakeSection(const RodFlow<9>& flow, const RodSection* tip, double s_m) const {

@@ -1,6 +1,6 @@
 // The exact statics of an inextensible Kirchhoff rod with a circular section: pinned at the wrist,
 // sliding through a frictionless port that pushes only sideways, loaded at the tip by a force and
-// along its length by its weight (docs/models.md, model 3):
+// along its length by its weight (docs/method/models.md, model 3):
 //   p' = t,  t' = kappa x t,  n' = -q,  m' = n x t,  kappa = m / EI.
 #pragma once
 
@@ -17,7 +17,7 @@ struct RodProblem {
   Eigen::Vector3d p_port = Eigen::Vector3d::Zero();
   Eigen::Vector3d f_tip = Eigen::Vector3d::Zero();     ///< force on the tip (N)
   Eigen::Vector3d q_weight = Eigen::Vector3d::Zero();  ///< force per length on the shaft (N/m)
-  /// Above -2 and below 2: the stiffness is EI (1 + taper (s / L - 1/2)), s from the wrist.
+  /// Taper of the stiffness, EI (1 + taper (s / L - 1/2)), s from the wrist; above -2 and below 2.
   /// RodSolver takes 0 only.
   double stiffness_taper = 0.0;
 };
@@ -30,7 +30,7 @@ enum class RodStatus : std::uint8_t {
 };
 const char* Name(RodStatus status);
 
-/// Derivatives of a vector with respect to wrist position, port position and tip force.
+/// Derivatives of a vector by wrist position, port position and tip force (3x9).
 using RodDerivative = Eigen::Matrix<double, 3, 9>;  // columns: d/dp_wrist, d/dp_port, d/df_tip
 
 /// The rod at one place: position, unit tangent, internal moment of the part beyond on the part
@@ -57,10 +57,10 @@ struct RodState {
   Eigen::Vector3d f_wrist = Eigen::Vector3d::Zero();  ///< of the wrist on the shaft (N)
 
   bool IsUsable() const { return status == RodStatus::kOk; }
-  /// d tip / d wrist with the tip force held constant.
+  /// Returns d tip / d wrist (3x3) with the tip force held constant.
   Eigen::Matrix3d J_tip_wrist() const { return tip.dp.leftCols<3>(); }
-  /// d tip / d wrist when the load follows the tip: `stiffness` = df_tip/dp_tip (N/m, negative
-  /// definite for tissue that pushes back).
+  /// Returns d tip / d wrist (3x3) when the load follows the tip: `stiffness` = df_tip/dp_tip (3x3,
+  /// N/m, negative definite for tissue that pushes back).
   Eigen::Matrix3d J_tip_wrist(const Eigen::Matrix3d& stiffness) const;
 };
 
@@ -71,14 +71,14 @@ struct RodFlow;
 /// Allocates nothing.
 class RodSolver {
  public:
-  /// The equilibrium with its derivatives. Tries a warm start, then a cold one with the load
-  /// applied in steps; `RodState::status` says how it ended.
+  /// Returns the equilibrium with its derivatives. Tries a warm start, then a cold one with the
+  /// load applied in steps. `RodState::status` says how that ended.
   RodState Solve(const RodProblem& problem);
 
-  /// The last solved rod at `s_m` from the wrist (0 <= s_m <= length); needs IsUsable().
+  /// Returns the last solved rod at `s_m` from the wrist (m, 0 <= s_m <= length). Needs IsUsable().
   RodSection Section(double s_m) const;
 
-  /// Forget the last equilibrium: the next solve starts from the straight shaft.
+  /// Forgets the last equilibrium: the next solve starts from the straight shaft.
   void Reset() { warm_ = false; }
 
  private:
@@ -94,13 +94,13 @@ class RodSolver {
 
   static Unknowns StraightGuess(const Scaled& scaled);
   static void Evaluate(const Scaled& scaled, const Unknowns& x, Evaluation& e);
-  /// The number of evaluations it took; 0 where it did not converge.
+  /// Returns the number of evaluations; 0 where the iteration did not converge.
   static int Newton(const Scaled& scaled, Unknowns& x, Evaluation& e);
   static int SolveCold(const Scaled& scaled, Unknowns& x, Evaluation& e);
   int SolveWarm(const RodProblem& problem, const Scaled& scaled, Unknowns& x, Evaluation& e) const;
   void Keep(const RodProblem& problem, const Unknowns& x, const Evaluation& e);
   void FillState(const Evaluation& e, RodState& state);
-  /// From scaled to SI; `tip` is null for the tip itself.
+  /// Turns a scaled state into SI; `tip` is null for the tip itself.
   RodSection MakeSection(const RodFlow<9>& flow, const RodSection* tip, double s_m) const;
 
   // The last equilibrium: a warm start for the next, and what Section() walks along.

@@ -15,7 +15,7 @@
 namespace flextip {
 
 /// State at one place: unit tangent t (towards the tip), internal moment m, and P, the vector from
-/// here to the tip; with the derivatives of each with respect to `C` parameters.
+/// here to the tip, with the derivatives of each by `C` parameters.
 template <int C>
 struct RodFlow {
   using Derivative = Eigen::Matrix<double, 3, C, C == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
@@ -56,7 +56,8 @@ inline void ExpandState(const Eigen::Vector3d& n0, const Eigen::Vector3d& q, Ser
   }
 }
 
-/// How far the series may be trusted: where its last two terms reach the tolerance.
+/// Returns the length over which the series may be trusted: up to where its last two terms reach
+/// the tolerance.
 inline double TrustedLength(const Series& t, const Series& m) {
   double h = 1e300;
   for (const int k : {kOrder - 1, kOrder}) {
@@ -102,8 +103,8 @@ struct Coefficient {
   Coefficient operator*(double f) const { return {f * x, f * y, f * z}; }
 };
 
-/// One step of the derivatives' columns from `first` on: dt' = dt x m + t x dm,
-/// dm' = dt x n + t x dn.
+/// Makes one step of the derivatives' columns from `first` on: dt' = dt x m + t x dm, dm' = dt x n
+/// + t x dn.
 template <int C>
 void StepDerivativeBlock(const RodForce<C>& force, const Series& t, const Series& m, double h,
                          int first, RodFlow<C>& flow) {
@@ -136,8 +137,8 @@ void StepDerivativeBlock(const RodForce<C>& force, const Series& t, const Series
 
 }  // namespace rod_flow_internal
 
-/// Carries `flow` over `length`; false where that takes more than a bounded number of steps (a
-/// load far beyond buckling). `force.n0` ends as the force at the far end.
+/// Carries `flow` over `length`. Returns false where that takes more than a bounded number of steps
+/// (a load far beyond buckling). `force.n0` ends as the force at the far end.
 template <int C>
 bool Advance(double length, RodForce<C>& force, RodFlow<C>& flow) {
   using namespace rod_flow_internal;

@@ -24,8 +24,8 @@ struct StraightShaft {
   bool IsUsable() const { return status == StraightStatus::kOk; }
 };
 
-/// The straight shaft of length `length_m` from `p_wrist` through `p_port` (all m, one frame).
-/// Anything but kOk leaves the other members at their defaults.
+/// Solves the straight shaft of length `length_m` from `p_wrist` through `p_port` (all m, one
+/// frame). With any other status than kOk, the other members stay at their defaults.
 StraightShaft SolveStraight(const Eigen::Vector3d& p_wrist, const Eigen::Vector3d& p_port,
                             double length_m) noexcept;
 

@@ -1,13 +1,12 @@
 #include "pipeline/estimate_recording.h"
 
-#include "pipeline/measurements_at.h"
+#include "pipeline/sensor_readings.h"
 
 namespace flextip {
 
 Series<ShaftEstimate> EstimateRecording(
-    const Recording& recording, const EstimatorOptions& options, InstrumentModel* model,
+    const Recording& recording, InstrumentEstimator& estimator, InstrumentModel* model,
     const std::function<void(std::size_t, std::size_t)>& progress) {
-  ShaftEstimator estimator(options);
   const std::vector<TimeNs> times = EstimationTimes(recording);
   Series<ShaftEstimate> estimates;
   Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();

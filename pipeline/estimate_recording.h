@@ -4,15 +4,16 @@
 #include <functional>
 
 #include "estimation/instrument_model.h"
-#include "estimation/shaft_estimator.h"
+#include "pipeline/instrument_estimator.h"
 #include "recording/recording.h"
 
 namespace flextip {
 
-/// `model`, where there is one, says how instrument and sensors differ from their data; the
-/// recording's streams are taken as they are stamped. `progress` is told how many of all are done.
+/// Returns the estimates at all times of the wrist and the tip, by `estimator`, which is new.
+/// `model`: how instrument and sensors differ from their data; null: as their data say. The streams
+/// are taken as they are stamped. `progress` is told how many of all times are done.
 Series<ShaftEstimate> EstimateRecording(
-    const Recording& recording, const EstimatorOptions& options, InstrumentModel* model = nullptr,
+    const Recording& recording, InstrumentEstimator& estimator, InstrumentModel* model = nullptr,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
 }  // namespace flextip

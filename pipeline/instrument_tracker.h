@@ -1,29 +1,50 @@
-// The tracker with what wrist and shaft model expect, and with the tip beyond the collar.
+// Follows the instrument's tip in pictures: the tracker of tags, told by wrist and shaft model
+// where to look, and the bending of the shaft beyond the collar.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "kinematics/tip_bending.h"
+#include "pipeline/sensor_readings.h"
 #include "pipeline/tip_predictor.h"
-#include "recording/frames/frame_sets.h"
 #include "recording/recording.h"
 #include "vision/tracking/tip_tracker.h"
 
 namespace flextip {
 
-class TipFollower {
- public:
-  /// `recording` must outlive this. The model is used where `with_model` and the wrist was
-  /// recorded. Where the load is known (load0), the shaft bends beyond the collar.
-  TipFollower(const Recording& recording, const TrackerOptions& options, bool with_model);
+struct InstrumentTrackerSetup {
+  Instrument instrument;
+  Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();  ///< the port as registered
+  Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();
+  std::vector<CameraCalibration> cameras;  ///< one, or both eyes
+  TagCollar collar;
+  TrackerOptions tracker;
+  bool with_model = true;  ///< expect the tip by wrist and shaft model
+};
 
-  TipTrack Follow(const FrameSet& frames);
+/// Returns the instrument and cameras of `recording`, which has cam0 and tags0. The model is used
+/// where `with_model` and the wrist was recorded.
+InstrumentTrackerSetup TrackerSetupOf(const Recording& recording,
+                                      const TrackerOptions& options = {}, bool with_model = true);
+
+class InstrumentTracker {
+ public:
+  /// Throws InputError for a camera or a collar that cannot be used.
+  explicit InstrumentTracker(const InstrumentTrackerSetup& setup);
+
+  /// Finds the tip in the pictures of one instant, one a camera (null: that camera has none).
+  /// `readings` of that instant; their tip is not looked at. Where the load was measured, the shaft
+  /// bends beyond the collar. Throws InputError where a picture's size is not the camera's.
+  TipTrack Follow(std::span<const Image* const> pictures, TimeNs t_ns,
+                  const SensorReadings& readings);
 
   /// What is needed to go on in another run. A run that is to give the same results must have asked
   /// for it after the same frames: the model's solvers start afresh there.
   std::string State();
-  /// Throws InputError where `state` is not of a follower with the same options.
+  /// Throws InputError where `state` is not of a tracker with the same options.
   void SetState(const std::string& state);
 
  private:
@@ -33,12 +54,11 @@ class TipFollower {
     Pose T_EE;
     Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in R
   };
-  Bend BendAt(TimeNs t_ns, const Pose& T_RE) const;
+  Bend BendUnder(const std::optional<Sample<LoadMeasurement>>& load, const Pose& T_RE) const;
 
-  const Recording* recording_;
   FreeEnd beyond_collar_;
   TipTracker tracker_;
-  std::optional<TipModel> model_;
+  std::optional<TipPredictor> model_;
 };
 
 }  // namespace flextip

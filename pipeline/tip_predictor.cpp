@@ -3,27 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
-#include "pipeline/measurements_at.h"
 
 namespace flextip {
 namespace {
 
-using Matrix6 = TipModel::Matrix6;
+using Matrix6 = TipPredictor::Matrix6;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kUnknownRoll_rad = 3.0;
 constexpr double kRollModel_rad = 0.01;  // the shaft's own twist, and a collar's play
 
-EstimatorOptions Options(const Recording& recording, const TipModelOptions& options) {
-  EstimatorOptions o;
-  o.instrument = recording.instrument;
-  o.p_RP = recording.p_RP;
-  o.gravity_m_s2 = recording.gravity_m_s2;
-  o.port_prior_m = options.port_prior_m;
-  o.force_prior_units = options.force_prior_units;
-  o.estimate_tissue = false;
-  return o;
+EstimatorOptions Options(EstimatorOptions estimator, const TipPredictorOptions& options) {
+  estimator.force_prior_units = options.force_prior_units;
+  estimator.estimate_tissue = false;
+  return estimator;
 }
 
 double ForceUnit(const Instrument& instrument) {
@@ -35,7 +30,7 @@ void AddRoll(const Eigen::Vector3d& axis, double sd_rad, Matrix6& covariance) {
 }
 
 /// Errors in any direction, a part of those stated.
-void Loosen(const TipModelOptions& options, Matrix6& covariance) {
+void Loosen(const TipPredictorOptions& options, Matrix6& covariance) {
   const double square = options.loose * options.loose;
   const double turn = square * covariance.topLeftCorner<3, 3>().trace() +
                       options.direction_error_rad * options.direction_error_rad;
@@ -49,7 +44,7 @@ TipPrediction Join(const TipPrediction& a, const TipPrediction& b) {
   Vector6 difference;
   difference << LogRotation(b.T_RE.R * a.T_RE.R.transpose()), b.T_RE.p - a.T_RE.p;
   const Matrix6 sum = a.covariance + b.covariance;
-  const Matrix6 gain = sum.ldlt().solve(a.covariance).transpose();
+  const Matrix6 gain = Ldlt(sum).Solve(a.covariance).transpose();
   const Vector6 step = gain * difference;
   TipPrediction joined;
   joined.T_RE = {ExpRotation(step.head<3>()) * a.T_RE.R, a.T_RE.p + step.tail<3>()};
@@ -60,25 +55,19 @@ TipPrediction Join(const TipPrediction& a, const TipPrediction& b) {
 
 }  // namespace
 
-TipModel::TipModel(const Recording& recording, const TipModelOptions& options)
-    : recording_(recording),
-      options_(options),
-      estimator_options_(Options(recording, options)),
+TipPredictor::TipPredictor(const Instrument& instrument, const Eigen::Vector3d& p_RP,
+                           const Eigen::Vector3d& gravity_m_s2, const TipPredictorOptions& options)
+    : options_(options),
+      estimator_options_(Options(
+          EstimatorOptionsFor(instrument, p_RP, gravity_m_s2, options.port_prior_m), options)),
       blind_(estimator_options_),
       seeing_(estimator_options_),
-      drift_variance_N2_s_(
-          std::pow(options.force_drift_units * ForceUnit(recording.instrument), 2)) {}
+      drift_variance_N2_s_(std::pow(options.force_drift_units * ForceUnit(instrument), 2)) {}
 
-std::optional<Measurements> TipModel::MeasuredAt(TimeNs t_ns) const {
-  auto z = MeasurementsAt(recording_, t_ns);
-  if (z) z->tip.reset();
-  return z;
-}
-
-std::optional<TipModel::RodTip> TipModel::SolveRod(const Measurements& z,
-                                                   const Eigen::Vector3d& p_RP,
-                                                   const Eigen::Vector3d& f_tip_N) {
-  const Instrument& instrument = recording_.instrument;
+std::optional<TipPredictor::RodTip> TipPredictor::SolveRod(const Measurements& z,
+                                                           const Eigen::Vector3d& p_RP,
+                                                           const Eigen::Vector3d& f_tip_N) {
+  const Instrument& instrument = estimator_options_.instrument;
   ShaftProblem problem;
   problem.rod.rod.length_m = instrument.length_m;
   problem.rod.rod.bending_stiffness_Nm2 = instrument.bending_stiffness_Nm2;
@@ -86,7 +75,7 @@ std::optional<TipModel::RodTip> TipModel::SolveRod(const Measurements& z,
   problem.rod.rod.p_wrist = z.p_RW;
   problem.rod.rod.p_port = p_RP;
   problem.rod.rod.f_tip = f_tip_N;
-  problem.rod.rod.q_weight = instrument.mass_per_length_kg_m * recording_.gravity_m_s2;
+  problem.rod.rod.q_weight = instrument.mass_per_length_kg_m * estimator_options_.gravity_m_s2;
   const ShaftRodState rod = rod_.Solve(problem);
   if (!rod.IsUsable()) return {};
   RodTip tip;
@@ -101,7 +90,7 @@ std::optional<TipModel::RodTip> TipModel::SolveRod(const Measurements& z,
   return tip;
 }
 
-std::optional<TipPrediction> TipModel::FromSensors(const Measurements& z, bool& sees_load) {
+std::optional<TipPrediction> TipPredictor::FromSensors(const Measurements& z, bool& sees_load) {
   const ShaftEstimate estimate = blind_.Update(z);
   sees_load = estimate.status == EstimateStatus::kOk;
   const bool fits =
@@ -113,7 +102,8 @@ std::optional<TipPrediction> TipModel::FromSensors(const Measurements& z, bool& 
     Eigen::Matrix<double, 9, 1> sd;
     sd << Eigen::Vector3d::Constant(z.wrist_position_noise_m),
         Eigen::Vector3d::Constant(options_.port_prior_m),
-        Eigen::Vector3d::Constant(options_.force_prior_units * ForceUnit(recording_.instrument));
+        Eigen::Vector3d::Constant(options_.force_prior_units *
+                                  ForceUnit(estimator_options_.instrument));
     parameters = sd.cwiseAbs2().asDiagonal();
   }
   TipPrediction prediction{tip->T_RE, tip->J * parameters * tip->J.transpose()};
@@ -125,25 +115,26 @@ std::optional<TipPrediction> TipModel::FromSensors(const Measurements& z, bool& 
   return prediction;
 }
 
-void TipModel::Seen(TimeNs t_ns, const Pose& T_RE, const Matrix6& covariance) {
+void TipPredictor::Seen(TimeNs t_ns, const std::optional<Measurements>& measured, const Pose& T_RE,
+                        const Matrix6& covariance) {
   sight_.reset();
-  auto z = MeasuredAt(t_ns);
-  if (!z) return;
+  if (!measured) return;
+  Measurements z = *measured;
   TipObservation tip;
   tip.status = TipStatus::kOk;
   tip.p_RE = T_RE.p;
   tip.covariance_m2 = covariance.bottomRightCorner<3, 3>();
   tip.d_RE = T_RE.R.col(0);
   const Eigen::Matrix3d turn = Skew(T_RE.R.col(0));
-  z->tip_direction_noise_rad =
+  z.tip_direction_noise_rad =
       std::sqrt(0.5 * (turn * covariance.topLeftCorner<3, 3>() * turn.transpose()).trace());
-  z->tip = tip;
-  const ShaftEstimate estimate = seeing_.Update(*z);
+  z.tip = tip;
+  const ShaftEstimate estimate = seeing_.Update(z);
   if (estimate.status == EstimateStatus::kNotConverged ||
       estimate.status == EstimateStatus::kBadInput) {
     return;
   }
-  const auto rod = SolveRod(*z, estimate.model.p_RP, estimate.model.f_tip_N);
+  const auto rod = SolveRod(z, estimate.model.p_RP, estimate.model.f_tip_N);
   if (!rod) return;
   sight_ = Sight{t_ns,
                  T_RE,
@@ -155,7 +146,7 @@ void TipModel::Seen(TimeNs t_ns, const Pose& T_RE, const Matrix6& covariance) {
   LearnDrift();
 }
 
-void TipModel::Sight::VisitState(StateText& state) {
+void TipPredictor::Sight::VisitState(StateText& state) {
   state(t_ns);
   state(T_RE);
   state(covariance);
@@ -165,7 +156,7 @@ void TipModel::Sight::VisitState(StateText& state) {
   state(parameters);
 }
 
-void TipModel::VisitState(StateText& state) {
+void TipPredictor::VisitState(StateText& state) {
   blind_.Reset();
   seeing_.Reset();
   rod_.Reset();
@@ -176,7 +167,7 @@ void TipModel::VisitState(StateText& state) {
 
 // How far the load has wandered in the last third of a second, by what that does to the tip: the
 // force along the shaft, which hardly moves it, is hardly known.
-void TipModel::LearnDrift() {
+void TipPredictor::LearnDrift() {
   constexpr double kStep_s = 0.3, kMemory = 0.8;
   const double seconds = earlier_ ? 1e-9 * static_cast<double>(sight_->t_ns - earlier_->t_ns) : 0.0;
   if (earlier_ && seconds >= 0.0 && seconds < kStep_s) return;
@@ -189,7 +180,7 @@ void TipModel::LearnDrift() {
   earlier_ = Load{sight_->t_ns, sight_->f_tip_N};
 }
 
-std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements& z) {
+std::optional<TipPrediction> TipPredictor::FromSight(TimeNs t_ns, const Measurements& z) {
   const auto now = SolveRod(z, sight_->p_RP, sight_->f_tip_N);
   if (!now) return {};
   const RodTip& then = sight_->rod;
@@ -209,7 +200,8 @@ std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements
     P += wrist_variance * tip->J.leftCols<3>() * tip->J.leftCols<3>().transpose();
   }
   const double seconds = 1e-9 * std::abs(static_cast<double>(t_ns - sight_->t_ns));
-  const double least_N = options_.least_force_drift_units * ForceUnit(recording_.instrument);
+  const double least_N =
+      options_.least_force_drift_units * ForceUnit(estimator_options_.instrument);
   const double drift_N2 = std::max(drift_variance_N2_s_, least_N * least_N) * seconds;
   P += drift_N2 * now->J.rightCols<3>() * now->J.rightCols<3>().transpose();
   const double turned = options_.way_error * LogRotation(turn).norm();
@@ -221,12 +213,14 @@ std::optional<TipPrediction> TipModel::FromSight(TimeNs t_ns, const Measurements
   return prediction;
 }
 
-std::optional<TipPrediction> TipModel::Predict(TimeNs t_ns) {
-  const auto z = MeasuredAt(t_ns);
-  if (!z) return {};
+std::optional<TipPrediction> TipPredictor::Predict(TimeNs t_ns,
+                                                   const std::optional<Measurements>& measured) {
+  if (!measured) return {};
+  Measurements z = *measured;
+  z.tip.reset();
   bool sees_load = false;
-  const auto by_sensors = FromSensors(*z, sees_load);
-  const auto by_sight = sight_ ? FromSight(t_ns, *z) : std::nullopt;
+  const auto by_sensors = FromSensors(z, sees_load);
+  const auto by_sight = sight_ ? FromSight(t_ns, z) : std::nullopt;
   if (by_sight && by_sensors && sees_load) return Join(*by_sight, *by_sensors);
   return by_sight ? by_sight : by_sensors;
 }

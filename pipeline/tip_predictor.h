@@ -5,18 +5,18 @@
 #include <Eigen/Dense>
 #include <optional>
 
+#include "core/instrument.h"
 #include "core/pose.h"
 #include "core/state_text.h"
 #include "core/time_series.h"
 #include "estimation/shaft_estimator.h"
-#include "recording/recording.h"
 #include "vision/tracking/tip_prediction.h"
 
 namespace flextip {
 
-struct TipModelOptions {
+struct TipPredictorOptions {
   double force_prior_units = 0.5;  ///< sd of an unknown tip force, in EI / L^2
-  double port_prior_m = 0.0005;
+  double port_prior_m = kPortRegistration_m;
   /// The load's own wandering, a random walk: sd in EI / L^2 after one second. What the seen tips
   /// say of it takes over, but for a floor.
   double force_drift_units = 0.1, least_force_drift_units = 0.03;
@@ -33,24 +33,27 @@ struct TipModelOptions {
 /// far the model has moved since, with the port and the load that the seen tip told, joined by the
 /// covariances with what the other sensors say where those see the load. The carried pose is sharp
 /// at first and loses to load drift and distance.
-class TipModel {
+class TipPredictor {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-  /// `recording` must outlive this; its vision0 is not looked at.
-  explicit TipModel(const Recording& recording, const TipModelOptions& options = {});
+  /// `p_RP`: the port as registered. All in R.
+  TipPredictor(const Instrument& instrument, const Eigen::Vector3d& p_RP,
+               const Eigen::Vector3d& gravity_m_s2, const TipPredictorOptions& options = {});
 
-  /// Empty where the wrist was not sampled around `t_ns` or the shaft has no equilibrium there.
+  /// Returns the tip expected at `t_ns`, when the sensors said `measured`, whose tip is not looked
+  /// at. Empty where the wrist was not measured or the shaft has no equilibrium there.
   /// The roll about the shaft follows the wrist's quaternion without twist; where that was not
   /// measured, it stays where it was seen, and nothing is known of it before.
-  std::optional<TipPrediction> Predict(TimeNs t_ns);
+  std::optional<TipPrediction> Predict(TimeNs t_ns, const std::optional<Measurements>& measured);
 
   /// What the frames so far have left. The solvers start afresh after it, whether it is written or
   /// read: so both go on alike.
   void VisitState(StateText& state);
 
-  /// The tip was seen; `covariance` of (dw, dp) in R as in TipPrediction.
-  void Seen(TimeNs t_ns, const Pose& T_RE, const Matrix6& covariance);
+  /// Learns from a tip that was seen; `covariance` of (dw, dp) in R as in TipPrediction.
+  void Seen(TimeNs t_ns, const std::optional<Measurements>& measured, const Pose& T_RE,
+            const Matrix6& covariance);
 
  private:
   using Matrix6x9 = Eigen::Matrix<double, 6, 9>;
@@ -84,15 +87,13 @@ class TipModel {
   };
 
   void LearnDrift();
-  std::optional<Measurements> MeasuredAt(TimeNs t_ns) const;
   std::optional<RodTip> SolveRod(const Measurements& z, const Eigen::Vector3d& p_RP,
                                  const Eigen::Vector3d& f_tip_N);
   /// `sees_load`: the sensors narrow the load down.
   std::optional<TipPrediction> FromSensors(const Measurements& z, bool& sees_load);
   std::optional<TipPrediction> FromSight(TimeNs t_ns, const Measurements& z);
 
-  const Recording& recording_;
-  TipModelOptions options_;
+  TipPredictorOptions options_;
   EstimatorOptions estimator_options_;
   ShaftEstimator blind_, seeing_;
   ShaftRod rod_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "recording/streams/series_file.h"
 #include "recording/text/csv.h"
 #include "recording/truth.h"
@@ -41,7 +42,7 @@ void TipScore::Add(const TipObservation& tip, const Eigen::Vector3d& p_RE, const
   constexpr double kChi2Of95Percent = 7.815;  // three degrees of freedom
   const Eigen::Vector3d e_R = tip.p_RE - p_RE;
   const double along = (T_RC.R.transpose() * e_R).z();
-  const double normalised = e_R.dot(tip.covariance_m2.ldlt().solve(e_R));
+  const double normalised = MahalanobisSquared(e_R, tip.covariance_m2);
   squared_m2 += e_R.squaredNorm();
   squared_depth_m2 += along * along;
   nees += normalised;

@@ -5,11 +5,13 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # Compiler, libraries and tools as Debian 12 names them.
 BUILD_PACKAGES=(
   cmake ninja-build g++ libopencv-dev libapriltag-dev libeigen3-dev libceres-dev libcli11-dev
-  libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libgtest-dev libgmock-dev
-  libbenchmark-dev libgeos-dev libboost-dev
+  libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev
 )
 # What the tests and checks need beside these; opencv-doc holds real chessboard pictures.
-TEST_PACKAGES=(clang clang-format clang-tidy opencv-doc)
+# Tests, bench and flextip-reproduce: libgtest-dev, libgmock-dev, libbenchmark-dev, libgeos-dev.
+TEST_PACKAGES=(
+  clang clang-format clang-tidy opencv-doc libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev
+)
 NODE_PACKAGES=(nodejs npm)
 
 say() { printf '\033[1m==> %s\033[0m\n' "$*"; }

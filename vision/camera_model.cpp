@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 
 namespace flextip {
 namespace {
@@ -50,8 +51,8 @@ CameraModel::CameraModel(const CameraCalibration& calibration) : calibration_(ca
   max_angle_rad_ = FindMaxAngle();
 }
 
-// The derivative of the radial part of the distortion: of r f(r) by r = tan(angle), or, for the
-// equidistant model, of theta_d by theta.
+// Returns the derivative of the radial part of the distortion: of r f(r) by r = tan(angle), or, for
+// the equidistant model, of theta_d by theta.
 double CameraModel::RadialDerivative(double r) const {
   const double r2 = r * r;
   if (calibration_.distortion == Distortion::kEquidistant) {
@@ -87,7 +88,7 @@ double CameraModel::FindMaxAngle() const {
   return good;
 }
 
-// OpenCV's rational model with tangential and thin-prism terms, on the plane z = 1.
+// Distorts by OpenCV's rational model with tangential and thin-prism terms, on the plane z = 1.
 Eigen::Vector2d CameraModel::Distort(const Eigen::Vector2d& m, Eigen::Matrix2d* J) const {
   if (calibration_.distortion == Distortion::kEquidistant) return DistortEquidistant(m, J);
   const double x = m.x(), y = m.y(), r2 = m.squaredNorm();
@@ -109,7 +110,8 @@ Eigen::Vector2d CameraModel::Distort(const Eigen::Vector2d& m, Eigen::Matrix2d* 
           y * f + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y + r2 * (k_[10] + k_[11] * r2)};
 }
 
-// Kannala and Brandt: theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8).
+// Distorts by Kannala and Brandt: theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4
+// theta^8).
 Eigen::Vector2d CameraModel::DistortEquidistant(const Eigen::Vector2d& m,
                                                 Eigen::Matrix2d* J) const {
   const double r = m.norm();
@@ -180,7 +182,7 @@ std::optional<Eigen::Vector3d> CameraModel::Unproject(const Eigen::Vector2d& px)
   Eigen::Matrix2d J;
   Eigen::Vector2d error = Distort(m, &J) - d;
   for (int i = 0; i < 100 && error.norm() > 1e-16; ++i) {  // Newton with halved steps
-    const Eigen::Vector2d step = J.fullPivLu().solve(error);
+    const Eigen::Vector2d step = FullLu(J).Solve(error);
     double scale = 1.0;
     Eigen::Vector2d next = m, next_error = error;
     for (; scale > 1e-6; scale *= 0.5) {

@@ -11,23 +11,23 @@ namespace flextip {
 /// The mathematics of a CameraCalibration. Pixel (0,0) is the centre of the top-left pixel.
 class CameraModel {
  public:
-  /// Throws InputError where the number of coefficients does not fit the distortion model, a
-  /// number is not finite or a focal length is not positive.
+  /// Makes the model of `calibration`. Throws InputError where the number of coefficients does not
+  /// fit the distortion model, a number is not finite, or a focal length is not positive.
   explicit CameraModel(const CameraCalibration& calibration);
 
-  /// The pixel of the point `x_C` (m, camera frame), with the 2x3 derivative d(px)/d(x_C) in `J`
-  /// where asked. Empty for points behind the camera (z <= 0) or beyond the angle up to which the
-  /// distortion is one-to-one.
+  /// Returns the pixel of the point `x_C` (m, camera frame), and in `J`, if given, the 2x3
+  /// derivative d(px)/d(x_C). Empty for points behind the camera (z <= 0) and beyond MaxAngle().
   std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& x_C,
                                          Eigen::Matrix<double, 2, 3>* J = nullptr) const;
 
-  /// The unit ray in the camera frame that is seen at `px`, to 1e-9 px. Empty where no ray within
-  /// the valid angle is seen there.
+  /// Returns the unit ray in C that is seen at `px`, to 1e-9 px. Empty where no ray within
+  /// MaxAngle() is seen there.
   std::optional<Eigen::Vector3d> Unproject(const Eigen::Vector2d& px) const;
 
   const CameraCalibration& Calibration() const { return calibration_; }
 
-  /// The largest angle from the optical axis (rad) at which the distortion is one-to-one.
+  /// Returns the largest angle from the optical axis (rad) up to which the distortion is
+  /// one-to-one.
   double MaxAngle() const { return max_angle_rad_; }
 
  private:

@@ -1,4 +1,4 @@
-// A map's scenario file: what `flextip map` runs (keys in docs/maps.md).
+// A map's scenario file: what `flextip map` runs (keys in docs/usage/maps.md).
 #pragma once
 
 #include <filesystem>

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 namespace {
 
@@ -58,7 +60,7 @@ std::optional<VectorN<N>> TrueShaft<N>::WristFor(const VectorN<N>& p_tip) {
     if (!lever) return std::nullopt;
     const VectorN<N> missing = p_tip - lever->p_tip;
     if (missing.norm() < kClose_m) return p_wrist;
-    const VectorN<N> step = lever->J_tip_wrist.partialPivLu().solve(missing);
+    const VectorN<N> step = Lu(lever->J_tip_wrist).Solve(missing);
     const double distance = (instrument_.p_port - *p_wrist).norm();
     const double longest =
         0.5 * std::min(distance, std::max(instrument_.shaft_m - distance, 0.02 * distance));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <utility>
 
 namespace flextip {
@@ -41,6 +42,15 @@ void Progress::Update(std::size_t done, const std::string& remark) {
   }
   fmt::print(stderr, "\r{} {}\033[K", line, remark);
   std::fflush(stderr);
+}
+
+std::function<void(std::size_t, std::size_t)> ProgressFunction(const std::string& label,
+                                                               bool quiet) {
+  return
+      [label, quiet, bar = std::shared_ptr<Progress>()](std::size_t done, std::size_t all) mutable {
+        if (!bar) bar = std::make_shared<Progress>(label, all, quiet);
+        bar->Update(done);
+      };
 }
 
 }  // namespace flextip

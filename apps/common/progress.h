@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace flextip {
@@ -29,5 +30,10 @@ class Progress {
   bool visible_;
   Clock::time_point start_, last_drawn_;
 };
+
+/// Returns a function for libraries that report (done, all); the bar appears with its first call
+/// and goes with the function.
+std::function<void(std::size_t done, std::size_t all)> ProgressFunction(const std::string& label,
+                                                                        bool quiet);
 
 }  // namespace flextip

@@ -244,7 +244,7 @@ void AddMap(CLI::App& app, AppContext& context) {
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->footer(
       "Example:\n  flextip map testdata/maps/thesis.yaml -o maps\n"
-      "The keys of a scenario are explained in docs/maps.md.\n");
+      "The keys of a scenario are explained in docs/usage/maps.md.\n");
   OnRun(*command, context, [options, &context] { RunMap(*options, context); });
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/linear_algebra.h"
 #include "vision/camera_model.h"
 
 namespace flextip {
@@ -92,10 +93,9 @@ void DrawTip(cv::Mat& canvas, const CameraModel& model, const TipObservation& ti
   const auto px = model.Project(T_CR * tip.p_RE, &J);
   if (!px || !Near(*px, canvas)) return;
   const Eigen::Matrix<double, 2, 3> J_R = J * T_CR.R;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(J_R * tip.covariance_m2 *
-                                                            J_R.transpose());
-  const Eigen::Vector2d half = (kChi2Of99Percent * axes.eigenvalues().cwiseMax(0)).cwiseSqrt();
-  const Eigen::Vector2d minor_axis = axes.eigenvectors().col(0);
+  const SymmetricEigen axes(J_R * tip.covariance_m2 * J_R.transpose());
+  const Eigen::Vector2d half = (kChi2Of99Percent * axes.values.cwiseMax(0)).cwiseSqrt();
+  const Eigen::Vector2d minor_axis = axes.vectors.col(0);
   const double angle_deg = std::atan2(minor_axis.y(), minor_axis.x()) * 180 / M_PI;
   const cv::Scalar color = ColorOf(tip.status);
   const Eigen::Vector2d cross(3, 0), up(0, 3);

@@ -54,10 +54,10 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
                  TrackTables& tables, bool quiet) {
   using Clock = std::chrono::steady_clock;
   const CameraCalibration& camera = input.recording.cam0->calibration;
-  TipFollower follower(input.recording, options.tracker, !options.no_model);
+  InstrumentTracker tracker(TrackerSetupOf(input.recording, options.tracker, !options.no_model));
   const long before = tables.sums.frames;
   if (before > 0) {
-    follower.SetState(tables.state());
+    tracker.SetState(tables.state());
     input.frames->Skip(static_cast<std::size_t>(before));
   }
   const auto count = static_cast<long>(input.frames->Count());
@@ -71,10 +71,11 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
     const auto start = Clock::now();
     const std::optional<FrameSet> set = input.frames->Next();
     if (!set) break;
-    const TipTrack track = follower.Follow(*set);
+    const TipTrack track =
+        tracker.Follow(set->Pointers(), set->t_ns, ReadingsAt(input.recording, set->t_ns));
     tables.sums.seconds += std::chrono::duration<double>(Clock::now() - start).count();
     tables.Add(set->t_ns, track, truth ? ValueAt(*truth, set->t_ns) : std::nullopt, camera.T_RC);
-    if (tables.IsSaveDue()) tables.Save(follower.State());
+    if (tables.IsSaveDue()) tables.Save(tracker.State());
     overlay.Add(*set, track, camera, *input.recording.tags0);
     progress.Update(static_cast<std::size_t>(tables.sums.frames - before), Remark(track));
   }

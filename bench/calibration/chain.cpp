@@ -10,8 +10,9 @@
 #include "bench/calibration/chain_commands.h"
 #include "bench/calibration/chain_picture.h"
 #include "bench/tool.h"
+#include "core/linear_algebra.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 struct Arguments {
@@ -46,8 +47,7 @@ class RunMean {
 
 /// Length of the larger axis.
 double Longest(const Eigen::Matrix2d& squares) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(squares, Eigen::EigenvaluesOnly);
-  return std::sqrt(eigen.eigenvalues()[1]);
+  return std::sqrt(SymmetricEigenvalues(squares)[1]);
 }
 
 /// Of one part over all repetitions.
@@ -88,7 +88,7 @@ nlohmann::json Nees(const std::vector<ChainRun>& runs) {
     const auto& errors = run.error_V.at("total");
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) {
-      const double squared = errors[i].dot(run.claimed_V[i].ldlt().solve(errors[i]));
+      const double squared = errors[i].dot(Ldlt(run.claimed_V[i]).Solve(errors[i]));
       sum += squared / 3 / static_cast<double>(errors.size());
       count += (squared < kInside95 ? 1.0 : 0.0) / static_cast<double>(errors.size());
     }
@@ -143,9 +143,10 @@ void Run(Arguments& a) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  return flextip::RunTool<flextip::Arguments>(
-      argc, argv, "Whether the chain's error budget is true", flextip::AddOptions, flextip::Run);
+  return flextip::bench::RunTool<flextip::bench::Arguments>(
+      argc, argv, "Whether the chain's error budget is true", flextip::bench::AddOptions,
+      flextip::bench::Run);
 }

@@ -9,11 +9,12 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/rotation.h"
 #include "recording/calibrations/file.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/csv.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,7 +163,7 @@ ChainRun RunChain(const ChainScene& scene, const fs::path& program, const fs::pa
   for (std::size_t i = 0; i < times.size(); ++i) {
     const TimeNs t_ns = times[i];
     const Eigen::Matrix3d R_VR =
-        Eigen::Quaterniond::FromTwoVectors(T_CR * truth[i], Eigen::Vector3d::UnitZ()) * T_CR.R;
+        RotationWithoutTwist((T_CR * truth[i]).normalized(), Eigen::Vector3d::UnitZ()) * T_CR.R;
     run.error_V["pixels"].emplace_back(R_VR * (base.at(t_ns) - truth[i]));
     for (const auto& [part, tips] : with) {
       const Eigen::Vector3d& from = part == "total" ? truth[i] : base.at(t_ns);
@@ -174,4 +175,4 @@ ChainRun RunChain(const ChainScene& scene, const fs::path& program, const fs::pa
   return run;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -9,7 +9,7 @@
 
 #include "bench/calibration/chain_scene.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// What one repetition came to. Lists have an entry for each frame of the work. V is C turned so
 /// that z is the line of sight to the tip.
@@ -30,4 +30,4 @@ inline constexpr const char* kChainParts[] = {"pixels", "lens", "hand-eye", "tip
 ChainRun RunChain(const ChainScene& scene, const std::filesystem::path& program,
                   const std::filesystem::path& folder, unsigned seed);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr double kLeft = 90, kBar = 11, kRow = 34, kPanel = 260, kTop = 52, kGap = 40;
@@ -57,4 +57,4 @@ std::string ChainSvg(const std::vector<ChainPart>& parts) {
   return svg + "</svg>\n";
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace flextip {
+namespace flextip::bench {
 
 /// In mm: the standard deviation claimed, the RMS error, and what of that is the same in every
 /// repetition.
@@ -22,4 +22,4 @@ struct ChainPart {
 /// A pair of bars for each part, along the line of sight and across.
 std::string ChainSvg(const std::vector<ChainPart>& parts);
 
-}  // namespace flextip
+}  // namespace flextip::bench

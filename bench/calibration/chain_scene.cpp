@@ -11,7 +11,7 @@
 #include "recording/recording_writer.h"
 #include "vision/camera_model.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -259,4 +259,4 @@ std::vector<TimeNs> ChainScene::WorkTimes() const {
   return times;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

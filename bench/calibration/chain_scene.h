@@ -12,7 +12,7 @@
 #include "core/time_series.h"
 #include "simulation/render/laparoscope.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// A picture of the collar without noise, and where the collar's frame is in it.
 struct ChainView {
@@ -56,4 +56,4 @@ class ChainScene {
   std::vector<ChainView> tip_, work_;
 };
 
-}  // namespace flextip
+}  // namespace flextip::bench

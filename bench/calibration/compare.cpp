@@ -1,5 +1,5 @@
 // Calibrations of one camera from the same corners: OpenCV's and this program's; mrcal's figures
-// are added by calibration_mrcal.py.
+// are added by mrcal.py.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@
 #include "calibration/uncertainty/projection_uncertainty.h"
 #include "core/error.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 struct Arguments {
@@ -32,7 +32,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.footer(
       "Example:\n"
       "  flextip_calibration_compare left*.jpg --board chessboard:9x6:0.025 --distance 0.4 -o out\n"
-      "  bench/calibration_mrcal.py out\n");
+      "  bench/calibration/mrcal.py out\n");
 }
 
 using Calibrate = std::function<CalibrationAnswer(const CornerSet&)>;
@@ -122,10 +122,10 @@ void Run(Arguments& a) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  return flextip::RunTool<flextip::Arguments>(argc, argv,
-                                              "Calibrations of one camera from the same corners",
-                                              flextip::AddOptions, flextip::Run);
+  return flextip::bench::RunTool<flextip::bench::Arguments>(
+      argc, argv, "Calibrations of one camera from the same corners", flextip::bench::AddOptions,
+      flextip::bench::Run);
 }

@@ -10,7 +10,7 @@
 #include "calibration/boards/chessboard.h"
 #include "core/error.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -116,4 +116,4 @@ CornerSet HalfOf(const CornerSet& set, int half) {
   return part;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -8,7 +8,7 @@
 #include "calibration/boards/board.h"
 #include "core/camera.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// Pictures of one board by one camera, as corners.
 struct CornerSet {
@@ -31,4 +31,4 @@ CornerSet ReadCorners(const std::filesystem::path& folder);
 /// Every other view that has corners, from the first (`half` 0) or the second (1) on.
 CornerSet HalfOf(const CornerSet& set, int half);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -16,10 +16,11 @@
 #include "bench/calibration/hand_eye_data.h"
 #include "bench/tool.h"
 #include "calibration/hand_eye/fit.h"
+#include "core/linear_algebra.h"
 #include "vision/camera_model.h"
 #include "vision/tags/reprojection.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 struct Arguments {
@@ -82,8 +83,8 @@ Pose BoardOf(const Poses& poses, const Pose& T_FC) {
     sum += T_KB.R;
     mean.p += T_KB.p / static_cast<double>(poses.T_RW.size());
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  mean.R = svd.matrixU() * svd.matrixV().transpose();
+  const Svd svd(sum);
+  mean.R = svd.U * svd.V.transpose();
   return mean;
 }
 
@@ -155,7 +156,7 @@ Eigen::Vector3d Triangulate(const Pose& T_21, const Eigen::Vector3d& ray1,
       T_21.R.row(1) - ray2.y() / ray2.z() * T_21.R.row(2);
   b << 0, 0, ray2.x() / ray2.z() * T_21.p.z() - T_21.p.x(),
       ray2.y() / ray2.z() * T_21.p.z() - T_21.p.y();
-  return A.colPivHouseholderQr().solve(b);
+  return LeastSquares(A, b);
 }
 
 // Upstream's measures over all views, the wrists as measured: RMS distance of the corners in the
@@ -298,11 +299,11 @@ void Run(Arguments& a) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  using flextip::Arguments;
-  return flextip::RunTool<Arguments>(
+  using flextip::bench::Arguments;
+  return flextip::bench::RunTool<Arguments>(
       argc, argv, "Hand-eye calibration beside OpenCV's",
       [](CLI::App& app, Arguments& a) {
         app.add_option("--scope", a.scope,
@@ -315,5 +316,5 @@ int main(int argc, char** argv) {
         app.add_option("--position-noise", a.position_noise_m, "Of the tracker (m)");
         app.add_flag("--refine-intrinsics", a.refine_intrinsics, "Focal lengths and centre too");
       },
-      flextip::Run);
+      flextip::bench::Run);
 }

@@ -12,7 +12,7 @@
 #include "recording/recording_writer.h"
 #include "vision/camera_model.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -193,4 +193,4 @@ FarBoards MakeFarBoards(int views, double distance_m, double tilt_rad, double co
   return far;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -8,7 +8,7 @@
 
 #include "calibration/hand_eye/hand_eye.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// The tracked laparoscope of scikit-surgerycalibration (text files in mm): R is the marker on the
 /// scope, W the one on the board, so the camera stands still in R. `inset`: a second board in the
@@ -33,4 +33,4 @@ struct FarBoards {
 FarBoards MakeFarBoards(int views, double distance_m, double tilt_rad, double corner_noise_px,
                         unsigned seed);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -8,7 +8,7 @@
 #include "vision/camera_model.h"
 #include "vision/tags/reprojection.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 int Flags(int terms) {
@@ -127,4 +127,4 @@ double FittedPosesRms(const CalibrationAnswer& answer, const CornerSet& set) {
   return std::sqrt(sum_px2 / corners);
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

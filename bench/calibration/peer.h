@@ -9,7 +9,7 @@
 #include "calibration/camera/choice.h"
 #include "calibration/camera/solution.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 struct CalibrationAnswer {
   CameraCalibration camera;
@@ -33,4 +33,4 @@ CalibrationAnswer CalibrateByFlextip(const CornerSet& set, const std::optional<L
 /// Root of the mean squared distance of all corners of `set`, each view's pose fitted to them.
 double FittedPosesRms(const CalibrationAnswer& answer, const CornerSet& set);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -1,6 +1,6 @@
 // Whether calibrations know how good they are: many from the same views with other noise, each
 // beside the truth in the units of its own standard deviations. mrcal's part is done by
-// calibration_mrcal.py --spread on the corners written here.
+// mrcal.py --spread on the corners written here.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr double kNoise_px = 0.15;
@@ -164,9 +164,10 @@ void Run(Arguments& a) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  return flextip::RunTool<flextip::Arguments>(
-      argc, argv, "Whether calibrations know how good they are", flextip::AddOptions, flextip::Run);
+  return flextip::bench::RunTool<flextip::bench::Arguments>(
+      argc, argv, "Whether calibrations know how good they are", flextip::bench::AddOptions,
+      flextip::bench::Run);
 }

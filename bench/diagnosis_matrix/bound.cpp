@@ -1,13 +1,14 @@
 #include "bench/diagnosis_matrix/bound.h"
 
 #include "bench/diagnosis_matrix/rival.h"
+#include "core/linear_algebra.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 Eigen::MatrixXd PosteriorCovariance(const Eigen::MatrixXd& H, const Eigen::VectorXd& prior_sd) {
   Eigen::MatrixXd M = prior_sd.asDiagonal() * H * prior_sd.asDiagonal();
   M.diagonal().array() += 1.0;
-  const Eigen::MatrixXd C = M.llt().solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
+  const Eigen::MatrixXd C = Llt(M).Inverse();
   return prior_sd.asDiagonal() * C * prior_sd.asDiagonal();
 }
 
@@ -27,4 +28,4 @@ std::vector<diagnosis::EffectFit> CramerRaoBounds(TrueModel& truth) {
   return bounds;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -7,7 +7,7 @@
 #include "bench/diagnosis_matrix/true_model.h"
 #include "diagnosis/diagnose.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// (H + diag(1 / prior_sd^2))^-1.
 Eigen::MatrixXd PosteriorCovariance(const Eigen::MatrixXd& H, const Eigen::VectorXd& prior_sd);
@@ -21,4 +21,4 @@ Eigen::MatrixXd PosteriorCovariance(const Eigen::MatrixXd& H, const Eigen::Vecto
 /// counts as white, as it does in the diagnosis. Empty where the model has no equilibrium.
 std::vector<diagnosis::EffectFit> CramerRaoBounds(TrueModel& truth);
 
-}  // namespace flextip
+}  // namespace flextip::bench

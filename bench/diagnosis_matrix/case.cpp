@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -36,7 +36,7 @@ bool IsOfSensor(const std::string& effect, const std::string& sensor) {
 class Planner {
  public:
   explicit Planner(const MatrixPlan& plan) : plan_(plan) {
-    effects_ = plan.effects.empty() ? hidden::CatalogueEffects() : plan.effects;
+    effects_ = plan.effects.empty() ? simulation::CatalogueEffects() : plan.effects;
   }
 
   std::vector<MatrixCase> Plan() {
@@ -152,4 +152,4 @@ std::string MakeHiddenCall(const MatrixCase& one) {
   return call;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

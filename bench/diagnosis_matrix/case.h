@@ -7,7 +7,7 @@
 
 #include "testdata/hidden/recording.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// One recording and one diagnosis of it.
 struct MatrixCase {
@@ -52,4 +52,4 @@ hidden::HiddenOptions HiddenOptionsOf(const MatrixCase& one);
 /// The call of flextip_make_hidden that makes the same recording.
 std::string MakeHiddenCall(const MatrixCase& one);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -4,7 +4,7 @@
 
 #include "bench/diagnosis_matrix/summary.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr std::array<const char*, 6> kOtherAnswers{
@@ -40,9 +40,9 @@ std::string RightColumn(const std::string& row, bool deleted) {
 }
 
 Confusion MakeConfusion(const std::string& title, const std::vector<const MatrixRecord*>& cases) {
-  Confusion confusion{title, {}, hidden::CatalogueEffects(), {}, {}};
+  Confusion confusion{title, {}, simulation::CatalogueEffects(), {}, {}};
   confusion.columns.insert(confusion.columns.end(), kOtherAnswers.begin(), kOtherAnswers.end());
-  EffectNames rows = hidden::CatalogueEffects();
+  EffectNames rows = simulation::CatalogueEffects();
   rows.insert(rows.end(), {"none", "two effects"});
   rows.insert(rows.end(), hidden::OtherForms().begin(), hidden::OtherForms().end());
   bool deleted = false;
@@ -114,4 +114,4 @@ std::vector<Confusion> LeaveOutConfusions(const std::vector<MatrixRecord>& recor
   return confusions;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Group = std::vector<const MatrixRecord*>;
@@ -276,4 +276,4 @@ std::vector<MatrixFigure> Figures(const std::vector<MatrixRecord>& records) {
   return FigureMaker(records).Make();
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

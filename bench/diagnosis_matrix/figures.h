@@ -6,7 +6,7 @@
 
 #include "bench/diagnosis_matrix/record.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// One figure over a group of cases.
 struct MatrixFigure {
@@ -19,4 +19,4 @@ struct MatrixFigure {
 /// In the order of printing; figures without cases are left out.
 std::vector<MatrixFigure> Figures(const std::vector<MatrixRecord>& records);
 
-}  // namespace flextip
+}  // namespace flextip::bench

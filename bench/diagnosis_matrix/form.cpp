@@ -4,7 +4,7 @@
 #include "diagnosis/replay/replay.h"
 #include "diagnosis/samples/sample_set.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 Separation MeasureForm(const Recording& with, int attempt, hidden::HiddenOptions options,
                        std::uint64_t seed) {
@@ -28,4 +28,4 @@ Separation MeasureForm(const Recording& with, int attempt, hidden::HiddenOptions
   return NearestKnown(rows.X.transpose() * rows.X, rows.X.transpose() * z, z.squaredNorm(), layout);
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

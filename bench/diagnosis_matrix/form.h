@@ -5,7 +5,7 @@
 #include "recording/recording.h"
 #include "testdata/hidden/recording.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// `with` is the recording made with `options` and `seed` at the draw `attempt`. Its signal is what
 /// changes when the same is made without the effects named there: same scene, tolerances and noise.
@@ -14,4 +14,4 @@ namespace flextip {
 Separation MeasureForm(const Recording& with, int attempt, hidden::HiddenOptions options,
                        std::uint64_t seed);
 
-}  // namespace flextip
+}  // namespace flextip::bench

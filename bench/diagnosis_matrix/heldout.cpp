@@ -3,9 +3,10 @@
 #include <cmath>
 
 #include "bench/diagnosis_matrix/rival.h"
+#include "core/linear_algebra.h"
 #include "diagnosis/search/hypotheses.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr int kFolds = 4;   // as MeasureHeldOut has them
@@ -19,7 +20,7 @@ struct Squares {
            std::size_t k) {
     if (!replay.Samples()[k].ok) return;
     const diagnosis::Rows sd = replay.RowNoise(k);
-    for (int r = 0; r < row::kCount; ++r) {
+    for (int r = 0; r < diagnosis::row::kCount; ++r) {
       if (!replay.Set().samples[k].present[r]) continue;
       sum += std::pow(residuals[k][r] / sd[r], 2);
       count += 1.0;
@@ -56,7 +57,7 @@ Eigen::VectorXd FitFree(const diagnosis::NormalSums& sums, const std::vector<int
   const Eigen::VectorXd left = sums.g - sums.H * theta, g = sd.asDiagonal() * left(free).eval();
   Eigen::MatrixXd M = sd.asDiagonal() * sums.H(free, free).eval() * sd.asDiagonal();
   M.diagonal().array() += 1.0;
-  theta(free) = sd.asDiagonal() * Eigen::VectorXd(M.llt().solve(g));
+  theta(free) = sd.asDiagonal() * Eigen::VectorXd(Llt(M).Solve(g));
   return theta;
 }
 
@@ -78,4 +79,4 @@ double TrueHeldOutError(TrueModel& truth,
   return squares.count > 0.0 ? std::sqrt(squares.sum / squares.count) : 0.0;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

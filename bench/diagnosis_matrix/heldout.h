@@ -9,7 +9,7 @@
 #include "bench/diagnosis_matrix/true_model.h"
 #include "diagnosis/evidence/linear_problem.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// `theta` with its entries `free` where they explain `sums` best, each with a normal prior about
 /// zero of standard deviation `prior_sd`; the others stay as they are.
@@ -28,4 +28,4 @@ Eigen::VectorXd FitFree(const diagnosis::NormalSums& sums, const std::vector<int
 double TrueHeldOutError(TrueModel& truth,
                         const std::array<double, diagnosis::kChannelCount>& noise_scale);
 
-}  // namespace flextip
+}  // namespace flextip::bench

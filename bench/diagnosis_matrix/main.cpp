@@ -15,7 +15,7 @@
 #include "core/error.h"
 #include "recording/text/text.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 struct Arguments {
@@ -38,7 +38,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({"known", "unknown"}));
   app.add_option("--effects", plan.effects, "Of singles and leave-outs; all where not given")
       ->delimiter(',')
-      ->check(CLI::IsMember(hidden::CatalogueEffects()));
+      ->check(CLI::IsMember(simulation::CatalogueEffects()));
   app.add_option("--seeds-per-cell", plan.seeds_per_cell, "Recordings for each cell")
       ->check(CLI::PositiveNumber);
   app.add_option("--healthy", plan.healthy, "Healthy recordings for each load")
@@ -152,9 +152,9 @@ void Run(Arguments& arguments) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  return flextip::RunTool(argc, argv, "How often the diagnosis finds what is hidden",
-                          flextip::AddOptions, flextip::Run);
+  return flextip::bench::RunTool(argc, argv, "How often the diagnosis finds what is hidden",
+                                 flextip::bench::AddOptions, flextip::bench::Run);
 }

@@ -6,13 +6,13 @@
 
 #include "bench/diagnosis_matrix/truth.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 /// As near to what was found as the same motion can be said.
-hidden::EffectParameters TruthNear(const hidden::HiddenRecording& hidden,
-                                   const diagnosis::EffectFit& fit) {
-  hidden::EffectParameters truth = TruthOf(hidden, fit.effect);
+simulation::EffectParameters TruthNear(const hidden::HiddenRecording& hidden,
+                                       const diagnosis::EffectFit& fit) {
+  simulation::EffectParameters truth = TruthOf(hidden, fit.effect);
   truth.erase("turn");                // the label has none: not judged
   if (fit.effect == "port_motion") {  // -a with phase + pi is the same motion
     const auto& value = fit.parameters.at(0).value;
@@ -35,7 +35,7 @@ std::vector<JudgedParameter> JudgeParameters(const hidden::HiddenRecording& hidd
   for (const diagnosis::EffectFit& fit : result.parameters) {
     const auto& present = hidden.label.present;
     if (std::find(present.begin(), present.end(), fit.effect) == present.end()) continue;
-    const hidden::EffectParameters truth = TruthNear(hidden, fit);
+    const simulation::EffectParameters truth = TruthNear(hidden, fit);
     for (const diagnosis::ReportedParameter& parameter : fit.parameters) {
       if (!truth.contains(parameter.name)) continue;
       const std::vector<double>& values = truth.at(parameter.name);
@@ -64,4 +64,4 @@ void SetBounds(const std::vector<diagnosis::EffectFit>& bounds,
   }
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -6,7 +6,7 @@
 #include "bench/diagnosis_matrix/record.h"
 #include "diagnosis/diagnose.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// Every number of the effects that are present, were found and are named by the label. Phases are
 /// compared modulo a turn, a breath in the sign that was found.
@@ -17,4 +17,4 @@ std::vector<JudgedParameter> JudgeParameters(const hidden::HiddenRecording& hidd
 void SetBounds(const std::vector<diagnosis::EffectFit>& bounds,
                std::vector<JudgedParameter>& parameters);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr int kCell = 30, kLeft = 190, kTop = 150, kTotal = 56, kTitle = 104, kGap = 30;
@@ -149,4 +149,4 @@ std::string ConfusionSvg(const std::vector<Confusion>& confusions, const std::st
   return svg + "</svg>\n";
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

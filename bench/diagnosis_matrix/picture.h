@@ -6,10 +6,10 @@
 
 #include "bench/diagnosis_matrix/summary.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// Panels one below the other, cells shaded by their share of the row with the count in them; the
 /// right answer's cell is framed.
 std::string ConfusionSvg(const std::vector<Confusion>& confusions, const std::string& title);
 
-}  // namespace flextip
+}  // namespace flextip::bench

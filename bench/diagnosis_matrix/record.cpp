@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "recording/text/text.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 // Every member under its own name.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MatrixCase, part, effects, drawn, size, load, left_out, without,
@@ -68,4 +68,4 @@ std::vector<MatrixRecord> ReadRecords(const std::filesystem::path& file) {
   return records;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -9,7 +9,7 @@
 #include "bench/diagnosis_matrix/case.h"
 #include "bench/diagnosis_matrix/rival.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 using EffectNames = std::vector<std::string>;
 
@@ -73,4 +73,4 @@ std::string JsonLine(const MatrixRecord& record);
 /// Throws InputError for any other line that is none.
 std::vector<MatrixRecord> ReadRecords(const std::filesystem::path& file);
 
-}  // namespace flextip
+}  // namespace flextip::bench

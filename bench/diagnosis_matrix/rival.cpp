@@ -4,10 +4,11 @@
 #include <limits>
 #include <utility>
 
+#include "core/linear_algebra.h"
 #include "diagnosis/evidence/probabilities.h"
 #include "diagnosis/search/hypotheses.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr double kWidth = 3.0;  // of a present effect's prior, in typical sizes
@@ -26,7 +27,7 @@ class Explanations {
     const Eigen::VectorXd sd = WidePrior(layout_, present);
     Eigen::MatrixXd M = sd.asDiagonal() * H_ * sd.asDiagonal();
     M.diagonal().array() += 1.0;
-    const Eigen::VectorXd sg = sd.asDiagonal() * g_, x = M.llt().solve(sg);
+    const Eigen::VectorXd sg = sd.asDiagonal() * g_, x = Llt(M).Solve(sg);
     bool possible = true;
     double without = std::numeric_limits<double>::infinity();
     for (const int b : present) {
@@ -90,7 +91,7 @@ Eigen::MatrixXd WithoutGeneric(const diagnosis::LinearProblem& problem,
   Eigen::MatrixXd M = generic_sd.asDiagonal() * H.bottomRightCorner(G, G) * generic_sd.asDiagonal();
   M.diagonal().array() += 1.0;
   const Eigen::MatrixXd B = generic_sd.asDiagonal() * H.bottomLeftCorner(G, P);
-  return H.topLeftCorner(P, P) - B.transpose() * M.llt().solve(B);
+  return H.topLeftCorner(P, P) - B.transpose() * Llt(M).Solve(B);
 }
 
 Separation NearestRival(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
@@ -114,4 +115,4 @@ Separation NearestKnown(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, doub
                  SimpleFirst(diagnosis::KnownHypotheses(layout.EffectCount(), true)), 0.0, layout);
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

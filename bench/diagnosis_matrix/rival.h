@@ -8,7 +8,7 @@
 
 #include "diagnosis/evidence/linear_problem.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 struct Separation {
   /// Twice the log likelihood that the true hypothesis has over its nearest rival, in data without
@@ -47,4 +47,4 @@ Separation NearestRival(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
 Separation NearestKnown(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, double c,
                         const diagnosis::ParameterLayout& layout);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -18,7 +18,7 @@
 #include "diagnosis/diagnose.h"
 #include "recording/recording_reader.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 /// A folder that is gone when this is.
@@ -167,4 +167,4 @@ MatrixRecord RunMatrixCase(const MatrixCase& one) {
   return record;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -5,7 +5,7 @@
 #include "diagnosis/samples/noise_level.h"
 #include "diagnosis/search/hypothesis_fit.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 Separation MeasureSeparation(TrueModel& truth) {
   if (!truth.not_shown.empty())
@@ -25,4 +25,4 @@ Separation MeasureSeparation(TrueModel& truth) {
                       truth.parameters.theta, truth.layout, truth.present);
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -4,7 +4,7 @@
 #include "bench/diagnosis_matrix/rival.h"
 #include "bench/diagnosis_matrix/true_model.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// Of the one or two effects that are present. The model is linearised about the label's true
 /// parameters of all effects; sensors, motion, load and noise are the recording's. Effects of which
@@ -12,4 +12,4 @@ namespace flextip {
 /// the model has no equilibrium.
 Separation MeasureSeparation(TrueModel& truth);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 nlohmann::json ConfusionJson(const Confusion& confusion) {
@@ -83,4 +83,4 @@ std::string Misses(const std::vector<MatrixRecord>& records) {
   return (text.empty() ? "no misses\n" : text) + NotSeparable(records);
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -6,7 +6,7 @@
 
 #include "bench/diagnosis_matrix/figures.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 std::string FigureTable(const std::vector<MatrixFigure>& figures);
 
@@ -30,4 +30,4 @@ std::string SummaryJson(const std::vector<MatrixFigure>& figures,
 /// misses.txt: each case whose verdict is not its label, with what makes its recording again.
 std::string Misses(const std::vector<MatrixRecord>& records);
 
-}  // namespace flextip
+}  // namespace flextip::bench

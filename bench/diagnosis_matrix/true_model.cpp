@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace flextip {
+namespace flextip::bench {
 
 TrueModel::TrueModel(const Recording& recording, const hidden::HiddenRecording& hidden)
     : samples(diagnosis::MakeSampleSet(recording, "recording")),
@@ -29,4 +29,4 @@ bool TrueModel::StandAtTruth() {
   return true;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

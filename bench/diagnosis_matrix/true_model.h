@@ -7,7 +7,7 @@
 #include "bench/diagnosis_matrix/truth.h"
 #include "diagnosis/replay/replay.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// Its form is the diagnosis's own, not the plant's: the plant's friction is a contact, its EM
 /// field has a rest of higher order, its breath further overtones. What that leaves is not noise.
@@ -33,4 +33,4 @@ class TrueModel {
   diagnosis::Replay replay;
 };
 
-}  // namespace flextip
+}  // namespace flextip::bench

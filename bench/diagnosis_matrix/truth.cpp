@@ -4,14 +4,14 @@
 
 #include "diagnosis/effects/port_motion.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Values = std::vector<std::vector<double>>;
 
 /// An effect's reported parameters: what `truth` does not name is zero.
 Values ReportedTruth(const std::vector<diagnosis::ReportedParameter>& reported,
-                     const hidden::EffectParameters& truth) {
+                     const simulation::EffectParameters& truth) {
   Values values;
   for (const diagnosis::ReportedParameter& parameter : reported) {
     const auto found = truth.find(parameter.name);
@@ -23,7 +23,7 @@ Values ReportedTruth(const std::vector<diagnosis::ReportedParameter>& reported,
 
 /// The same with each number changed that `label` does not name.
 Values WithOthersChanged(Values values, const std::vector<diagnosis::ReportedParameter>& reported,
-                         const hidden::EffectParameters& label) {
+                         const simulation::EffectParameters& label) {
   for (std::size_t i = 0; i < values.size(); ++i)
     for (double& value : values[i])
       if (!label.contains(reported[i].name)) value += 1.0;
@@ -32,8 +32,9 @@ Values WithOthersChanged(Values values, const std::vector<diagnosis::ReportedPar
 
 }  // namespace
 
-hidden::EffectParameters TruthOf(const hidden::HiddenRecording& hidden, const std::string& effect) {
-  hidden::EffectParameters truth = hidden.label.parameters.at(effect);
+simulation::EffectParameters TruthOf(const hidden::HiddenRecording& hidden,
+                                     const std::string& effect) {
+  simulation::EffectParameters truth = hidden.label.parameters.at(effect);
   if (effect == "self_weight") {  // drawn beyond the nominal one
     truth["mass_per_length_kg_m"][0] += hidden.recording.instrument.mass_per_length_kg_m;
   }
@@ -47,7 +48,7 @@ TrueParameters TrueTheta(const hidden::HiddenRecording& hidden,
   TrueParameters all{Eigen::VectorXd::Zero(layout.Size()), {}};
   for (int b = 0; b < static_cast<int>(layout.Blocks().size()); ++b) {
     const auto& block = layout.Blocks()[b];
-    hidden::EffectParameters truth, label;
+    simulation::EffectParameters truth, label;
     if (!block.nuisance) {
       truth = TruthOf(hidden, block.effect->Name());
       label = hidden.label.parameters.at(block.effect->Name());
@@ -69,4 +70,4 @@ TrueParameters TrueTheta(const hidden::HiddenRecording& hidden,
   return all;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

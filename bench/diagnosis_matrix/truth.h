@@ -8,10 +8,11 @@
 #include "diagnosis/model/parameter_layout.h"
 #include "testdata/hidden/recording.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// Of one effect of the catalogue, present or not. The mass per length is all of it.
-hidden::EffectParameters TruthOf(const hidden::HiddenRecording& hidden, const std::string& effect);
+simulation::EffectParameters TruthOf(const hidden::HiddenRecording& hidden,
+                                     const std::string& effect);
 
 /// The label as a point of the diagnosis's parameters.
 struct TrueParameters {
@@ -26,4 +27,4 @@ struct TrueParameters {
 /// Sets the layout's breathing frequency to the label's.
 TrueParameters TrueTheta(const hidden::HiddenRecording& hidden, diagnosis::ParameterLayout& layout);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -4,10 +4,11 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/linear_algebra.h"
 #include "vision/camera_model.h"
 #include "vision/tags/reprojection.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Eigen::Vector2d;
@@ -161,7 +162,7 @@ Eigen::Matrix<double, 6, 1> PixelModel::Step(const Image& grey) const {
              (grey.data[static_cast<std::size_t>(pixels[static_cast<std::size_t>(r)])] - mean[r]);
   }
   const auto of_pose = J.leftCols<6>();
-  return (of_pose.transpose() * of_pose).ldlt().solve(of_pose.transpose() * off);
+  return Ldlt(of_pose.transpose() * of_pose).Solve(of_pose.transpose() * off);
 }
 
 PixelModels ModelPixels(const simulation::Laparoscope& laparoscope,
@@ -186,4 +187,4 @@ TipBounds BoundTip(const PixelModels& models) {
           models.all.Bound(false)};
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

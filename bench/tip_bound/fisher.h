@@ -7,7 +7,7 @@
 #include "bench/tip_bound/scene.h"
 #include "core/image.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// The Cramer-Rao bound of (dw, dp) as in MovePose, and of the tip's position: sqrt of the trace.
 struct PoseBound {
@@ -51,4 +51,4 @@ PixelModels ModelPixels(const simulation::Laparoscope& laparoscope,
 
 TipBounds BoundTip(const PixelModels& models);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -3,12 +3,13 @@
 #include <functional>
 #include <random>
 
+#include "core/linear_algebra.h"
 #include "simulation/render/film.h"
 #include "vision/outline/contour.h"
 #include "vision/tags/reprojection.h"
 #include "vision/tracking/tip_tracker.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Eigen::Vector3d;
@@ -17,15 +18,15 @@ constexpr int kWarmUp = 10;
 constexpr TimeNs kPeriod_ns = 33'333'333;
 
 struct Sums {
-  TipScore score;
+  TipErrors score;
   Vector3d error = Vector3d::Zero();
   void Add(const Vector3d& e, const Eigen::Matrix3d& covariance) {
     ++score.found;
     error += e;
     score.rms_m += e.squaredNorm();
-    score.nees += e.dot(covariance.ldlt().solve(e));
+    score.nees += MahalanobisSquared(e, covariance);
   }
-  TipScore Done() {
+  TipErrors Done() {
     if (score.found == 0) return score;
     score.rms_m = std::sqrt(score.rms_m / score.found);
     score.nees /= score.found;
@@ -51,9 +52,9 @@ class Exposures {
 
 }  // namespace
 
-TipScore MeasureTracker(const simulation::Laparoscope& laparoscope,
-                        const simulation::LaparoscopeOptions& options, const TagCollar& collar,
-                        const TubeShape& tube, const BoundScene& scene, int frames) {
+TipErrors MeasureTracker(const simulation::Laparoscope& laparoscope,
+                         const simulation::LaparoscopeOptions& options, const TagCollar& collar,
+                         const TubeShape& tube, const BoundScene& scene, int frames) {
   const Exposures exposures(laparoscope, options, tube, scene);
   TipTracker tracker(BoundCamera(), collar);
   Sums sums;
@@ -67,9 +68,9 @@ TipScore MeasureTracker(const simulation::Laparoscope& laparoscope,
   return sums.Done();
 }
 
-TipScore MeasureContour(const simulation::Laparoscope& laparoscope,
-                        const simulation::LaparoscopeOptions& options, const TubeShape& tube,
-                        const BoundScene& scene, int frames) {
+TipErrors MeasureContour(const simulation::Laparoscope& laparoscope,
+                         const simulation::LaparoscopeOptions& options, const TubeShape& tube,
+                         const BoundScene& scene, int frames) {
   const Exposures exposures(laparoscope, options, tube, scene);
   ContourOptions contour_options;
   contour_options.blur_px = options.blur_sigma_px;
@@ -91,4 +92,4 @@ TipScore MeasureContour(const simulation::Laparoscope& laparoscope,
   return sums.Done();
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -3,10 +3,10 @@
 
 #include "bench/tip_bound/scene.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// Over the frames in which the estimator gave a tip.
-struct TipScore {
+struct TipErrors {
   int frames = 0, found = 0;
   double rms_m = 0.0;   ///< of the tip's position against the truth
   double bias_m = 0.0;  ///< the mean error's length
@@ -15,13 +15,13 @@ struct TipScore {
 
 /// The tracker (TipTracker::Track) on `frames` noisy pictures of the scene; a few more before them
 /// are not counted.
-TipScore MeasureTracker(const simulation::Laparoscope& laparoscope,
-                        const simulation::LaparoscopeOptions& options, const TagCollar& collar,
-                        const TubeShape& tube, const BoundScene& scene, int frames);
+TipErrors MeasureTracker(const simulation::Laparoscope& laparoscope,
+                         const simulation::LaparoscopeOptions& options, const TagCollar& collar,
+                         const TubeShape& tube, const BoundScene& scene, int frames);
 
 /// The outline alone (ShaftContour::Fit), from predictions some pixels off.
-TipScore MeasureContour(const simulation::Laparoscope& laparoscope,
-                        const simulation::LaparoscopeOptions& options, const TubeShape& tube,
-                        const BoundScene& scene, int frames);
+TipErrors MeasureContour(const simulation::Laparoscope& laparoscope,
+                         const simulation::LaparoscopeOptions& options, const TubeShape& tube,
+                         const BoundScene& scene, int frames);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -6,7 +6,7 @@
 
 #include "core/rotation.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 using Eigen::Vector3d;
 
@@ -82,4 +82,4 @@ std::vector<BoundScene> DrawScenes(int count, std::uint64_t seed) {
   return scenes;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

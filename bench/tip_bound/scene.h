@@ -12,7 +12,7 @@
 #include "simulation/render/laparoscope.h"
 #include "vision/outline/tube_geometry.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 struct BoundScene {
   Pose T_CE;
@@ -34,4 +34,4 @@ simulation::ShaftCurve CurveOf(const BoundScene& scene, const TubeShape& tube);
 /// picture's plane, any roll.
 std::vector<BoundScene> DrawScenes(int count, std::uint64_t seed);
 
-}  // namespace flextip
+}  // namespace flextip::bench

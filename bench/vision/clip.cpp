@@ -5,7 +5,7 @@
 
 #include "simulation/render/laparoscope.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr double kDepth_m = 0.11, kBehindTip_m = 0.03, kCircle_px = 120, kGamma = 2.2;
@@ -57,4 +57,4 @@ Clip MakeClip(const ClipCase& one, int frames) {
   return clip;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -7,7 +7,7 @@
 #include "bench/vision/scene.h"
 #include "core/image.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 struct ClipCase {
   std::string name;
@@ -35,4 +35,4 @@ Pose ClipPose(const ClipCase& one, int frame);
 TagCollar ClipCollar(const ClipCase& one);
 Clip MakeClip(const ClipCase& one, int frames);
 
-}  // namespace flextip
+}  // namespace flextip::bench

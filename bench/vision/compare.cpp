@@ -13,14 +13,15 @@
 #include "bench/vision/still.h"
 #include "recording/text/text.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 struct Arguments {
   int pictures = 12;
   std::uint64_t seed = 1;
   std::vector<double> gammas = {2.2, 1.0};
-  std::filesystem::path data, visp = "/usr/share/visp-images-data/ViSP-images", out;
+  std::filesystem::path recordings = "testdata/recordings", data;
+  std::filesystem::path visp = "/usr/share/visp-images-data/ViSP-images", out;
   bool summarize = false;
 };
 
@@ -43,7 +44,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--pictures", a.pictures, "For each value of a sweep")->check(CLI::PositiveNumber);
   app.add_option("--seed", a.seed, "Another one gives other pictures");
   app.add_option("--gammas", a.gammas, "Of the video")->delimiter(',');
-  app.add_option("--data", a.data, "Folder with rendered_sample and apriltag_photos");
+  app.add_option("--recordings", a.recordings, "Folder with rendered (testdata/recordings)");
+  app.add_option("--data", a.data, "Folder with apriltag_photos");
   app.add_option("--visp", a.visp, "Folder of ViSP's images");
   app.add_flag("--summarize", a.summarize, "Only read cases.jsonl");
   app.add_option("-o,--out", a.out, "Folder for cases.jsonl, tables (compare.md) and SVGs")
@@ -207,9 +209,7 @@ void Run(Arguments& a) {
   std::filesystem::create_directories(a.out);
   Rows rows(a.out);
   if (!a.summarize) {
-    if (!a.data.empty()) {
-      for (const PictureSet& set : RenderedSample(a.data)) RunPictures(set, false, rows);
-    }
+    for (const PictureSet& set : RenderedPictures(a.recordings)) RunPictures(set, false, rows);
     for (const PictureSet& set : TagPictures(a.data, a.visp)) RunPictures(set, true, rows);
     RunSweeps(a, rows);
   }
@@ -217,9 +217,10 @@ void Run(Arguments& a) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  return flextip::RunTool(argc, argv, "Ways of seeing a tag collar compared on the same pictures",
-                          flextip::AddOptions, flextip::Run);
+  return flextip::bench::RunTool(argc, argv,
+                                 "Ways of seeing a tag collar compared on the same pictures",
+                                 flextip::bench::AddOptions, flextip::bench::Run);
 }

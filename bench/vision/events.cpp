@@ -5,7 +5,7 @@
 
 #include "bench/vision/sequence.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Eigen::Vector2d;
@@ -184,4 +184,4 @@ void AddEvent(const std::string& event, simulation::FrameRange frames, Draw& dra
   sequence.in_event.push_back(frames);
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -7,7 +7,7 @@
 #include "core/rotation.h"
 #include "vision/tags/collar_pose.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 // Squared distances of four corners, summed; the least of four orders where any will do.
@@ -96,4 +96,4 @@ PeerFigures PeerScore::Figures(const std::string& name) const {
   return f;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

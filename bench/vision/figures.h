@@ -8,7 +8,7 @@
 #include "bench/vision/peer.h"
 #include "vision/camera_model.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// What is known of a picture. Without a pose only corners are compared.
 struct PictureTruth {
@@ -55,4 +55,4 @@ class PeerScore {
   std::vector<double> tip_mm_, ms_;
 };
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -13,12 +13,13 @@
 #include "bench/tool.h"
 #include "bench/vision/score.h"
 #include "bench/vision/sequence.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "recording/text/text.h"
 #include "vision/outline/tube_geometry.h"
 #include "vision/tracking/tip_tracker.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 struct Arguments {
@@ -92,7 +93,7 @@ FrameScore ScoreFrame(const VisionSequence& s, int frame, const TipTrack& track)
   if (track.tip.status == TipStatus::kLost) return score;
   const Eigen::Vector3d e = track.tip.p_RE - T_RE.p;
   score.error_mm = 1e3 * e.norm();
-  score.nees = e.dot(track.tip.covariance_m2.ldlt().solve(e));
+  score.nees = MahalanobisSquared(e, track.tip.covariance_m2);
   if (track.tip.status == TipStatus::kOk) {
     score.turn_deg = LogRotation(track.T_RE.R * T_RE.R.transpose()).norm() * 180 / M_PI;
   }
@@ -211,9 +212,9 @@ void Run(Arguments& arguments) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  return flextip::RunTool(argc, argv, "How a tracker does on frames in which the tip hides",
-                          flextip::AddOptions, flextip::Run);
+  return flextip::bench::RunTool(argc, argv, "How a tracker does on frames in which the tip hides",
+                                 flextip::bench::AddOptions, flextip::bench::Run);
 }

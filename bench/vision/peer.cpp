@@ -7,7 +7,7 @@
 #include "vision/tags/collar_pose.h"
 #include "vision/tracking/tip_tracker.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 bool InCollar(const TagCollar& collar, int id) {
@@ -269,4 +269,4 @@ std::vector<std::unique_ptr<VisionPeer>> MakePeers(const CameraCalibration& came
   return peers;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -14,7 +14,7 @@
 #include "core/tag_collar.h"
 #include "vision/tags/detector.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// By id, in the order and with the pixel origin of TagDetection.
 using TagsFound = std::multimap<int, TagCorners>;
@@ -88,4 +88,4 @@ double TimeMs(Work&& work) {
   return now_ms() - start_ms;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

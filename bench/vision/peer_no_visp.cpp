@@ -1,7 +1,7 @@
 // For machines without ViSP.
 #include "bench/vision/peer.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 std::unique_ptr<VisionPeer> MakeVispPeer(const CameraCalibration&, const TagCollar&, double) {
   return nullptr;
@@ -10,4 +10,4 @@ std::unique_ptr<VispTracker> MakeVispTracker(const CameraCalibration&, const Tag
   return nullptr;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -15,7 +15,7 @@
 #include "vision/camera_model.h"
 #include "vision/tags/collar_pose.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 vpImage<unsigned char> ToVisp(const Image& grey) {
@@ -227,4 +227,4 @@ std::unique_ptr<VispTracker> MakeVispTracker(const CameraCalibration& camera,
   return std::make_unique<VispHybridTracker>(camera, collar);
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -10,7 +10,7 @@
 #include "recording/recording_reader.h"
 #include "recording/text/text.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,13 +64,12 @@ Image ReadGrey(const fs::path& file) {
   return image;
 }
 
-std::vector<PictureSet> RenderedSample(const fs::path& data) {
-  const fs::path folder = data / "rendered_sample";
-  if (!fs::exists(folder)) return {};
+std::vector<PictureSet> RenderedPictures(const fs::path& recordings) {
+  const fs::path folder = recordings / "rendered";
   const Recording recording = ReadRecording(folder).recording;
   PictureSet set{"rendered sample", recording.cam0->calibration, *recording.tags0, {}};
   std::map<TimeNs, Pose> truth;
-  std::ifstream in(data / "rendered_sample.truth.csv");
+  std::ifstream in(recordings / "rendered.truth.csv");
   std::string line;
   std::getline(in, line);  // the names
   while (std::getline(in, line)) {
@@ -124,4 +123,4 @@ std::vector<PictureSet> TagPictures(const fs::path& data, const fs::path& visp) 
   return sets;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -8,7 +8,7 @@
 #include "bench/vision/figures.h"
 #include "bench/vision/scene.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 struct Picture {
   std::filesystem::path file;
@@ -23,12 +23,12 @@ struct PictureSet {
 
 Image ReadGrey(const std::filesystem::path& file);
 
-/// The rendered sample under `data`: 8 frames of a collar with their poses.
-std::vector<PictureSet> RenderedSample(const std::filesystem::path& data);
+/// Returns the 8 frames of `recordings`/rendered (testdata/README.md) with the collar's poses.
+std::vector<PictureSet> RenderedPictures(const std::filesystem::path& recordings);
 
 /// Photographs with expected corners: those of AprilTag under `data`, and under `visp` (its images'
 /// folder) one photograph and one rendered scene, whose corners are known. tag36h11 alone.
 std::vector<PictureSet> TagPictures(const std::filesystem::path& data,
                                     const std::filesystem::path& visp);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr int kWidth = 624, kHeight = 330, kLeft = 70, kRight = 208, kTop = 44, kBottom = 52;
@@ -91,11 +91,11 @@ struct Range {
   }
 };
 
-bool Shown(const Plot& plot, const std::pair<double, double>& p) {
+bool Shown(const Panel& plot, const std::pair<double, double>& p) {
   return std::isfinite(p.second) && (!plot.log_y || p.second > 0);
 }
 
-std::string Frame(const Plot& plot, const Axis& x, const Axis& y, int x0, int y0) {
+std::string Frame(const Panel& plot, const Axis& x, const Axis& y, int x0, int y0) {
   const int right = x0 + kWidth - kRight, low = y0 + kHeight - kBottom;
   std::string svg = fmt::format(
       "<text x='{}' y='{}' font-size='15' font-weight='bold'>{}</text>\n"
@@ -157,7 +157,7 @@ std::string Labels(std::vector<Label> labels, const std::vector<std::string>& na
 }
 
 // The line, broken where there is nothing to show.
-std::string Line(const Plot& plot, const PlotLine& line, const Style& style, const Axis& x,
+std::string Line(const Panel& plot, const PlotLine& line, const Style& style, const Axis& x,
                  const Axis& y) {
   std::string path, dots;
   bool pen_down = false;
@@ -175,7 +175,7 @@ std::string Line(const Plot& plot, const PlotLine& line, const Style& style, con
       style.colour, style.width, style.dashes, dots);
 }
 
-std::string Panel(const Plot& plot, const std::vector<std::string>& names, int x0, int y0) {
+std::string PanelSvg(const Panel& plot, const std::vector<std::string>& names, int x0, int y0) {
   Range in_x, in_y;
   for (const PlotLine& line : plot.lines) {
     for (const auto& p : line.points) {
@@ -207,9 +207,9 @@ std::string Panel(const Plot& plot, const std::vector<std::string>& names, int x
 
 }  // namespace
 
-std::string PlotsSvg(const std::vector<Plot>& plots, const std::string& title, int columns) {
+std::string PlotsSvg(const std::vector<Panel>& plots, const std::string& title, int columns) {
   std::vector<std::string> names;
-  for (const Plot& plot : plots) {
+  for (const Panel& plot : plots) {
     for (const PlotLine& line : plot.lines) {
       if (std::find(names.begin(), names.end(), line.name) == names.end()) {
         names.push_back(line.name);
@@ -226,9 +226,9 @@ std::string PlotsSvg(const std::vector<Plot>& plots, const std::string& title, i
       columns * kWidth, kHead + rows * kHeight, title);
   for (std::size_t i = 0; i < plots.size(); ++i) {
     const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-    svg += Panel(plots[i], names, column * kWidth, kHead + row * kHeight);
+    svg += PanelSvg(plots[i], names, column * kWidth, kHead + row * kHeight);
   }
   return svg + "</svg>\n";
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

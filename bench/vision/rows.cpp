@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "recording/text/text.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Json = nlohmann::json;
@@ -163,12 +163,12 @@ std::string RecallTable(const std::vector<CompareRow>& rows) {
                     [](const PeerFigures& f) { return Cell(100 * f.Recall(), "{:.0f}", true); });
 }
 
-std::vector<Plot> ComparePlots(const std::vector<CompareRow>& rows, const std::string& y_label,
-                               double (*figure)(const PeerFigures&), bool log_y) {
-  std::vector<Plot> plots;
+std::vector<Panel> ComparePlots(const std::vector<CompareRow>& rows, const std::string& y_label,
+                                double (*figure)(const PeerFigures&), bool log_y) {
+  std::vector<Panel> plots;
   for (const CompareRow& row : rows) {
     auto plot = std::find_if(plots.begin(), plots.end(),
-                             [&](const Plot& p) { return p.title == row.sweep; });
+                             [&](const Panel& p) { return p.title == row.sweep; });
     if (plot == plots.end()) {
       plot = plots.insert(plots.end(),
                           {row.sweep, row.unit, y_label, row.sweep != "angle", log_y, {}});
@@ -183,4 +183,4 @@ std::vector<Plot> ComparePlots(const std::vector<CompareRow>& rows, const std::s
   return plots;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -9,7 +9,7 @@
 #include "bench/vision/figures.h"
 #include "bench/vision/plot.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// All peers under one condition.
 struct CompareRow {
@@ -34,7 +34,7 @@ std::string TipTable(const std::vector<CompareRow>& rows);
 std::string RecallTable(const std::vector<CompareRow>& rows);
 
 /// One figure (NaN: none) against each sweep's value, a panel a sweep.
-std::vector<Plot> ComparePlots(const std::vector<CompareRow>& rows, const std::string& y_label,
-                               double (*figure)(const PeerFigures&), bool log_y);
+std::vector<Panel> ComparePlots(const std::vector<CompareRow>& rows, const std::string& y_label,
+                                double (*figure)(const PeerFigures&), bool log_y);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -7,7 +7,7 @@
 #include "simulation/render/tag_pattern.h"
 #include "vision/tags/collar_pose.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 CameraCalibration BenchCamera(int width_px, double gamma) {
   const double scale = width_px / 1280.0;
@@ -96,4 +96,4 @@ std::map<int, TagCorners> TagsInView(const CameraModel& camera, const TagCollar&
   return seen;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -11,7 +11,7 @@
 #include "vision/camera_model.h"
 #include "vision/tags/detector.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// The rendered sample's camera (950 px at 1280 pixels of width, its lens and its place in R),
 /// scaled to another width; 16:9.
@@ -39,4 +39,4 @@ Pose CollarSeen(const Eigen::Vector3d& middle_C, double around, double lean, dou
 std::map<int, TagCorners> TagsInView(const CameraModel& camera, const TagCollar& collar,
                                      const Pose& T_CE, double max_angle_rad);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "recording/text/text.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameScore, status, in_event, in_view, error_mm, turn_deg, nees,
                                    ms)
@@ -178,4 +178,4 @@ std::string WrongFrames(const std::vector<SequenceScore>& scores) {
   return text;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace flextip {
+namespace flextip::bench {
 
 /// One frame. Errors mean something where the tip is not lost.
 struct FrameScore {
@@ -46,4 +46,4 @@ std::string ScoreJson(const std::vector<SequenceScore>& scores);
 /// Every frame that is a false or a wrong ok, one a line.
 std::string WrongFrames(const std::vector<SequenceScore>& scores);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -6,7 +6,7 @@
 
 #include "core/rotation.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Eigen::Vector3d;
@@ -143,4 +143,4 @@ VisionSequence DrawSequence(std::uint64_t seed, int number, int frames, int widt
   return s;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -9,7 +9,7 @@
 #include "bench/vision/scene.h"
 #include "simulation/render/laparoscope.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// What may happen to a tip; "none" among them.
 const std::vector<std::string>& VisionEvents();
@@ -80,4 +80,4 @@ class Draw {
 void AddEvent(const std::string& event, simulation::FrameRange frames, Draw& draw,
               VisionSequence& sequence);
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -15,7 +15,7 @@
 #include "recording/text/text.h"
 #include "vision/tracking/tip_tracker.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 constexpr TimeNs kStep_ns = 33'333'333;
@@ -166,7 +166,7 @@ std::string Table(const std::vector<SpeedFigures>& all) {
   return table;
 }
 
-void AddTo(Plot& plot, double x, const std::vector<SpeedFigures>& all) {
+void AddTo(Panel& plot, double x, const std::vector<SpeedFigures>& all) {
   for (const SpeedFigures& f : all) {
     auto line = std::find_if(plot.lines.begin(), plot.lines.end(),
                              [&](const PlotLine& l) { return l.name == f.name; });
@@ -193,9 +193,9 @@ std::vector<ClipCase> Cases() {
 }
 
 struct Plots {
-  Plot by_size{"Size of the picture", "megapixels", "ms a frame", true, true, {}};
-  Plot by_tag_px{"Size of the tags", "side of a tag, px", "ms a frame", true, true, {}};
-  Plot by_tags{"Tags seen", "tags", "ms a frame", false, true, {}};
+  Panel by_size{"Size of the picture", "megapixels", "ms a frame", true, true, {}};
+  Panel by_tag_px{"Size of the tags", "side of a tag, px", "ms a frame", true, true, {}};
+  Panel by_tags{"Tags seen", "tags", "ms a frame", false, true, {}};
 
   void Add(const ClipCase& c, const Clip& clip, const std::vector<SpeedFigures>& all) {
     const ClipCase base;
@@ -248,9 +248,10 @@ void Run(Arguments& a) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench
 
 int main(int argc, char** argv) {
-  return flextip::RunTool(argc, argv, "Time of a tracked frame against full detection by others",
-                          flextip::AddOptions, flextip::Run);
+  return flextip::bench::RunTool(argc, argv,
+                                 "Time of a tracked frame against full detection by others",
+                                 flextip::bench::AddOptions, flextip::bench::Run);
 }

@@ -8,7 +8,7 @@
 
 #include "bench/vision/sequence.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Eigen::Vector3d;
@@ -93,4 +93,4 @@ Image StillMaker::Film(const simulation::LinearImage& light, double gamma, int n
   return grey;
 }
 
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -9,7 +9,7 @@
 #include "bench/vision/figures.h"
 #include "simulation/render/laparoscope.h"
 
-namespace flextip {
+namespace flextip::bench {
 
 /// The base case; a sweep changes one of them.
 struct StillCase {
@@ -48,4 +48,4 @@ class StillMaker {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace flextip
+}  // namespace flextip::bench

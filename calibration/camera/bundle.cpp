@@ -14,12 +14,13 @@
 #include "calibration/camera/normal.h"
 #include "calibration/camera/projection_derivative.h"
 #include "calibration/camera/shape_elimination.h"
+#include "core/matrix_types.h"
 #include "core/rotation.h"
 
 namespace flextip {
 namespace {
 
-using PoseStep = Eigen::Matrix<double, kPoseSize, 1>;
+using PoseStep = Vector6d;
 
 // What Ceres moves.
 struct Parameters {

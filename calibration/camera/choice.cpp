@@ -53,6 +53,10 @@ std::string Verdict(std::size_t i, std::size_t chosen, std::size_t best,
 
 }  // namespace
 
+LensModel LensModelOf(const CameraCalibration& camera) {
+  return {camera.distortion, static_cast<int>(camera.distortion_coefficients.size())};
+}
+
 std::string LensModel::Name() const {
   switch (distortion) {
     case Distortion::kRadialTangential:

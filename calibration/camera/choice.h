@@ -17,6 +17,7 @@ struct LensModel {
   /// "radial-tangential", "equidistant", "opencv 5", "opencv 8", "opencv 12".
   std::string Name() const;
 };
+LensModel LensModelOf(const CameraCalibration& camera);
 
 /// All models, the simpler ones first.
 const std::vector<LensModel>& AllLensModels();

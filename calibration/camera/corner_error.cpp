@@ -1,11 +1,11 @@
 #include "calibration/camera/corner_error.h"
 
-#include <ceres/ceres.h>
+#include <ceres/cost_function.h>
 #include <ceres/rotation.h>
 
 #include <cmath>
 
-#include "calibration/camera/lens_function.h"
+#include "calibration/camera/lens_derivative.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -14,19 +14,19 @@ namespace {
 // Where a corner lands farther off the lens function has run away.
 constexpr double kFarthest_px = 1e6;
 
-// Ceres's numbers differentiate the lens alone: they would be most of the time.
-template <Distortion kModel, int kTerms>
 class CornerError : public ceres::CostFunction {
  public:
   CornerError(const CameraSolution& s, const SolvedView& view, std::size_t i, bool by_place)
-      : x_B_(view.x_B[i]),
+      : distortion_(s.camera.distortion),
+        terms_(s.IntrinsicsCount() - 4),
+        x_B_(view.x_B[i]),
         offset_B_(s.shape.Of(view.ids[i])),
         shape_(s.warp.Shape(x_B_)),
         px_(view.px[i]),
         R_(view.T_CB.R),
         p_(view.T_CB.p) {
     set_num_residuals(2);
-    *mutable_parameter_block_sizes() = {4 + kTerms, kWarpSize, kPoseSize};
+    *mutable_parameter_block_sizes() = {4 + terms_, kWarpSize, kPoseSize};
     if (by_place) mutable_parameter_block_sizes()->push_back(kCornerSize);
   }
 
@@ -45,23 +45,26 @@ class CornerError : public ceres::CostFunction {
     const Eigen::Vector3d x_C =
         Turn(step, turned, dx_dw) + p_ + Eigen::Map<const Eigen::Vector3d>(step + 3);
     if (!(x_C.z() > 0.0)) return false;
-    Eigen::Matrix2d dd_dm;
-    Eigen::Matrix<double, 2, kTerms> dd_dk;
-    const Eigen::Vector2d m = x_C.head<2>() / x_C.z(), d = Lens(c + 4, m, dd_dm, dd_dk);
+    const Eigen::Vector2d m = x_C.head<2>() / x_C.z();
+    const LensDerivative lens = DifferentiateLens(distortion_, c + 4, terms_, m);
+    const Eigen::Vector2d& d = lens.d;
     error[0] = c[0] * d.x() + c[2] - px_.x();
     error[1] = c[1] * d.y() + c[3] - px_.y();
     if (!(std::abs(error[0]) + std::abs(error[1]) < kFarthest_px)) return false;
     if (!jacobians) return true;
 
-    const Eigen::DiagonalMatrix<double, 2> focal(c[0], c[1]);
+    const Eigen::Vector2d focal_px(c[0], c[1]);
     if (jacobians[0]) {
-      Eigen::Map<RowMajor<4 + kTerms>> J(jacobians[0]);
-      J << d.x(), 0, 1, 0, focal.diagonal().x() * dd_dk.row(0), 0, d.y(), 0, 1,
-          focal.diagonal().y() * dd_dk.row(1);
+      Eigen::Map<Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>> J(jacobians[0], 2,
+                                                                              4 + terms_);
+      J.leftCols<4>() << d.x(), 0, 1, 0, 0, d.y(), 0, 1;
+      for (int t = 0; t < terms_; ++t) {
+        J.col(4 + t) = focal_px.cwiseProduct(lens.by_k.col(t));
+      }
     }
     Eigen::Matrix<double, 2, 3> dm_dx;
     dm_dx << 1, 0, -m.x(), 0, 1, -m.y();
-    const Eigen::Matrix<double, 2, 3> J_x = focal * dd_dm * dm_dx / x_C.z();
+    const Eigen::Matrix<double, 2, 3> J_x = focal_px.asDiagonal() * lens.by_m * dm_dx / x_C.z();
     if (jacobians[1]) {
       Eigen::Vector3d normal;
       const Eigen::Vector3d out = R_.col(2);
@@ -100,20 +103,8 @@ class CornerError : public ceres::CostFunction {
     return turned;
   }
 
-  static Eigen::Vector2d Lens(const double* k, const Eigen::Vector2d& m, Eigen::Matrix2d& by_m,
-                              Eigen::Matrix<double, 2, kTerms>& by_k) {
-    using Jet = ceres::Jet<double, 2 + kTerms>;
-    Jet coefficients[kTerms];
-    for (int i = 0; i < kTerms; ++i) coefficients[i] = Jet(k[i], 2 + i);
-    const Eigen::Matrix<Jet, 2, 1> d = DistortLens<kModel, kTerms>(
-        coefficients, Eigen::Matrix<Jet, 2, 1>(Jet(m.x(), 0), Jet(m.y(), 1)));
-    for (int i = 0; i < 2; ++i) {
-      by_m.row(i) = d[i].v.template head<2>().transpose();
-      by_k.row(i) = d[i].v.template tail<kTerms>().transpose();
-    }
-    return {d[0].a, d[1].a};
-  }
-
+  Distortion distortion_;
+  int terms_;
   Eigen::Vector3d x_B_;         // of the flat board
   Eigen::Vector3d offset_B_;    // where it is held
   Eigen::Vector2d shape_, px_;  // BoardWarp::Shape
@@ -126,22 +117,7 @@ class CornerError : public ceres::CostFunction {
 std::unique_ptr<ceres::CostFunction> MakeCornerError(const CameraSolution& s,
                                                      const SolvedView& view, std::size_t i,
                                                      bool by_place) {
-  switch (s.camera.distortion) {
-    case Distortion::kEquidistant:
-      return std::make_unique<CornerError<Distortion::kEquidistant, 4>>(s, view, i, by_place);
-    case Distortion::kRadialTangential:
-      return std::make_unique<CornerError<Distortion::kRadialTangential, 4>>(s, view, i, by_place);
-    case Distortion::kOpenCv:
-      break;
-  }
-  switch (s.camera.distortion_coefficients.size()) {
-    case 5:
-      return std::make_unique<CornerError<Distortion::kOpenCv, 5>>(s, view, i, by_place);
-    case 8:
-      return std::make_unique<CornerError<Distortion::kOpenCv, 8>>(s, view, i, by_place);
-    default:
-      return std::make_unique<CornerError<Distortion::kOpenCv, 12>>(s, view, i, by_place);
-  }
+  return std::make_unique<CornerError>(s, view, i, by_place);
 }
 
 }  // namespace flextip

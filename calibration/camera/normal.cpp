@@ -9,6 +9,7 @@
 #include "calibration/camera/corner_error.h"
 #include "calibration/camera/projection_derivative.h"
 #include "calibration/camera/shape_elimination.h"
+#include "core/matrix_types.h"
 
 namespace flextip {
 namespace {
@@ -26,7 +27,7 @@ bool AddView(std::size_t v, bool by_place, CameraSolution& s, Sums& sums) {
       J(2, common + kPoseSize);
   double* jacobians[] = {J_lens.data(), J_warp.data(), J_pose.data(), J_corner.data()};
   const Eigen::VectorXd lens = IntrinsicsVector(s.camera);
-  const Eigen::Matrix<double, kPoseSize, 1> no_step = Eigen::Matrix<double, kPoseSize, 1>::Zero();
+  const Vector6d no_step = Vector6d::Zero();
   SolvedView& view = s.views[v];
   view.residual_px.assign(view.px.size(), Eigen::Vector2d::Zero());
   Eigen::MatrixXd JtJ = Eigen::MatrixXd::Zero(J.cols(), J.cols());

@@ -1,54 +1,29 @@
 #include "calibration/camera/projection_derivative.h"
 
-#include <ceres/jet.h>
-
-#include <cassert>
-
-#include "calibration/camera/lens_function.h"
+#include "calibration/camera/lens_derivative.h"
 
 namespace flextip {
-namespace {
-
-template <Distortion kModel, int kTerms>
-ProjectionDerivative Differentiate(const CameraCalibration& camera, const Eigen::Vector3d& x_C) {
-  constexpr int kIntrinsics = 4 + kTerms;
-  using Jet = ceres::Jet<double, 3 + kIntrinsics>;
-  const Eigen::VectorXd values = IntrinsicsVector(camera);
-  assert(values.size() == kIntrinsics);
-  Eigen::Matrix<Jet, 3, 1> x;
-  for (int i = 0; i < 3; ++i) x[i] = Jet(x_C[i], i);
-  Jet c[kIntrinsics];
-  for (int i = 0; i < kIntrinsics; ++i) c[i] = Jet(values[i], 3 + i);
-  const Eigen::Matrix<Jet, 2, 1> on_plane(x[0] / x[2], x[1] / x[2]);
-  const Eigen::Matrix<Jet, 2, 1> bent = DistortLens<kModel, kTerms>(c + 4, on_plane);
-  const Eigen::Matrix<Jet, 2, 1> at(c[0] * bent.x() + c[2], c[1] * bent.y() + c[3]);
-  ProjectionDerivative d;
-  d.by_intrinsics.resize(2, kIntrinsics);
-  for (int row = 0; row < 2; ++row) {
-    d.px[row] = at[row].a;
-    d.by_point.row(row) = at[row].v.template head<3>();
-    d.by_intrinsics.row(row) = at[row].v.template tail<kIntrinsics>();
-  }
-  return d;
-}
-
-}  // namespace
 
 ProjectionDerivative DifferentiateProjection(const CameraCalibration& camera,
                                              const Eigen::Vector3d& x_C) {
-  if (camera.distortion == Distortion::kEquidistant) {
-    return Differentiate<Distortion::kEquidistant, 4>(camera, x_C);
+  const auto& k = camera.distortion_coefficients;
+  const int terms = static_cast<int>(k.size());
+  const Eigen::Vector2d m = x_C.head<2>() / x_C.z();
+  const LensDerivative lens = DifferentiateLens(camera.distortion, k.data(), terms, m);
+  const Eigen::Vector2d focal_px(camera.fu_px, camera.fv_px);
+  Eigen::Matrix<double, 2, 3> m_by_x;
+  m_by_x << 1, 0, -m.x(), 0, 1, -m.y();
+  ProjectionDerivative d;
+  d.px = focal_px.cwiseProduct(lens.d) + Eigen::Vector2d(camera.cu_px, camera.cv_px);
+  d.by_point = focal_px.asDiagonal() * lens.by_m * m_by_x / x_C.z();
+  d.by_intrinsics.setZero(2, 4 + terms);
+  d.by_intrinsics(0, 0) = lens.d.x();
+  d.by_intrinsics(1, 1) = lens.d.y();
+  d.by_intrinsics(0, 2) = d.by_intrinsics(1, 3) = 1.0;
+  for (int i = 0; i < terms; ++i) {
+    d.by_intrinsics.col(4 + i) = focal_px.cwiseProduct(lens.by_k.col(i));
   }
-  switch (camera.distortion_coefficients.size()) {
-    case 4:
-      return Differentiate<Distortion::kRadialTangential, 4>(camera, x_C);
-    case 5:
-      return Differentiate<Distortion::kOpenCv, 5>(camera, x_C);
-    case 8:
-      return Differentiate<Distortion::kOpenCv, 8>(camera, x_C);
-    default:
-      return Differentiate<Distortion::kOpenCv, 12>(camera, x_C);
-  }
+  return d;
 }
 
 Eigen::VectorXd IntrinsicsVector(const CameraCalibration& camera) {

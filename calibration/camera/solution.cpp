@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 namespace {
 
@@ -59,11 +61,9 @@ Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& normal_matrix) {
   if (diagonal.size() == 0 || diagonal.minCoeff() <= 0) return {};
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd unit = scale.asDiagonal() * normal_matrix * scale.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> ldlt(unit);
-  if (ldlt.info() != Eigen::Success || ldlt.vectorD().minCoeff() < kSmallestPivot) return {};
-  const Eigen::MatrixXd inverse = scale.asDiagonal() *
-                                  ldlt.solve(Eigen::MatrixXd::Identity(unit.rows(), unit.cols())) *
-                                  scale.asDiagonal();
+  const Ldlt ldlt(unit);
+  if (!ldlt.Succeeded() || ldlt.Pivots().minCoeff() < kSmallestPivot) return {};
+  const Eigen::MatrixXd inverse = scale.asDiagonal() * ldlt.Inverse() * scale.asDiagonal();
   return 0.5 * (inverse + inverse.transpose());
 }
 

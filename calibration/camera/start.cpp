@@ -5,6 +5,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/camera/bundle.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 #include "core/rotation.h"
 
@@ -67,9 +68,9 @@ std::optional<Pose> PoseFromCorners(const CameraCalibration& camera, const Solve
   Eigen::Matrix3d R;
   R << scale * H->col(0), scale * H->col(1),
       scale * scale * Eigen::Vector3d(H->col(0)).cross(Eigen::Vector3d(H->col(1)));
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Svd svd(R);
   Pose T_CB;
-  T_CB.R = svd.matrixU() * svd.matrixV().transpose();
+  T_CB.R = svd.U * svd.V.transpose();
   if (T_CB.R.determinant() < 0) return {};
   T_CB.p = scale * H->col(2);
   const bool in_front = std::all_of(x_B.begin(), x_B.end(),

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 namespace {
 
@@ -79,7 +81,7 @@ PartErrors HeldOut(const PartSums& sums, const EmDesign& design) {
     const Eigen::VectorXd r = sums.rows[k].r + sums.rows[k].J * step.step;
     errors.square_sigmas.push_back(r.squaredNorm() / static_cast<double>(r.size()));
     for (std::size_t i = 0; i < sums.pairs[k].size(); ++i) {
-      const Eigen::Matrix3d L = sums.pairs[k][i].covariance.llt().matrixL();
+      const Eigen::Matrix3d L = Llt(sums.pairs[k][i].covariance).L();
       errors.square_m2 += (L * r.segment<3>(3 * static_cast<Eigen::Index>(i))).squaredNorm();
     }
   }

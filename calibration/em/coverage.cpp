@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 namespace {
 
@@ -55,10 +57,7 @@ EmCoverage CoverageOf(const std::vector<Eigen::Vector3d>& places) {
   EmCoverage coverage;
   coverage.centre_m = 0.5 * (low + high);
   coverage.scale_m = (0.5 * kMargin * (high - low)).cwiseMax(kLeastHalfSide_m);
-  coverage.spread_m = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter)
-                          .eigenvalues()
-                          .cwiseMax(0.0)
-                          .cwiseSqrt();
+  coverage.spread_m = SymmetricEigenvalues(scatter).cwiseMax(0.0).cwiseSqrt();
   coverage.places = static_cast<int>(places.size());
   coverage.cells = CellsVisited(places, coverage);
   return coverage;

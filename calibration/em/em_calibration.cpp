@@ -8,6 +8,7 @@
 
 #include "calibration/em/coverage.h"
 #include "calibration/residual_statistics.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -183,9 +184,8 @@ std::string RegistrationDoubt(const EmCoverage& coverage, const EmOptions& optio
         "unknown",
         spread_mm[2], spread_mm[1], spread_mm[0]);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
-      result.solution.covariance.topLeftCorner<3, 3>());
-  const double sd_rad = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+  const Eigen::Matrix3d turn = result.solution.covariance.topLeftCorner<3, 3>();
+  const double sd_rad = std::sqrt(std::max(0.0, SymmetricEigenvalues(turn)[2]));
   if (sd_rad <= options.max_rotation_sd_rad) return "";
   return fmt::format(
       "the sensor moved too little ({:.1f} x {:.1f} x {:.1f} mm rms): the turn of the EM system is "
@@ -221,7 +221,7 @@ void FillCovariance(const std::vector<EmPair>& pairs, const std::vector<double>&
   std::vector<Eigen::Vector3d> whitened;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (weights[i] == 0.0) continue;
-    const Eigen::Matrix3d L = pairs[i].covariance.llt().matrixL();
+    const Eigen::Matrix3d L = Llt(pairs[i].covariance).L();
     whitened.emplace_back(L.inverse() * EmError(pairs[i], result.solution));
   }
   result.noise_scale = std::max(1e-9, std::sqrt(variance));

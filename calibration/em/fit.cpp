@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calibration/residual_statistics.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 #include "core/rotation.h"
 
@@ -82,13 +83,23 @@ EmSolution StartOf(const EmSolution& start, const EmDesign& design) {
   return solution;
 }
 
+/// Without noise of its own: the turn and shift that fit best (Umeyama 1991).
 Pose ClosedForm(const std::vector<EmPair>& pairs, double distance_m) {
-  Eigen::Matrix3Xd from(3, pairs.size()), to(3, pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    from.col(i) = pairs[i].T_FS.p;
-    to.col(i) = pairs[i].p_RE - distance_m * pairs[i].t_RE;
+  const auto count = static_cast<double>(pairs.size());
+  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = from;
+  for (const EmPair& pair : pairs) {
+    from += pair.T_FS.p / count;
+    to += (pair.p_RE - distance_m * pair.t_RE) / count;
   }
-  return Pose::FromMatrix(Eigen::umeyama(from, to, false));
+  Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
+  for (const EmPair& pair : pairs) {
+    cross += (pair.p_RE - distance_m * pair.t_RE - to) * (pair.T_FS.p - from).transpose() / count;
+  }
+  const Svd svd(cross);
+  Eigen::Matrix3d U = svd.U;
+  if ((U * svd.V.transpose()).determinant() < 0) U.col(2) *= -1.0;
+  const Eigen::Matrix3d R_RF = U * svd.V.transpose();
+  return {R_RF, to - R_RF * from};
 }
 
 }  // namespace
@@ -100,7 +111,7 @@ Eigen::Vector3d EmError(const EmPair& pair, const EmSolution& solution) {
 
 double EmSigmas(const EmPair& pair, const EmSolution& solution) {
   const Eigen::Vector3d r = EmError(pair, solution);
-  return std::sqrt(r.dot(pair.covariance.llt().solve(r)));
+  return std::sqrt(r.dot(Llt(pair.covariance).Solve(r)));
 }
 
 EmRows RowsOf(const std::vector<EmPair>& pairs, const EmDesign& design,
@@ -113,7 +124,7 @@ EmRows RowsOf(const std::vector<EmPair>& pairs, const EmDesign& design,
     const EmPair& pair = pairs[i];
     auto J = rows.J.middleRows<3>(3 * static_cast<Eigen::Index>(i));
     const Eigen::Vector3d turned = solution.T_RF.R * pair.T_FS.p;
-    const Eigen::Matrix3d L = pair.covariance.llt().matrixL();
+    const Eigen::Matrix3d L = Llt(pair.covariance).L();
     const Eigen::Matrix3d W = L.inverse();
     J.leftCols<3>() = -W * Skew(turned);
     J.middleCols<3>(3) = W;
@@ -143,13 +154,13 @@ EmStep SolveStep(const EmDesign& design, const Eigen::MatrixXd& H, const Eigen::
     gradient.tail(n) += held * coefficients;
   }
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> llt(scale.asDiagonal() * information * scale.asDiagonal());
+  const Llt llt(scale.asDiagonal() * information * scale.asDiagonal());
   EmStep out;
-  if (llt.info() != Eigen::Success || llt.rcond() < 1e-12) return out;
+  if (!llt.Succeeded() || llt.ReciprocalCondition() < 1e-12) return out;
   out.ok = true;
-  out.step = -llt.solve(gradient.cwiseProduct(scale)).cwiseProduct(scale);
+  out.step = -llt.Solve(gradient.cwiseProduct(scale)).cwiseProduct(scale);
   if (with_covariance) {
-    const Eigen::MatrixXd C = llt.solve(Eigen::MatrixXd::Identity(H.rows(), H.cols()));
+    const Eigen::MatrixXd C = llt.Inverse();
     out.covariance = scale.asDiagonal() * C * scale.asDiagonal();
     out.covariance = (0.5 * (out.covariance + out.covariance.transpose())).eval();
   }

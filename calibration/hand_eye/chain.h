@@ -12,14 +12,11 @@
 
 namespace flextip {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 /// The numbers that all views share, in this order: steps (dw, dp) of T_FC and of T_KB, the time
 /// offset (s), fu, fv, cu, cv (px).
 constexpr int kShared = 17, kTimeColumn = 12, kIntrinsicsColumn = 13;
-using SharedVector = Eigen::Matrix<double, kShared, 1>;
-using SharedMatrix = Eigen::Matrix<double, kShared, kShared>;
+using SharedVector = Eigen::VectorXd;  ///< kShared
+using SharedMatrix = Eigen::MatrixXd;  ///< kShared x kShared
 
 /// T_FK of a wrist at T_RW.
 Pose WristInChain(HandEyeMount mount, const Pose& T_RW);
@@ -34,9 +31,9 @@ Eigen::Matrix<double, 6, 18> ChainJacobian(HandEyeMount mount, const Pose& T_FC,
 
 /// Residuals (px) of a view's corners, rows in pairs, with their derivatives.
 struct ChainResiduals {
-  Eigen::VectorXd r_px;                              ///< projected less seen
-  Eigen::Matrix<double, Eigen::Dynamic, kShared> J;  ///< the time's column is zero: it moves T_RW
-  Eigen::Matrix<double, Eigen::Dynamic, 6> J_wrist;  ///< of a step of T_RW
+  Eigen::VectorXd r_px;     ///< projected less seen
+  Eigen::MatrixXd J;        ///< kShared columns; the time's column is zero: it moves T_RW
+  Eigen::MatrixXd J_wrist;  ///< 6 columns, of a step of T_RW
 };
 
 /// Empty where a corner falls behind the camera or out of the lens model's range.

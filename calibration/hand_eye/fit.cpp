@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/levenberg_marquardt.h"
+#include "core/linear_algebra.h"
+
 namespace flextip {
 namespace {
 
@@ -15,7 +18,7 @@ constexpr double kMeansNothing = 0.01;
 
 struct Linearised {
   std::vector<ViewNormal> views;
-  SharedMatrix U = SharedMatrix::Zero();
+  SharedMatrix U = SharedMatrix::Zero(kShared, kShared);
   double cost = 0.0;
 };
 
@@ -33,32 +36,32 @@ std::optional<Linearised> Linearise(const HandEyeProblem& problem, const HandEye
 }
 
 struct Step {
-  SharedVector shared = SharedVector::Zero();
-  std::vector<Vector6> wrists;
+  SharedVector shared = SharedVector::Zero(kShared);
+  std::vector<Vector6d> wrists;
 };
 
 // Both blocks are damped by their diagonals.
 Step Solve(const Linearised& at, const std::vector<int>& unknowns, double damping) {
   SharedMatrix H = at.U;
   H.diagonal() *= 1 + damping;
-  SharedVector g = SharedVector::Zero();
-  std::vector<Eigen::LDLT<Matrix6>> solvers;
+  SharedVector g = SharedVector::Zero(kShared);
+  std::vector<Ldlt<6>> solvers;
   for (const ViewNormal& view : at.views) {
-    Matrix6 V = view.V;
+    Matrix6d V = view.V;
     V.diagonal() *= 1 + damping;
     const auto& solver = solvers.emplace_back(V);
-    H.noalias() -= view.W * solver.solve(view.W.transpose());
-    g += view.g - view.W * solver.solve(view.h);
+    H.noalias() -= view.W * solver.Solve(view.W.transpose());
+    g += view.g - view.W * solver.Solve(view.h);
   }
   Step step;
   const Eigen::MatrixXd H_unknown = H(unknowns, unknowns);
   const Eigen::VectorXd g_unknown = g(unknowns);
-  const Eigen::VectorXd x = -H_unknown.ldlt().solve(g_unknown);
+  const Eigen::VectorXd x = -Ldlt(H_unknown).Solve(g_unknown);
   for (Eigen::Index i = 0; i < x.size(); ++i)
     step.shared[unknowns[static_cast<std::size_t>(i)]] = x[i];
   for (std::size_t i = 0; i < at.views.size(); ++i) {
     const ViewNormal& view = at.views[i];
-    step.wrists.emplace_back(-solvers[i].solve(view.h + view.W.transpose() * step.shared));
+    step.wrists.emplace_back(-solvers[i].Solve(view.h + view.W.transpose() * step.shared));
   }
   return step;
 }
@@ -79,16 +82,16 @@ HandEyeState Moved(const HandEyeState& from, const Step& step) {
 }
 
 Eigen::MatrixXd CovarianceOf(const Linearised& at, const std::vector<int>& unknowns) {
-  SharedMatrix H = SharedMatrix::Zero();
+  SharedMatrix H = SharedMatrix::Zero(kShared, kShared);
   for (const ViewNormal& view : at.views) H += view.Reduced();
   const Eigen::MatrixXd information = H(unknowns, unknowns);
   // Scaled to a unit diagonal: metres, radians and pixels are in it.
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  const Eigen::VectorXd inverse = eigen.eigenvalues().cwiseMax(1e-14).cwiseInverse();
-  return scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
-         eigen.eigenvectors().transpose() * scale.asDiagonal();
+  const SymmetricEigen eigen(scaled);
+  const Eigen::VectorXd inverse = eigen.values.cwiseMax(1e-14).cwiseInverse();
+  return scale.asDiagonal() * eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose() *
+         scale.asDiagonal();
 }
 
 // Foerstner's variance components: each group's chi2 over its share of the redundancy.
@@ -98,12 +101,12 @@ HandEyeVariances VariancesOf(const HandEyeProblem& problem, const Linearised& at
   for (std::size_t i = 0; i < at.views.size(); ++i) {
     const ViewNormal& view = at.views[i];
     const double share = problem.views[i].wrist.noise_share;
-    const Matrix6 prior = problem.noise.WristCovariance(share).inverse();
-    const Matrix6 inverse = view.V.inverse();
+    const Matrix6d prior = Lu(problem.noise.WristCovariance(share)).Inverse();
+    const Matrix6d inverse = Lu(view.V).Inverse();
     const Eigen::MatrixXd W = view.W(unknowns, Eigen::all);
-    const Matrix6 posterior = inverse + inverse * (W.transpose() * covariance * W) * inverse;
-    const Vector6 known = (prior * posterior).diagonal();
-    const Vector6 chi2 = view.wrist_step.cwiseProduct(prior * view.wrist_step);
+    const Matrix6d posterior = inverse + inverse * (W.transpose() * covariance * W) * inverse;
+    const Vector6d known = (prior * posterior).diagonal();
+    const Vector6d chi2 = view.wrist_step.cwiseProduct(prior * view.wrist_step);
     chi2_w += chi2.head<3>().sum();
     chi2_p += chi2.tail<3>().sum();
     redundancy_w += 3 - known.head<3>().sum();
@@ -119,11 +122,11 @@ HandEyeVariances VariancesOf(const HandEyeProblem& problem, const Linearised& at
 
 }  // namespace
 
-Matrix6 HandEyeNoise::WristCovariance(double share) const {
-  Vector6 variance;
+Matrix6d HandEyeNoise::WristCovariance(double share) const {
+  Vector6d variance;
   variance << Eigen::Vector3d::Constant(orientation_rad * orientation_rad),
       Eigen::Vector3d::Constant(position_m * position_m);
-  return Matrix6((share * variance).asDiagonal());
+  return Matrix6d((share * variance).asDiagonal());
 }
 
 std::vector<int> HandEyeProblem::Unknowns() const {
@@ -134,7 +137,7 @@ std::vector<int> HandEyeProblem::Unknowns() const {
   return unknowns;
 }
 
-SharedMatrix ViewNormal::Reduced() const { return U - W * V.ldlt().solve(W.transpose()); }
+SharedMatrix ViewNormal::Reduced() const { return U - W * Ldlt(V).Solve(W.transpose()); }
 
 std::optional<ViewNormal> NormalOf(const HandEyeProblem& problem, const FitView& view,
                                    const CameraModel& camera, const HandEyeState& state,
@@ -151,11 +154,11 @@ std::optional<ViewNormal> NormalOf(const HandEyeProblem& problem, const FitView&
   n.h.noalias() = weight * corners->J_wrist.transpose() * corners->r_px;
   n.corners_chi2 = weight * corners->r_px.squaredNorm();
 
-  const Vector6 velocity = view.wrist.velocity.value_or(Vector6::Zero());
+  const Vector6d velocity = view.wrist.velocity.value_or(Vector6d::Zero());
   const Pose measured = MovePose(view.wrist.T_RW, velocity * state.time_step_s);
-  const Matrix6 prior = problem.noise.WristCovariance(view.wrist.noise_share).inverse();
+  const Matrix6d prior = Lu(problem.noise.WristCovariance(view.wrist.noise_share)).Inverse();
   n.wrist_step = PoseDifference(measured, T_RW);
-  const Vector6 pull = prior * n.wrist_step;
+  const Vector6d pull = prior * n.wrist_step;
   n.V += prior;
   n.h += pull;
   n.wrist_chi2 = n.wrist_step.dot(pull);
@@ -172,26 +175,22 @@ std::optional<HandEyeFit> FitHandEye(const HandEyeProblem& problem, HandEyeState
   HandEyeFit fit{std::move(start), {}, {}, {}, 0.0};
   auto at = Linearise(problem, fit.state);
   if (!at) return {};
-  double damping = 1e-6;
-  bool converged = false;
-  double last_gain = HUGE_VAL;
-  for (int i = 0; i < kMaxIterations && !converged; ++i) {
-    const HandEyeState next = Moved(fit.state, Solve(*at, unknowns, damping));
-    auto there = next.camera.fu_px > 0 && next.camera.fv_px > 0 && next.T_FC.p.allFinite()
-                     ? Linearise(problem, next)
-                     : std::nullopt;
-    if (there && there->cost <= at->cost) {
-      last_gain = at->cost - there->cost;
-      converged = last_gain < kConverged * (1 + at->cost);
-      fit.state = next;
-      at = std::move(there);
-      damping = std::max(1e-12, 0.1 * damping);
-    } else {
-      damping = std::max(1e-9, 10 * damping);
-      converged = damping > 1e8;  // only rounding is left
-    }
-  }
-  if (!converged && last_gain > kMeansNothing) return {};
+  HandEyeState next;
+  std::optional<Linearised> there;
+  const auto try_step = [&](double damping) -> TrialStep {
+    next = Moved(fit.state, Solve(*at, unknowns, damping));
+    const bool valid = next.camera.fu_px > 0 && next.camera.fv_px > 0 && next.T_FC.p.allFinite();
+    there = valid ? Linearise(problem, next) : std::nullopt;
+    return {.cost = there ? there->cost : HUGE_VAL};
+  };
+  const auto accept = [&] {
+    fit.state = std::move(next);
+    at = std::move(there);
+  };
+  const DescentResult descent = Descend(
+      at->cost, try_step, accept, {.max_iterations = kMaxIterations, .relative_gain = kConverged});
+  // Exhausted: only rounding is left.
+  if (!descent.settled && !descent.exhausted && descent.last_gain > kMeansNothing) return {};
   fit.cost = at->cost;
   fit.covariance = CovarianceOf(*at, unknowns);
   fit.variances = VariancesOf(problem, *at, unknowns, fit.covariance);

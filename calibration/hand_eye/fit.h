@@ -8,6 +8,7 @@
 
 #include "calibration/hand_eye/chain.h"
 #include "calibration/hand_eye/views.h"
+#include "core/matrix_types.h"
 
 namespace flextip {
 
@@ -17,7 +18,7 @@ struct HandEyeNoise {
   double orientation_rad = 1e-3, position_m = 1e-4;
 
   /// Of the wrist's (dw, dp).
-  Matrix6 WristCovariance(double share = 1.0) const;
+  Matrix6d WristCovariance(double share = 1.0) const;
 };
 
 struct FitView {
@@ -45,12 +46,12 @@ struct HandEyeState {
 
 /// The normal equations of one view.
 struct ViewNormal {
-  SharedMatrix U = SharedMatrix::Zero();
-  SharedVector g = SharedVector::Zero();
-  Eigen::Matrix<double, kShared, 6> W = Eigen::Matrix<double, kShared, 6>::Zero();
-  Matrix6 V = Matrix6::Zero();
-  Vector6 h = Vector6::Zero();
-  Vector6 wrist_step = Vector6::Zero();  ///< from the measured wrist to the fitted one
+  SharedMatrix U = SharedMatrix::Zero(kShared, kShared);
+  SharedVector g = SharedVector::Zero(kShared);
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(kShared, 6);
+  Matrix6d V = Matrix6d::Zero();
+  Vector6d h = Vector6d::Zero();
+  Vector6d wrist_step = Vector6d::Zero();  ///< from the measured wrist to the fitted one
   double corners_chi2 = 0.0, wrist_chi2 = 0.0;
 
   double Cost() const { return corners_chi2 + wrist_chi2; }
@@ -72,7 +73,7 @@ struct HandEyeFit {
   HandEyeState state;
   Eigen::MatrixXd covariance;  ///< of the unknowns
   HandEyeVariances variances;
-  std::vector<Vector6> wrist_steps;
+  std::vector<Vector6d> wrist_steps;
   double cost = 0.0;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calibration/hand_eye/work.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -26,11 +27,11 @@ void JudgeViews(HandEyeWork& work) {
     view.chi2 = HUGE_VAL;
     for (std::size_t i = 0; i < view.board.poses.size(); ++i) {
       const BoardPose& pose = view.board.poses[i];
-      const Vector6 r = PoseDifference(pose.T_CB, chain);
-      const Matrix6 C = work.DifferenceCovariance(view, pose.information_px2, !view.used);
+      const Vector6d r = PoseDifference(pose.T_CB, chain);
+      const Matrix6d C = work.DifferenceCovariance(view, pose.information_px2, !view.used);
       const double worse = pose.squared_px2 - view.board.poses.front().squared_px2;
       const double chi2 =
-          r.dot(C.ldlt().solve(r)) + worse / (work.noise.corner_px * work.noise.corner_px);
+          r.dot(Ldlt(C).Solve(r)) + worse / (work.noise.corner_px * work.noise.corner_px);
       if (chi2 >= view.chi2) continue;
       view.chi2 = chi2;
       view.candidate = static_cast<int>(i);
@@ -70,9 +71,9 @@ void ScaleByMedian(HandEyeWork& work) {
 }
 
 std::string WhyNotUsed(const HandEyeWork& work, const WorkView& view) {
-  const Vector6 r = PoseDifference(view.SeenPose(), work.ChainPose(view));
+  const Vector6d r = PoseDifference(view.SeenPose(), work.ChainPose(view));
   const auto& pose = view.board.poses[static_cast<std::size_t>(view.candidate)];
-  const Matrix6 C = work.DifferenceCovariance(view, pose.information_px2, true);
+  const Matrix6d C = work.DifferenceCovariance(view, pose.information_px2, true);
   constexpr double kDegrees = 180 / M_PI;
   return fmt::format(
       "the board is {:.1f} mm and {:.2f} deg away from where the wrist puts it; noise explains "
@@ -218,20 +219,27 @@ bool FitsTheOtherWay(HandEyeInput input, const HandEyeOptions& options) {
   return FitViews(work) && !IsDoubtful(work);
 }
 
-// Why nothing can be said; empty where something can.
-std::string WhyNothing(HandEyeWork& work, const HandEyeInput& input) {
+// Why the views tell nothing; `message` is empty where they tell something.
+struct FitFailure {
+  std::string message;
+  bool fits_other_mount = false;
+};
+
+// Fits all views, and where that fails looks for the reason.
+FitFailure FitOrExplain(HandEyeWork& work, const HandEyeInput& input) {
   const bool fits = FitViews(work);
   if (fits && !IsDoubtful(work)) return {};
   if (FitsTheOtherWay(input, work.options)) {
-    return work.mount == HandEyeMount::kEyeToHand
-               ? "the views fit only if the camera is on the wrist (--eye-in-hand)"
-               : "the views fit only if the board is on the wrist (without --eye-in-hand)";
+    return {work.mount == HandEyeMount::kEyeToHand
+                ? "the views fit only if the camera is on the wrist"
+                : "the views fit only if the board is on the wrist",
+            true};
   }
   const auto usable = work.PoseViews().size();
-  if (!fits) return "no frames fit three of the views";
+  if (!fits) return {"no frames fit three of the views"};
   if (2 * work.Used() > static_cast<int>(usable)) return {};
-  return fmt::format("only {} of {} views agree: wrong wrist poses, board or clocks", work.Used(),
-                     usable);
+  return {fmt::format("only {} of {} views agree: wrong wrist poses, board or clocks", work.Used(),
+                      usable)};
 }
 
 }  // namespace
@@ -252,8 +260,9 @@ HandEyeResult CalibrateHandEye(const HandEyeInput& input, const HandEyeOptions& 
         HandEyeStatus::kTooFewViews,
         fmt::format("{} views with board and wrist, at least {} are needed", usable, kMinViews));
   }
-  const std::string why_nothing = WhyNothing(work, input);
-  if (!why_nothing.empty()) return finish(HandEyeStatus::kNotConverged, why_nothing);
+  const FitFailure failure = FitOrExplain(work, input);
+  result.fits_other_mount = failure.fits_other_mount;
+  if (!failure.message.empty()) return finish(HandEyeStatus::kNotConverged, failure.message);
   for (WorkView& view : work.views) {
     if (view.Usable() && !view.used) view.reason = WhyNotUsed(work, view);
     if (view.used) view.reason.clear();

@@ -8,6 +8,7 @@
 
 #include "calibration/boards/board.h"
 #include "core/camera.h"
+#include "core/matrix_types.h"
 #include "core/pose.h"
 #include "core/time_series.h"
 #include "recording/calibrations/file.h"
@@ -62,7 +63,7 @@ struct HandEyeViewResult {
   double chi2 = 0.0;     ///< of the six numbers in which chain and seen board differ
   bool flipped = false;  ///< the board's second planar pose was the right one
   /// Of the measured wrist to the fitted one, (dw, dp) in R: (rad, m).
-  Eigen::Matrix<double, 6, 1> wrist_step = Eigen::Matrix<double, 6, 1>::Zero();
+  Vector6d wrist_step = Vector6d::Zero();
   Pose T_CB;                                       ///< as the chain has it
   std::vector<Eigen::Vector2d> px_seen, px_chain;  ///< corners, and where the chain puts them
 };
@@ -76,6 +77,7 @@ struct HandEyeMotion {
 struct HandEyeResult {
   HandEyeStatus status = HandEyeStatus::kTooFewViews;
   std::string message;
+  bool fits_other_mount = false;  ///< why it did not converge: `mount` is the wrong one
   HandEyeMount mount = HandEyeMount::kEyeToHand;
   Pose T_FC, T_KB;
   double time_offset_s = 0.0;  ///< to be added to the frames' times

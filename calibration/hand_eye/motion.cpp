@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -33,14 +34,14 @@ Spread SpreadOf(const std::vector<Eigen::Vector3d>& vectors, const Eigen::Vector
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const auto& v : vectors) scatter += (v - mean) * (v - mean).transpose();
   scatter /= std::max<double>(1, static_cast<double>(vectors.size()) - 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scatter);
+  const SymmetricEigen eigen(scatter);
   Spread spread;
   for (int i = 2; i >= 0; --i) {
-    if (eigen.eigenvalues()[i] < std::pow(kBeyondNoise * noise, 2)) break;
-    spread.projector += eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
+    if (eigen.values[i] < std::pow(kBeyondNoise * noise, 2)) break;
+    spread.projector += eigen.vectors.col(i) * eigen.vectors.col(i).transpose();
     ++spread.directions;
   }
-  spread.widest = eigen.eigenvectors().col(2);
+  spread.widest = eigen.vectors.col(2);
   return spread;
 }
 
@@ -78,7 +79,7 @@ std::optional<SharedMatrix> ExpectedInformation(const HandEyeProblem& problem,
 SharedMatrix CleanedInformation(const HandEyeProblem& problem, const HandEyeState& state,
                                 const WristMotion& motion) {
   const CameraModel camera(state.camera);
-  SharedMatrix H = SharedMatrix::Zero();
+  SharedMatrix H = SharedMatrix::Zero(kShared, kShared);
   for (std::size_t i = 0; i < problem.views.size(); ++i) {
     const auto one =
         ExpectedInformation(problem, state, camera, problem.views[i], motion.cleaned[i]);
@@ -94,7 +95,7 @@ Eigen::MatrixXd OfPoses(const SharedMatrix& H, const std::vector<int>& unknowns)
   if (others == 0) return all;
   const Eigen::MatrixXd cross = all.topRightCorner(12, others);
   return all.topLeftCorner(12, 12) -
-         cross * all.bottomRightCorner(others, others).ldlt().solve(cross.transpose());
+         cross * Ldlt(all.bottomRightCorner(others, others)).Solve(cross.transpose());
 }
 
 std::string WhyUnknown(const WristMotion& motion, double sd, const char* unit) {
@@ -149,12 +150,12 @@ std::vector<Calibration::Unobservable> UnknownCoordinates(const HandEyeProblem& 
   limit << Eigen::Vector3d::Constant(kKnown_rad), Eigen::Vector3d::Constant(known_m),
       Eigen::Vector3d::Constant(kKnown_rad), Eigen::Vector3d::Constant(known_m);
   const Eigen::MatrixXd scaled = limit.asDiagonal() * H * limit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const SymmetricEigen eigen(scaled);
   Eigen::VectorXd part = Eigen::VectorXd::Zero(12), variance = Eigen::VectorXd::Zero(12);
-  for (int i = 0; i < 12 && eigen.eigenvalues()[i] < 1.0; ++i) {
-    const Eigen::VectorXd squared = eigen.eigenvectors().col(i).cwiseAbs2();
+  for (int i = 0; i < 12 && eigen.values[i] < 1.0; ++i) {
+    const Eigen::VectorXd squared = eigen.vectors.col(i).cwiseAbs2();
     part += squared;
-    variance += squared / std::max(eigen.eigenvalues()[i], 1e-12);
+    variance += squared / std::max(eigen.values[i], 1e-12);
   }
   std::vector<Calibration::Unobservable> unknown;
   for (int i = 0; i < 12; ++i) {
@@ -169,7 +170,7 @@ std::vector<Calibration::Unobservable> UnknownCoordinates(const HandEyeProblem& 
 }
 
 std::string NoTimeOffsetReason(const HandEyeProblem& problem) {
-  const Matrix6 weight = problem.noise.WristCovariance().inverse();
+  const Matrix6d weight = Lu(problem.noise.WristCovariance()).Inverse();
   double velocities = 0, of_noise = 0, steps = 0, bends = 0;
   int with = 0;
   for (const FitView& view : problem.views) {
@@ -237,7 +238,7 @@ bool InPicture(const CameraModel& camera, const FitView& view, const Pose& T_CB)
 double PointSd(const Eigen::MatrixXd& H_poses, const Eigen::Matrix3d& R_FC,
                const Eigen::Vector3d& x_C) {
   const Eigen::MatrixXd C =
-      (H_poses + Eigen::MatrixXd::Identity(12, 12)).inverse().topLeftCorner(6, 6);
+      Lu(H_poses + Eigen::MatrixXd::Identity(12, 12)).Inverse().topLeftCorner(6, 6);
   Eigen::Matrix<double, 3, 6> J;
   J << -Skew(R_FC * x_C), Eigen::Matrix3d::Identity();
   return std::sqrt((J * C * J.transpose()).trace());

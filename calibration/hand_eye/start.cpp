@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/levenberg_marquardt.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -23,19 +25,18 @@ struct Hypothesis {
 struct Match {
   int candidate = 0;
   double chi2 = HUGE_VAL;
-  Vector6 r = Vector6::Zero();  // from the candidate to the chain, (dw, dp) in C
-  Matrix6 weight = Matrix6::Zero();
+  Vector6d r = Vector6d::Zero();  // from the candidate to the chain, (dw, dp) in C
+  Matrix6d weight = Matrix6d::Zero();
 };
 
 // The candidate that fits the chain best.
-Match BestMatch(const PoseView& view, const Pose& T_CB,
-                const Eigen::Matrix<double, 6, 6>& J_wrist) {
-  const Matrix6 of_wrist = J_wrist * view.wrist_covariance * J_wrist.transpose();
+Match BestMatch(const PoseView& view, const Pose& T_CB, const Matrix6d& J_wrist) {
+  const Matrix6d of_wrist = J_wrist * view.wrist_covariance * J_wrist.transpose();
   Match best;
   for (std::size_t i = 0; i < view.candidates.size(); ++i) {
     const PoseCandidate& candidate = view.candidates[i];
-    const Vector6 r = PoseDifference(candidate.T_CB, T_CB);
-    const Matrix6 weight = (candidate.covariance + of_wrist).inverse();
+    const Vector6d r = PoseDifference(candidate.T_CB, T_CB);
+    const Matrix6d weight = Lu(candidate.covariance + of_wrist).Inverse();
     const double chi2 = r.dot(weight * r) + candidate.penalty;
     if (chi2 < best.chi2) best = {static_cast<int>(i), chi2, r, weight};
   }
@@ -65,25 +66,27 @@ Sum Evaluate(HandEyeMount mount, const std::vector<PoseView>& views, const Pose&
 }
 
 Hypothesis Refine(HandEyeMount mount, const std::vector<PoseView>& views, Hypothesis at) {
-  Sum sum = Evaluate(mount, views, at.T_FC, at.T_KB);
-  double damping = 1e-3;
-  for (int i = 0; i < kIterations && damping < 1e6; ++i) {
-    auto H = sum.H;
-    H.diagonal() *= 1.0 + damping;
-    H.diagonal().array() += 1e-12 * H.diagonal().maxCoeff();
-    const Eigen::Matrix<double, 12, 1> step = -H.ldlt().solve(sum.g);
-    const Pose T_FC = MovePose(at.T_FC, step.head<6>()), T_KB = MovePose(at.T_KB, step.tail<6>());
-    const Sum next = Evaluate(mount, views, T_FC, T_KB);
-    if (next.score < sum.score) {
-      const double gain = sum.score - next.score;
-      at = {T_FC, T_KB, next.score};
-      sum = next;
-      damping = std::max(1e-9, 0.2 * damping);
-      if (gain < 1e-7 * (1.0 + sum.score)) break;
-    } else {
-      damping *= 6;
-    }
-  }
+  Sum sum = Evaluate(mount, views, at.T_FC, at.T_KB), there;
+  Hypothesis next;
+  const auto try_step = [&](double damping) -> TrialStep {
+    const Eigen::VectorXd step = DampedStep(sum.H, sum.g, damping);
+    next = {MovePose(at.T_FC, step.head<6>()), MovePose(at.T_KB, step.tail<6>())};
+    there = Evaluate(mount, views, next.T_FC, next.T_KB);
+    return {.cost = there.score};
+  };
+  const auto accept = [&] {
+    at = next;
+    sum = there;
+  };
+  Descend(sum.score, try_step, accept,
+          {.max_iterations = kIterations,
+           .start_damping = 1e-3,
+           .shrink = 0.2,
+           .grow = 6.0,
+           .least_damping = 1e-9,
+           .floor = 1e-9,
+           .most_damping = 1e6,
+           .relative_gain = 1e-7});
   at.score = sum.score;
   return at;
 }
@@ -101,18 +104,16 @@ void FillTranslations(HandEyeMount mount, const std::vector<const PoseView*>& vi
     A.block<3, 3>(row, 3) = T_FK.R;
     b.segment<3>(row) = h.T_FC.R * seen[i]->p - T_FK.p;
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-3);
-  const Eigen::VectorXd p = solver.compute(A).solve(b);
+  const Eigen::VectorXd p = CompleteOrthogonal(A, 1e-3).Solve(b);
   h.T_FC.p = p.head<3>();
   h.T_KB.p = p.tail<3>();
 }
 
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& M) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Svd svd(M);
   Eigen::Matrix3d flip = Eigen::Matrix3d::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return svd.matrixU() * flip * svd.matrixV().transpose();
+  flip(2, 2) = (svd.U * svd.V.transpose()).determinant();
+  return svd.U * flip * svd.V.transpose();
 }
 
 // The rotation of three views with one candidate each, by the axes of their relative motions (Park

@@ -6,20 +6,21 @@
 #include <vector>
 
 #include "calibration/hand_eye/chain.h"
+#include "core/matrix_types.h"
 
 namespace flextip {
 
 /// One pose that the board may have, with the covariance of (dw, dp) in C.
 struct PoseCandidate {
   Pose T_CB;
-  Matrix6 covariance = Matrix6::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
   double penalty = 0.0;  ///< chi2 by which its corners fit worse than the best candidate's
 };
 
 struct PoseView {
   Pose T_RW;
-  Matrix6 wrist_covariance = Matrix6::Zero();  ///< of (dw, dp) in R
-  std::vector<PoseCandidate> candidates;       ///< at least one
+  Matrix6d wrist_covariance = Matrix6d::Zero();  ///< of (dw, dp) in R
+  std::vector<PoseCandidate> candidates;         ///< at least one
 };
 
 struct HandEyeStart {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "core/linear_algebra.h"
 #include "core/median.h"
 #include "core/rotation.h"
 #include "recording/resample.h"
@@ -64,8 +65,8 @@ bool Flat(const std::vector<Correspondence>& points) {
   for (const auto& point : points) mean += point.x_E / static_cast<double>(points.size());
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const auto& p : points) scatter += (p.x_E - mean) * (p.x_E - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[0] < 1e-8 * solver.eigenvalues()[2];
+  const Eigen::Vector3d squares = SymmetricEigenvalues(scatter);
+  return squares[0] < 1e-8 * squares[2];
 }
 
 std::vector<Pose> Starts(const CameraModel& camera, const std::vector<Correspondence>& points) {

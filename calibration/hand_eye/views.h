@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "calibration/hand_eye/chain.h"
+#include "core/matrix_types.h"
 
 namespace flextip {
 
 /// A minimum of the reprojection error of a board seen by itself.
 struct BoardPose {
   Pose T_CB;
-  Matrix6 information_px2 = Matrix6::Zero();  ///< of (dw, dp) in C, for corners good to 1 px
+  Matrix6d information_px2 = Matrix6d::Zero();  ///< of (dw, dp) in C, for corners good to 1 px
   double squared_px2 = 0.0;
 };
 
@@ -40,10 +41,10 @@ struct WristAtView {
   /// d(T_RW)/dt as (dw, dp) in R (rad/s, m/s), by the difference of two samples beyond those that
   /// T_RW comes from, so that their noise has nothing to do with T_RW's; and its variance over
   /// that of a sample (1/s2). Absent where the samples are too far apart.
-  std::optional<Vector6> velocity;
+  std::optional<Vector6d> velocity;
   double velocity_noise_1_s2 = 0.0;
-  Vector6 step = Vector6::Zero();  ///< between those two samples, and how far from their middle
-  Vector6 bend = Vector6::Zero();  ///< T_RW is: small where interpolation can be trusted
+  Vector6d step = Vector6d::Zero();  ///< between those two samples, and how far from their middle
+  Vector6d bend = Vector6d::Zero();  ///< T_RW is: small where interpolation can be trusted
   double noise_share = 1.0;  ///< variance of T_RW over that of a sample: interpolation averages
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -70,17 +71,17 @@ std::vector<PoseView> HandEyeWork::PoseViews() const {
     for (const BoardPose& pose : view.board.poses) {
       const double worse = pose.squared_px2 - view.board.poses.front().squared_px2;
       one.candidates.push_back(
-          {pose.T_CB, variance * pose.information_px2.inverse(), worse / variance});
+          {pose.T_CB, variance * Lu(pose.information_px2).Inverse(), worse / variance});
     }
   }
   return pose_views;
 }
 
-Matrix6 HandEyeWork::DifferenceCovariance(const WorkView& view, const Matrix6& information_px2,
-                                          bool with_frames) const {
+Matrix6d HandEyeWork::DifferenceCovariance(const WorkView& view, const Matrix6d& information_px2,
+                                           bool with_frames) const {
   const auto J = ChainJacobian(mount, state.T_FC, state.T_KB, view.wrist->T_RW);
-  const Matrix6 J_wrist = J.rightCols<6>();
-  Matrix6 sum = noise.corner_px * noise.corner_px * information_px2.inverse();
+  const Matrix6d J_wrist = J.rightCols<6>();
+  Matrix6d sum = noise.corner_px * noise.corner_px * Lu(information_px2).Inverse();
   sum += J_wrist * noise.WristCovariance(view.wrist->noise_share) * J_wrist.transpose();
   if (with_frames && covariance.rows() >= 12) {
     const Eigen::Matrix<double, 6, 12> J_frames = J.leftCols<12>();

@@ -10,6 +10,7 @@
 #include "calibration/hand_eye/motion.h"
 #include "calibration/hand_eye/start.h"
 #include "calibration/hand_eye/views.h"
+#include "core/matrix_types.h"
 
 namespace flextip {
 
@@ -48,8 +49,8 @@ struct HandEyeWork {
   std::vector<PoseView> PoseViews() const;
   /// Of the chain's pose of the board less the one seen with `information_px2`, the wrist as
   /// measured; `with_frames` also for what is not known of both frames.
-  Matrix6 DifferenceCovariance(const WorkView& view, const Matrix6& information_px2,
-                               bool with_frames) const;
+  Matrix6d DifferenceCovariance(const WorkView& view, const Matrix6d& information_px2,
+                                bool with_frames) const;
   Pose ChainPose(const WorkView& view) const;
 };
 

@@ -8,6 +8,7 @@
 #include "calibration/shaft/next_load.h"
 #include "calibration/shaft/stiffness_fit.h"
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -150,25 +151,25 @@ void ModelFit::HoldOut() {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero(), sum_squares = sum;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     StiffnessMatrix N = fit_.information;
-    StiffnessVector gradient = StiffnessVector::Zero();
+    StiffnessVector gradient = StiffnessVector::Zero(kStiffnessUnknowns);
     const std::size_t first = fold * n / kFolds, last = (fold + 1) * n / kFolds;
     for (std::size_t i = first; i < last; ++i) {
       const StiffnessRows& rows = fit_.rows[i];
       if (!rows.usable || weights_[i] == 0) continue;
-      const auto S = rows.covariance.ldlt();
-      N -= rows.by_unknowns.transpose() * S.solve(rows.by_unknowns);
-      gradient -= rows.by_unknowns.transpose() * S.solve(rows.residual);
+      const Ldlt S(rows.covariance);
+      N -= rows.by_unknowns.transpose() * S.Solve(rows.by_unknowns);
+      gradient -= rows.by_unknowns.transpose() * S.Solve(rows.residual);
     }
     const StiffnessVector unit = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const StiffnessMatrix scaled = unit.asDiagonal() * N * unit.asDiagonal();
-    const StiffnessVector dx = unit.cwiseProduct(scaled.ldlt().solve(unit.cwiseProduct(gradient)));
+    const StiffnessVector dx = unit.cwiseProduct(Ldlt(scaled).Solve(unit.cwiseProduct(gradient)));
     sum += dx.head<2>();
     sum_squares += dx.head<2>().cwiseAbs2();
     for (std::size_t i = first; i < last; ++i) {
       const StiffnessRows& rows = fit_.rows[i];
       if (!rows.usable || weights_[i] == 0) continue;
       const Eigen::VectorXd e = rows.residual - rows.by_unknowns * dx;
-      chi2 += e.dot(rows.covariance.ldlt().solve(e));
+      chi2 += e.dot(Ldlt(rows.covariance).Solve(e));
       measurements += static_cast<double>(e.size());
       if (!rows.has_place) continue;
       squares += e.head<3>().squaredNorm();
@@ -262,8 +263,8 @@ void FillInsertions(double length_m, StiffnessCalibration& result) {
 double VarianceWith(const StiffnessMatrix& information, int unknown) {
   const StiffnessVector unit = information.diagonal().cwiseSqrt().cwiseInverse();
   const StiffnessMatrix scaled = unit.asDiagonal() * information * unit.asDiagonal();
-  const StiffnessVector e = StiffnessVector::Unit(unknown);
-  return unit[unknown] * unit[unknown] * scaled.ldlt().solve(e)[unknown];
+  const StiffnessVector e = StiffnessVector::Unit(kStiffnessUnknowns, unknown);
+  return unit[unknown] * unit[unknown] * Ldlt(scaled).Solve(e)[unknown];
 }
 
 std::string Advice(ModelFit& chosen, bool for_taper, const Eigen::Vector3d& p_RP,
@@ -281,7 +282,7 @@ std::string Advice(ModelFit& chosen, bool for_taper, const Eigen::Vector3d& p_RP
     if (!rows.usable) continue;
     const double then =
         VarianceWith(chosen.fit().information + rows.by_unknowns.transpose() *
-                                                    rows.covariance.ldlt().solve(rows.by_unknowns),
+                                                    Ldlt(rows.covariance).Solve(rows.by_unknowns),
                      unknown);
     if (then >= best) continue;
     best = then;

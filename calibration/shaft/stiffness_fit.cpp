@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/levenberg_marquardt.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -131,7 +133,7 @@ StiffnessRows StiffnessFitter::Rows(const LoadHold& hold, const StiffnessVector&
 
   Eigen::MatrixXd H(rows.residual_.size(), 6);
   H << rows.by_inputs_.middleCols<3>(kForce), rows.by_inputs_.middleCols<3>(kWrist);
-  Eigen::Matrix<double, 6, 1> variance;
+  Vector6d variance;
   variance << Eigen::Vector3d::Constant(Square(hold.force_noise_N)),
       Eigen::Vector3d::Constant(Square(hold.wrist_noise_m));
   out.usable = true;
@@ -155,7 +157,7 @@ StiffnessRows StiffnessFitter::RowsOf(const LoadHold& hold, const StiffnessVecto
 
 StiffnessVector StiffnessFitter::PriorInformation() const {
   const auto of = [](double sd) { return sd > 0 ? 1 / Square(sd) : 1e30; };
-  StiffnessVector prior;
+  StiffnessVector prior(kStiffnessUnknowns);
   prior[kLogStiffness] = 1e-6;
   prior[kStiffnessTaper] = of(setup_.taper_prior);
   prior.segment<3>(kStiffnessPort).setConstant(of(setup_.port_noise_m));
@@ -179,11 +181,11 @@ double StiffnessFitter::Evaluate(const StiffnessVector& x, const std::vector<dou
     StiffnessRows& rows = fit.rows[i];
     rows = Rows(holds_[i], x, solvers_[i], hidden_[i]);
     if (!rows.usable) continue;
-    const auto S = rows.covariance.ldlt();
-    const Eigen::VectorXd solved = S.solve(rows.residual);
+    const Ldlt S(rows.covariance);
+    const Eigen::VectorXd solved = S.Solve(rows.residual);
     hidden_[i].d = hidden_[i].gain * solved;  // the most likely ones, for the next time
     if (weights[i] == 0) continue;
-    N += weights[i] * rows.by_unknowns.transpose() * S.solve(rows.by_unknowns);
+    N += weights[i] * rows.by_unknowns.transpose() * S.Solve(rows.by_unknowns);
     gradient += weights[i] * rows.by_unknowns.transpose() * solved;
     cost += weights[i] * rows.residual.dot(solved);
   }
@@ -191,52 +193,51 @@ double StiffnessFitter::Evaluate(const StiffnessVector& x, const std::vector<dou
 }
 
 StiffnessVector StiffnessFitter::Nominal() const {
-  return StiffnessVector::Unit(kLogStiffness) * std::log(setup_.instrument.bending_stiffness_Nm2);
+  return StiffnessVector::Unit(kStiffnessUnknowns, kLogStiffness) *
+         std::log(setup_.instrument.bending_stiffness_Nm2);
 }
 
-/// Levenberg and Marquardt's damping: towards a taper that the loads say little of, plain steps
-/// overshoot.
+/// Damped: towards a taper that the loads say little of, plain steps overshoot.
 StiffnessFit StiffnessFitter::Fit(const std::vector<double>& weights,
                                   const StiffnessVector& start) {
-  StiffnessFit fit;
+  StiffnessFit fit, next;
   fit.x = start;
-  StiffnessMatrix N;
-  StiffnessVector gradient;
-  double cost = Evaluate(fit.x, weights, N, gradient, fit), damping = 0.0;
-  for (int i = 0; i < kMaxIterations && !fit.converged; ++i) {
-    const StiffnessVector unit = N.diagonal().cwiseSqrt().cwiseInverse();
-    StiffnessMatrix scaled = unit.asDiagonal() * N * unit.asDiagonal();
-    scaled.diagonal().array() += damping;
-    const StiffnessVector dx = unit.cwiseProduct(scaled.ldlt().solve(unit.cwiseProduct(gradient)));
-    StiffnessVector x = fit.x + dx;
-    x[kStiffnessTaper] = std::clamp(x[kStiffnessTaper], -kMostTaper, kMostTaper);
-    const std::vector<Hidden> hidden = hidden_;
-    StiffnessFit next = fit;
-    StiffnessMatrix next_N;
-    StiffnessVector next_gradient;
-    const double next_cost = Evaluate(x, weights, next_N, next_gradient, next);
+  StiffnessMatrix N, next_N;
+  StiffnessVector gradient, next_gradient;
+  const double cost = Evaluate(fit.x, weights, N, gradient, fit);
+  std::vector<Hidden> hidden = hidden_;
+  const auto try_step = [&](double damping) -> TrialStep {
+    const StiffnessVector dx = DampedStep(N, -gradient, damping);
+    next.x = fit.x + dx;
+    next.x[kStiffnessTaper] = std::clamp(next.x[kStiffnessTaper], -kMostTaper, kMostTaper);
+    hidden_ = hidden;
+    const double next_cost = Evaluate(next.x, weights, next_N, next_gradient, next);
     const bool settled = dx.dot(N * dx) < kSettled;
     // A hold whose rod has no equilibrium drops out of the cost: that is no progress.
-    if (!settled && !(next_cost < cost + 1e-9 * std::abs(cost) && next.Usable() >= fit.Usable())) {
-      hidden_ = hidden;
-      damping = std::max(1e-4, 10 * damping);
-      if (damping > 1e6) break;
-      continue;
-    }
-    next.x = x;
-    fit = std::move(next);
+    const bool progress = settled || next.Usable() >= fit.Usable();
+    return {.cost = progress ? next_cost : HUGE_VAL, .settled = settled};
+  };
+  const auto accept = [&] {
+    fit = next;
     N = next_N;
     gradient = next_gradient;
-    cost = next_cost;
-    damping = damping < 1e-6 ? 0.0 : damping / 10;
-    fit.converged = settled;
-  }
+    hidden = hidden_;
+  };
+  const DescentResult descent = Descend(cost, try_step, accept,
+                                        {.max_iterations = kMaxIterations,
+                                         .start_damping = 0.0,
+                                         .least_damping = 1e-7,
+                                         .floor = 0.0,
+                                         .least_raised = 1e-4,
+                                         .most_damping = 1e6,
+                                         .relative_gain = 0.0,
+                                         .allowed_rise = 1e-9});
+  fit.converged = descent.settled;
+  hidden_ = hidden;
   const StiffnessVector unit = N.diagonal().cwiseSqrt().cwiseInverse();
   const StiffnessMatrix scaled = unit.asDiagonal() * N * unit.asDiagonal();
   fit.information = N;
-  fit.covariance = unit.asDiagonal() *
-                   StiffnessMatrix(scaled.ldlt().solve(StiffnessMatrix::Identity())) *
-                   unit.asDiagonal();
+  fit.covariance = unit.asDiagonal() * Ldlt(scaled).Inverse() * unit.asDiagonal();
   return fit;
 }
 

@@ -7,6 +7,8 @@
 
 #include "calibration/shaft/known_loads.h"
 #include "calibration/shaft/stiffness_rod.h"
+#include "core/linear_algebra.h"
+#include "core/matrix_types.h"
 
 namespace flextip {
 
@@ -14,8 +16,9 @@ namespace flextip {
 /// frames of vision0 and of em0 in R, about the middle of what they saw.
 inline constexpr int kLogStiffness = 0, kStiffnessTaper = 1, kStiffnessPort = 2, kVisionTurn = 5,
                      kVisionShift = 8, kEmTurn = 11, kEmShift = 14, kStiffnessUnknowns = 17;
-using StiffnessVector = Eigen::Matrix<double, kStiffnessUnknowns, 1>;
-using StiffnessMatrix = Eigen::Matrix<double, kStiffnessUnknowns, kStiffnessUnknowns>;
+/// Of kStiffnessUnknowns.
+using StiffnessVector = Eigen::VectorXd;
+using StiffnessMatrix = Eigen::MatrixXd;
 
 /// What is fixed, and how well the rest is known beforehand.
 struct StiffnessSetup {
@@ -41,14 +44,14 @@ struct StiffnessRows {
   Eigen::MatrixXd covariance, by_unknowns;
   bool has_place = false;
 
-  double Chi2() const { return residual.dot(covariance.ldlt().solve(residual)); }
+  double Chi2() const { return MahalanobisSquared(residual, covariance); }
 };
 
 struct StiffnessFit {
   bool converged = false;
-  StiffnessVector x = StiffnessVector::Zero();
-  StiffnessMatrix covariance = StiffnessMatrix::Zero(), information = StiffnessMatrix::Zero();
-  std::vector<StiffnessRows> rows;  ///< of each hold, at `x`
+  StiffnessVector x = StiffnessVector::Zero(kStiffnessUnknowns);
+  StiffnessMatrix covariance, information;  ///< empty before the fit
+  std::vector<StiffnessRows> rows;          ///< of each hold, at `x`
 
   auto Usable() const {
     return std::count_if(rows.begin(), rows.end(), [](const auto& r) { return r.usable; });
@@ -70,7 +73,7 @@ class StiffnessFitter {
 
  private:
   struct Hidden {  // true less stated load, true less measured wrist
-    Eigen::Matrix<double, 6, 1> d = Eigen::Matrix<double, 6, 1>::Zero();
+    Vector6d d = Vector6d::Zero();
     Eigen::MatrixXd gain;  // of d by the residual
   };
   StiffnessRows Rows(const LoadHold& hold, const StiffnessVector& x, TaperedRodSolver& solver,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "kinematics/load_steps.h"
 
@@ -159,7 +160,7 @@ int Newton(const Scaled<ceres::Jet<double, kUnknowns>>& scaled, Unknowns& x) {
     }
     if (!residual.allFinite()) return 0;
     if (residual.norm() < kConverged) return i;
-    Eigen::Matrix<double, kUnknowns, 1> dx = -A.partialPivLu().solve(residual);
+    Eigen::Matrix<double, kUnknowns, 1> dx = -Lu(A).Solve(residual);
     if (!dx.allFinite()) return 0;
     const double turn = dx.head<2>().norm();
     if (turn > kMostTurn) dx *= kMostTurn / turn;
@@ -247,7 +248,7 @@ TaperedRodState TaperedRodSolver::Solve(const TaperedRodProblem& problem,
     A.row(k) = shot.residual[k].v.head<kUnknowns>().transpose();
     B.row(k) = shot.residual[k].v.tail<kCount>().transpose();
   }
-  const Eigen::Matrix<double, kUnknowns, kCount> dx = -A.partialPivLu().solve(B);
+  const Eigen::Matrix<double, kUnknowns, kCount> dx = -Lu(A).Solve(B);
   state.usable = dx.allFinite();
   state.s_port_m = x.s_port * problem.rod.length_m;
   state.wrist = SectionOf(problem, shot.wrist, dx);

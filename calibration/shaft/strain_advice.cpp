@@ -5,6 +5,7 @@
 
 #include "calibration/shaft/next_load.h"
 #include "calibration/shaft/strain_calibration.h"
+#include "core/linear_algebra.h"
 
 namespace flextip {
 namespace {
@@ -14,8 +15,7 @@ constexpr double kWorthwhile = 0.03;  // of the moments' uncertainty
 /// How well moments of the recording's size are read, as a share of the gains (root of the trace).
 double Uncertainty(const Eigen::MatrixXd& information, const Eigen::VectorXd& unit) {
   const Eigen::MatrixXd scaled = unit.asDiagonal() * information * unit.asDiagonal();
-  const Eigen::MatrixXd C =
-      scaled.ldlt().solve(Eigen::MatrixXd::Identity(unit.size(), unit.size()));
+  const Eigen::MatrixXd C = Ldlt(scaled).Inverse();
   return std::sqrt(C.diagonal().head(kGagePort).sum() / kGagePort);
 }
 
@@ -35,11 +35,8 @@ std::string NextStrainLoad(const std::vector<StrainHoldResult>& holds, const Gag
   unit.tail<3>().setConstant(1e-3);
   const Eigen::MatrixXd scaled_C =
       unit.cwiseInverse().asDiagonal() * fit.covariance * unit.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd information =
-      unit.cwiseInverse().asDiagonal() *
-      Eigen::MatrixXd(
-          scaled_C.ldlt().solve(Eigen::MatrixXd::Identity(kGageUnknowns, kGageUnknowns))) *
-      unit.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd information = unit.cwiseInverse().asDiagonal() * Ldlt(scaled_C).Inverse() *
+                                      unit.cwiseInverse().asDiagonal();
   const double now = Uncertainty(information, unit);
   double best = now;
   std::string words;
@@ -50,10 +47,10 @@ std::string NextStrainLoad(const std::vector<StrainHoldResult>& holds, const Gag
   for (const NextLoad& candidate : NextLoads(placed, p_RP)) {
     const auto stated = model.At(candidate.hold);
     if (!stated) continue;
-    const auto J = GageRows(fit, stated->m_Nm, stated->by_port);
+    const Eigen::MatrixXd J = GageRows(fit, stated->m_Nm, stated->by_port);
     Eigen::Matrix4d S = fit.gains * stated->Covariance(candidate.hold) * fit.gains.transpose();
     S.diagonal() += reading_sd.cwiseAbs2();
-    const double then = Uncertainty(information + J.transpose() * S.ldlt().solve(J), unit);
+    const double then = Uncertainty(information + J.transpose() * Ldlt(S).Solve(J), unit);
     if (then >= best) continue;
     best = then;
     words = candidate.words;

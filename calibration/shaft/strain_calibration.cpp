@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -63,7 +64,7 @@ class StrainWork {
   std::vector<double> Chi2s(bool used_only) const;
   std::string WhyFar(std::size_t i) const;
   void JudgeColumns();
-  std::string WhyUnknown(const std::vector<int>& columns) const;
+  std::string WhyUnknown(const std::vector<int>& columns);
   void Fill();
   void FillCovariance();
   double HeldoutRms() const;
@@ -163,16 +164,16 @@ std::string StrainWork::WhyFar(std::size_t i) const {
   // Whether another mass at the same place explains it.
   const Eigen::Vector4d at = fit_.gains * samples_[i].m_Nm;
   const Eigen::Vector4d read = samples_[i].readings - fit_.offset;
-  const Eigen::Vector4d weighted = r.covariance.ldlt().solve(at);
+  const Eigen::Vector4d weighted = Ldlt(r.covariance).Solve(at);
   const double factor = weighted.dot(read) / weighted.dot(at);
   const Eigen::Vector4d left = read - factor * at;
-  if (left.dot(r.covariance.ldlt().solve(left)) < kFar) {
+  if (left.dot(Ldlt(r.covariance).Solve(left)) < kFar) {
     why += fmt::format("; it reads as if the load were {:.2f} times what is stated", factor);
   }
   return why;
 }
 
-std::string StrainWork::WhyUnknown(const std::vector<int>& columns) const {
+std::string StrainWork::WhyUnknown(const std::vector<int>& columns) {
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
   double least = 1e300, most = 0, force_N = 0;
   for (const std::size_t i : hold_of_) {
@@ -187,18 +188,19 @@ std::string StrainWork::WhyUnknown(const std::vector<int>& columns) const {
   std::string names;
   for (const int c : columns) names += (names.empty() ? "" : ", ") + std::string(kChannels[c]);
   const std::string head = fmt::format("what the gages read of {} is not known: ", names);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
-  if (axes.eigenvalues()[1] <= 0) return head + "nothing hangs on the tip across the shaft";
-  if (axes.eigenvalues()[0] < 0.02 * axes.eigenvalues()[1]) {
+  const Eigen::Vector2d axes = SymmetricEigenvalues(spread);
+  if (axes[1] <= 0) return head + "nothing hangs on the tip across the shaft";
+  if (axes[0] < 0.02 * axes[1]) {
     return head +
            "all loads bend the shaft about one axis; hang a mass across it too, or turn the "
            "instrument by 90 degrees about its shaft";
   }
   if (most - least < 0.1 * most) {
+    result_.insertions_alike = true;
     return head + fmt::format(
                       "all loads hang with the port at {:.3f} to {:.3f} m along the shaft, "
                       "where the moments of both stations rise together; load at other "
-                      "insertions too, or take the stations as apart (--stations-apart)",
+                      "insertions too, or take the stations as apart",
                       least, most);
   }
   return head +
@@ -228,7 +230,7 @@ void StrainWork::JudgeColumns() {
     const double sd = scale * std::sqrt(variance[kGageOffset + row]);
     if (!(sd < kKnown * typical[row] * typical_moment)) result_.offset_known = false;
   }
-  result_.gages_known = unknown.empty() && fit_.gains.fullPivLu().isInvertible();
+  result_.gages_known = unknown.empty() && FullLu(fit_.gains).IsInvertible();
   auto& list = result_.found.unobservable;
   if (!result_.gages_known) list.push_back({"strain0.gage_matrix", WhyUnknown(unknown)});
   if (!result_.offset_known) {
@@ -294,11 +296,11 @@ double StrainWork::HeldoutRms() const {
     std::vector<GageSample> rest = samples_;
     for (std::size_t i = fold; i < rest.size(); i += kFolds) rest[i].weight = 0;
     const GageFit fit = FitGages(rest, options_.fit);
-    const Eigen::FullPivLU<Eigen::Matrix4d> lu(fit.gains);
-    if (!lu.isInvertible()) continue;
+    const FullLu lu(fit.gains);
+    if (!lu.IsInvertible()) continue;
     for (std::size_t i = fold; i < rest.size(); i += kFolds) {
       if (samples_[i].weight == 0) continue;
-      squares += (lu.solve(samples_[i].readings - fit.offset) - samples_[i].m_Nm).squaredNorm();
+      squares += (lu.Solve(samples_[i].readings - fit.offset) - samples_[i].m_Nm).squaredNorm();
       count += 4;
     }
   }

@@ -33,8 +33,9 @@ struct StrainCalibration {
   double rms_Nm = 0.0, heldout_rms_Nm = 0.0;  ///< moments measured less stated; 0: not known
   double largest_moment_Nm = 0.0;
   std::vector<StrainHoldResult> holds;
-  Calibration found;   ///< what calibration.yaml gets
-  std::string advice;  ///< which further load would help most
+  bool insertions_alike = false;  ///< why the gages are not known: `stations_apart` would do
+  Calibration found;              ///< what calibration.yaml gets
+  std::string advice;             ///< which further load would help most
 };
 
 struct StrainCalibrationOptions {

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 namespace {
 
 constexpr int kMaxIterations = 50;
 constexpr double kWidePrior = 30.0;  // of the typical gain and reading
-using Information = Eigen::Matrix<double, kGageUnknowns, kGageUnknowns>;
-using UnknownVector = Eigen::Matrix<double, kGageUnknowns, 1>;
+// Of kGageUnknowns.
+using Information = Eigen::MatrixXd;
+using UnknownVector = Eigen::VectorXd;
 
 /// What is typical: readings by channel, and moments.
 struct Scales {
@@ -40,7 +43,7 @@ Scales ScalesOf(const std::vector<GageSample>& samples) {
 /// Information of the priors; a gain that is held at zero has an infinite one in effect.
 UnknownVector PriorInformation(const Scales& scales, const Eigen::Vector4d& mean_reading,
                                const GageFitOptions& options) {
-  UnknownVector information;
+  UnknownVector information(kGageUnknowns);
   for (int row = 0; row < 4; ++row) {
     const double gain = kWidePrior * scales.reading[row] / scales.moment;
     for (int column = 0; column < 4; ++column) {
@@ -55,7 +58,7 @@ UnknownVector PriorInformation(const Scales& scales, const Eigen::Vector4d& mean
 }
 
 UnknownVector Packed(const GageFit& fit) {
-  UnknownVector x;
+  UnknownVector x(kGageUnknowns);
   for (int row = 0; row < 4; ++row) x.segment<4>(4 * row) = fit.gains.row(row).transpose();
   x.segment<4>(kGageOffset) = fit.offset;
   x.tail<3>() = fit.port_shift_m;
@@ -97,24 +100,23 @@ GageFit FitGages(const std::vector<GageSample>& samples, const GageFitOptions& o
   const UnknownVector unit = prior.cwiseSqrt().cwiseInverse();  // the equations' columns
   for (int i = 0; i < kMaxIterations && !fit.converged; ++i) {
     UnknownVector gradient = -prior.cwiseProduct(Packed(fit));
-    Information N = prior.asDiagonal();
+    Information N = prior.asDiagonal().toDenseMatrix();
     for (const GageSample& s : samples) {
       if (s.weight == 0) continue;
       const GageResidual r = ResidualOf(s, fit);
-      const Eigen::LDLT<Eigen::Matrix4d> S(r.covariance);
+      const Ldlt S(r.covariance);
       // The moments as they most likely were, by both sides.
       const Eigen::Vector4d m = s.m_Nm + s.m_by_port * fit.port_shift_m +
-                                s.m_covariance * fit.gains.transpose() * S.solve(r.readings);
-      const auto J = GageRows(fit, m, s.m_by_port);
-      N += s.weight * J.transpose() * S.solve(J);
-      gradient += s.weight * J.transpose() * S.solve(r.readings);
+                                s.m_covariance * fit.gains.transpose() * S.Solve(r.readings);
+      const Eigen::MatrixXd J = GageRows(fit, m, s.m_by_port);
+      N += s.weight * J.transpose() * S.Solve(J);
+      gradient += s.weight * J.transpose() * S.Solve(r.readings);
     }
     const Information scaled = unit.asDiagonal() * N * unit.asDiagonal();
-    const Eigen::LDLT<Information> solver(scaled);
-    const UnknownVector dx = unit.cwiseProduct(solver.solve(unit.cwiseProduct(gradient)));
+    const Ldlt solver(scaled);
+    const UnknownVector dx = unit.cwiseProduct(solver.Solve(unit.cwiseProduct(gradient)));
     Unpack(Packed(fit) + dx, fit);
-    fit.covariance = unit.asDiagonal() * Eigen::MatrixXd(solver.solve(Information::Identity())) *
-                     unit.asDiagonal();
+    fit.covariance = unit.asDiagonal() * solver.Inverse() * unit.asDiagonal();
     fit.converged = dx.cwiseAbs2().dot(N.diagonal()) < 1e-10 * kGageUnknowns;
   }
   return fit;

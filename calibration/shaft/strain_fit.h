@@ -6,6 +6,8 @@
 #include <array>
 #include <vector>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 
 /// One hold: what the gages read and what the load says.
@@ -43,7 +45,7 @@ GageFit FitGages(const std::vector<GageSample>& samples, const GageFitOptions& o
 struct GageResidual {
   Eigen::Vector4d readings;
   Eigen::Matrix4d covariance;
-  double Chi2() const { return readings.dot(covariance.ldlt().solve(readings)); }
+  double Chi2() const { return MahalanobisSquared(readings, covariance); }
 };
 GageResidual ResidualOf(const GageSample& sample, const GageFit& fit);
 

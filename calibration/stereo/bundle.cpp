@@ -11,13 +11,13 @@
 
 #include "calibration/camera/projection_derivative.h"
 #include "calibration/camera/shape_elimination.h"
+#include "core/matrix_types.h"
 #include "core/rotation.h"
 
 namespace flextip {
 namespace {
 
 constexpr int kPose = 6, kWarp = 2, kPlace = 3;
-using Vector6d = Eigen::Matrix<double, kPose, 1>;
 
 // d exp(w) = [LeftJacobian(w) dw]x exp(w).
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {

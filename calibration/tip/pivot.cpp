@@ -9,6 +9,7 @@
 #include "calibration/residual_statistics.h"
 #include "calibration/tip/pivot_advice.h"
 #include "calibration/tip/pivot_fit.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -40,9 +41,9 @@ void DescribeTurns(const std::vector<PivotPose>& poses, const std::vector<double
   }
   const Eigen::Matrix3d mean = sum / count;
   const Eigen::Matrix3d spread = Eigen::Matrix3d::Identity() - mean.transpose() * mean;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(spread);
-  result.turn_rad = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  result.turn_axes_B = eigen.eigenvectors();
+  const SymmetricEigen eigen(spread);
+  result.turn_rad = eigen.values.cwiseMax(0.0).cwiseSqrt();
+  result.turn_axes_B = eigen.vectors;
 }
 
 /// What noise alone makes of turn_rad: the median pose's, by the greater of stated and found.
@@ -73,12 +74,12 @@ std::string WhatIsMissing(const PivotResult& result, const PivotOptions& options
         "unknown",
         axis, turned);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> tip(result.covariance.topLeftCorner<3, 3>());
-  const double sd_m = std::sqrt(tip.eigenvalues()[2]);
+  const SymmetricEigen tip(result.covariance.topLeftCorner<3, 3>());
+  const double sd_m = std::sqrt(tip.values[2]);
   if (sd_m <= options.max_sd_m) return "";
   return fmt::format(
       "the poses turn too little: the tip is known to {:.1f} mm along {} of their own frame",
-      1e3 * sd_m, AxisText(tip.eigenvectors().col(2)));
+      1e3 * sd_m, AxisText(tip.vectors.col(2)));
 }
 
 struct PivotSolution {
@@ -146,8 +147,8 @@ void DescribeResiduals(const std::vector<PivotPose>& poses, const PivotPoint& po
       Eigen::Matrix<double, 3, 6> J;
       J << poses[i].T_RB.R, -Eigen::Matrix3d::Identity();
       const Eigen::Matrix3d H = J * C * J.transpose() * S.inverse();  // its pull on itself
-      r.heldout_R = (Eigen::Matrix3d::Identity() - H).lu().solve(r.r_R);
-      whitened.emplace_back(S.llt().matrixL().solve(r.r_R));
+      r.heldout_R = Lu(Eigen::Matrix3d::Identity() - H).Solve(r.r_R);
+      whitened.emplace_back(Llt(S).SolveL(r.r_R));
       ++result.used;
     } else {
       r.reason = fmt::format("{:.2f} mm off the pivot: {:.1f} sigmas; the limit is {:.1f}",
@@ -191,7 +192,7 @@ PivotResult CalibratePivot(const std::vector<PivotPose>& poses, const PivotOptio
   result.algebraic_rms_m = AlgebraicRms(poses, start);
   const auto [point, weights] = FitPoses(poses, options, RobustPivot(poses, start), result);
   const Matrix6d H = PivotInformation(poses, weights, point);
-  const Matrix6d C = H.completeOrthogonalDecomposition().pseudoInverse();
+  const Matrix6d C = CompleteOrthogonal(H).PseudoInverse();
   DescribeResiduals(poses, point, weights, C, result);
   DescribeTurns(poses, weights, result);
   result.p_BE = point.x_B;

@@ -6,12 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "core/matrix_types.h"
 #include "core/pose.h"
 #include "core/time_series.h"
 
 namespace flextip {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 struct PivotPose {
   TimeNs t_ns = 0;

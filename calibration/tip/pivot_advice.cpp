@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -14,19 +15,19 @@ constexpr double kTurn_rad = 0.7;
 Eigen::Matrix3d MeanRotation(const std::vector<PivotPose>& poses) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const PivotPose& pose : poses) sum += pose.T_RB.R;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d U = svd.matrixU();
-  if ((U * svd.matrixV().transpose()).determinant() < 0) U.col(2) *= -1.0;
-  return U * svd.matrixV().transpose();
+  const Svd svd(sum);
+  Eigen::Matrix3d U = svd.U;
+  if ((U * svd.V.transpose()).determinant() < 0) U.col(2) *= -1.0;
+  return U * svd.V.transpose();
 }
 
 /// Root of the trace of the tip's covariance; infinite where it is not known.
 double TipSd(const Matrix6d& H) {
-  const Eigen::LDLT<Matrix6d> ldlt(H);
-  if (ldlt.info() != Eigen::Success || (ldlt.vectorD().array() <= 0).any()) {
+  const Ldlt ldlt(H);
+  if (!ldlt.Succeeded() || (ldlt.Pivots().array() <= 0).any()) {
     return std::numeric_limits<double>::infinity();
   }
-  const Matrix6d C = ldlt.solve(Matrix6d::Identity());
+  const Matrix6d C = ldlt.Inverse();
   return std::sqrt(C.topLeftCorner<3, 3>().trace());
 }
 

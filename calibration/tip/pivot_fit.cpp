@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "calibration/residual_statistics.h"
+#include "core/linear_algebra.h"
 #include "core/median.h"
 #include "core/rotation.h"
 
 namespace flextip {
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Jacobian = Eigen::Matrix<double, 3, 6>;
 
 Jacobian ErrorJacobian(const PivotPose& pose) {
@@ -67,15 +67,14 @@ Vector6d LikelihoodStep(const std::vector<PivotPose>& poses, const std::vector<d
     g += weights[i] * J.transpose() * v;
     g.head<3>() -= weights[i] * LeverGradient(poses[i], point, v);
   }
-  return -H.completeOrthogonalDecomposition().solve(g);
+  return -CompleteOrthogonal(H).Solve(g);
 }
 
 /// One step of the multiplicative iteration for variance components: what the residuals show of
 /// each over what would be expected. Its fixed point is the restricted maximum likelihood.
 void UpdateNoise(const std::vector<PivotPose>& poses, const std::vector<double>& weights,
                  bool separate_noise, PivotPoint& point) {
-  const Matrix6d C =
-      PivotInformation(poses, weights, point).completeOrthogonalDecomposition().pseudoInverse();
+  const Matrix6d C = CompleteOrthogonal(PivotInformation(poses, weights, point)).PseudoInverse();
   Eigen::Vector2d found = Eigen::Vector2d::Zero(), expected = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (weights[i] == 0.0) continue;
@@ -110,7 +109,7 @@ Eigen::Matrix3d PivotErrorCovariance(const PivotPose& pose, const PivotPoint& po
 
 double PivotSigmas(const PivotPose& pose, const PivotPoint& point) {
   const Eigen::Vector3d r = PivotError(pose, point);
-  return std::sqrt(r.dot(PivotErrorCovariance(pose, point).llt().solve(r)));
+  return std::sqrt(r.dot(Llt(PivotErrorCovariance(pose, point)).Solve(r)));
 }
 
 Matrix6d PivotInformation(const std::vector<PivotPose>& poses, const std::vector<double>& weights,
@@ -119,7 +118,7 @@ Matrix6d PivotInformation(const std::vector<PivotPose>& poses, const std::vector
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (weights[i] == 0.0) continue;
     const Jacobian J = ErrorJacobian(poses[i]);
-    H += weights[i] * J.transpose() * PivotErrorCovariance(poses[i], point).llt().solve(J);
+    H += weights[i] * J.transpose() * Llt(PivotErrorCovariance(poses[i], point)).Solve(J);
   }
   return H;
 }
@@ -132,7 +131,7 @@ PivotPoint AlgebraicPivot(const std::vector<PivotPose>& poses, const std::vector
     H += weights[i] * J.transpose() * J;
     g -= weights[i] * J.transpose() * poses[i].T_RB.p;
   }
-  const Vector6d x = H.completeOrthogonalDecomposition().solve(g);
+  const Vector6d x = CompleteOrthogonal(H).Solve(g);
   return {.x_B = x.head<3>(), .p_R = x.tail<3>()};
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "calibration/camera/projection_derivative.h"
+#include "core/linear_algebra.h"
+#include "core/matrix_types.h"
 #include "core/rotation.h"
 #include "kinematics/tip_bending.h"
 #include "vision/tags/collar_pose.h"
@@ -21,7 +23,7 @@ const CollarTag* TagOf(const TagCollar& collar, int id) {
 Eigen::MatrixXd PositionByLens(const CameraCalibration& camera, const TagCollar& collar,
                                const std::vector<TagDetection>& tags, const Pose& T_CE) {
   const auto n = static_cast<Eigen::Index>(4 + camera.distortion_coefficients.size());
-  Eigen::Matrix<double, 6, 6> by_pose = Eigen::Matrix<double, 6, 6>::Zero();
+  Matrix6d by_pose = Matrix6d::Zero();
   Eigen::MatrixXd by_lens = Eigen::MatrixXd::Zero(6, n);
   for (const TagDetection& seen : tags) {
     const CollarTag* tag = TagOf(collar, seen.id);
@@ -35,7 +37,7 @@ Eigen::MatrixXd PositionByLens(const CameraCalibration& camera, const TagCollar&
       by_lens += J.transpose() * d.by_intrinsics;
     }
   }
-  return -by_pose.ldlt().solve(by_lens).bottomRows<3>();
+  return -Ldlt(by_pose).Solve(by_lens).bottomRows<3>();
 }
 
 void AddBending(const TipBending& bending, const Pose& T_RE, double free_length_m,
@@ -69,9 +71,8 @@ Eigen::Matrix3d TipBudget::TotalCovariance() const {
 DepthAndAcross SplitByDepth(const Eigen::Matrix3d& covariance_R, const Eigen::Vector3d& depth_R) {
   const Eigen::Matrix<double, 3, 2> across = NormalBasis(depth_R);
   const Eigen::Matrix2d plane = across.transpose() * covariance_R * across;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(plane, Eigen::EigenvaluesOnly);
   return {.depth_m = std::sqrt(std::max(0.0, depth_R.dot(covariance_R * depth_R))),
-          .across_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]))};
+          .across_m = std::sqrt(std::max(0.0, SymmetricEigenvalues(plane)[1]))};
 }
 
 std::optional<TipBudget> BudgetOfTip(const CameraCalibration& camera, const TagCollar& collar,

@@ -4,14 +4,14 @@
 #include <limits>
 
 #include "calibration/camera/projection_derivative.h"
+#include "core/linear_algebra.h"
+#include "core/matrix_types.h"
 #include "core/median.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 
 namespace flextip {
 namespace {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // (w, t) of the world in the camera as one view's (dw, dp) has it.
 Matrix6d WorldOfPose(const Pose& T_CB) {
@@ -128,16 +128,15 @@ ProjectionUncertainty ProjectionUncertainty::WithView(
     B += J_pose.transpose() * J;
     P += J_pose.transpose() * J_pose;
   }
-  const Eigen::LDLT<Matrix6d> of_pose(P);
-  const Eigen::MatrixXd K = -of_pose.solve(B);
+  const Ldlt of_pose(P);
+  const Eigen::MatrixXd K = -of_pose.Solve(B);
   const double noise2 = noise_px_ * noise_px_;
   const Eigen::MatrixXd S = (A + B.transpose() * K) / noise2;
 
   // The information S, of (lens, warp), added.
   const Eigen::MatrixXd C_common = covariance_.leftCols(common);
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(common, common);
-  const Eigen::MatrixXd gain =
-      (I + S * C_common.topRows(common)).partialPivLu().solve(S * C_common.transpose());
+  const Eigen::MatrixXd gain = Lu(I + S * C_common.topRows(common)).Solve(S * C_common.transpose());
   const Eigen::MatrixXd after = covariance_ - C_common * gain;
 
   // The mean over one board more.
@@ -148,15 +147,13 @@ ProjectionUncertainty ProjectionUncertainty::WithView(
   ProjectionUncertainty u = *this;
   u.views_ = views_ + 1;
   u.covariance_ = M * after * M.transpose();
-  u.covariance_.bottomRightCorner<6, 6>() +=
-      noise2 * L * of_pose.solve(Matrix6d::Identity()) * L.transpose();
+  u.covariance_.bottomRightCorner<6, 6>() += noise2 * L * of_pose.Inverse() * L.transpose();
   u.covariance_ = (0.5 * (u.covariance_ + u.covariance_.transpose())).eval();
   return u;
 }
 
 double WorstSd(const Eigen::Matrix2d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
+  return std::sqrt(std::max(0.0, SymmetricEigenvalues(covariance)[1]));
 }
 
 double UncertaintyMap::MeanPx() const { return MeanFinite(sd_px); }

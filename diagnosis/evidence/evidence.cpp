@@ -5,16 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "diagnosis/evidence/half_normal.h"
 
 namespace flextip::diagnosis {
-namespace {
-
-double LogDeterminant(const Eigen::LLT<Eigen::MatrixXd>& llt) {
-  return 2.0 * Eigen::VectorXd(llt.matrixLLT().diagonal()).array().log().sum();
-}
-
-}  // namespace
 
 double LogSumExp(const std::vector<double>& x) {
   const double largest = *std::max_element(x.begin(), x.end());
@@ -44,11 +38,11 @@ Evidence::Context Evidence::MakeContext(double unknown_sd) const {
     context.sd[j] = std::max(narrow_[j], unknown_sd);
   Eigen::MatrixXd M = context.sd.asDiagonal() * sums_.H * context.sd.asDiagonal();
   M.diagonal().array() += 1.0;
-  const Eigen::LLT<Eigen::MatrixXd> llt(M);
+  const Llt llt(M);
   const Eigen::VectorXd g = context.sd.asDiagonal() * sums_.g;
-  context.covariance = llt.solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
+  context.covariance = llt.Inverse();
   context.mean = context.covariance * g;
-  context.log_evidence = 0.5 * (g.dot(context.mean) - LogDeterminant(llt));
+  context.log_evidence = 0.5 * (g.dot(context.mean) - llt.LogDeterminant());
   return context;
 }
 
@@ -64,11 +58,11 @@ std::vector<int> Evidence::Subset(const Hypothesis& hypothesis) const {
 Evidence::Marginal Evidence::MarginalOf(const Context& context, const std::vector<int>& subset) {
   const Eigen::MatrixXd C = context.covariance(subset, subset);
   const Eigen::VectorXd mean = context.mean(subset);
-  const Eigen::LLT<Eigen::MatrixXd> llt(C);
+  const Llt llt(C);
   Marginal marginal;
-  marginal.A = llt.solve(Eigen::MatrixXd::Identity(C.rows(), C.cols()));
-  marginal.eta = llt.solve(mean);
-  marginal.base = marginal.eta.dot(mean) + LogDeterminant(llt);
+  marginal.A = llt.Inverse();
+  marginal.eta = llt.Solve(mean);
+  marginal.base = marginal.eta.dot(mean) + llt.LogDeterminant();
   return marginal;
 }
 
@@ -88,16 +82,16 @@ double Evidence::Change(const Marginal& marginal, const Eigen::VectorXd& wide,
   const Eigen::VectorXd precision = wide.cwiseAbs2().cwiseInverse();
   Eigen::MatrixXd M = marginal.A;
   M.diagonal().array() += precision.array() - 1.0;
-  const Eigen::LLT<Eigen::MatrixXd> llt(M);
-  if (llt.info() != Eigen::Success) return -1e300;
-  const Eigen::VectorXd mean = llt.solve(marginal.eta);
-  double twice =
-      marginal.eta.dot(mean) - LogDeterminant(llt) - 2.0 * wide.array().log().sum() - marginal.base;
+  const Llt llt(M);
+  if (!llt.Succeeded()) return -1e300;
+  const Eigen::VectorXd mean = llt.Solve(marginal.eta);
+  double twice = marginal.eta.dot(mean) - llt.LogDeterminant() - 2.0 * wide.array().log().sum() -
+                 marginal.base;
   std::vector<int> positive;
   for (std::size_t i = 0; i < subset.size(); ++i)
     if (layout_.Parameter(subset[i]).positive) positive.push_back(int(i));
   if (positive.empty()) return twice;
-  const Eigen::MatrixXd C = llt.solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
+  const Eigen::MatrixXd C = llt.Inverse();
   twice += 2.0 * (double(positive.size()) * std::log(2.0) + LogPositive(mean, C, positive));
   return twice;
 }
@@ -146,7 +140,7 @@ Eigen::MatrixXd Evidence::Covariance(const WeighedHypothesis& weighed) const {
   const Eigen::VectorXd sd = PriorSd(weighed);
   Eigen::MatrixXd M = sd.asDiagonal() * sums_.H * sd.asDiagonal();
   M.diagonal().array() += 1.0;
-  const Eigen::MatrixXd C = M.llt().solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
+  const Eigen::MatrixXd C = Llt(M).Inverse();
   return sd.asDiagonal() * C * sd.asDiagonal();
 }
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/linear_algebra.h"
+
 namespace flextip::diagnosis {
 namespace {
 
@@ -62,7 +64,7 @@ Eigen::VectorXd PositiveMode(const Eigen::VectorXd& mean, const Eigen::MatrixXd&
     for (std::size_t i = 0; i < positive.size(); ++i)
       if ((set >> i & 1U) != 0) at_zero.push_back(positive[i]);
     const Eigen::VectorXd off = mean(at_zero);
-    const Eigen::VectorXd pull = Eigen::MatrixXd(covariance(at_zero, at_zero)).llt().solve(off);
+    const Eigen::VectorXd pull = Llt(Eigen::MatrixXd(covariance(at_zero, at_zero))).Solve(off);
     Eigen::VectorXd mode = mean - covariance(Eigen::all, at_zero) * pull;
     for (const int i : at_zero) mode[i] = 0.0;
     const bool allowed =

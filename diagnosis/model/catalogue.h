@@ -1,4 +1,5 @@
-// Every effect the diagnosis knows (docs/effects in docs/diagnosis.md), one file each in effects/.
+// Every effect the diagnosis knows (conventions: docs/method/diagnosis.md), one file each in
+// effects/.
 #pragma once
 
 #include <memory>

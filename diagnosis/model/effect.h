@@ -1,6 +1,6 @@
 // What an effect is to the diagnosis: its parameters, their priors, and what it does to the rod or
-// to a channel. Every effect of the catalogue is one file in effects/ (docs/diagnosis.md shows how
-// to add one).
+// to a channel. Every effect of the catalogue is one file in effects/ (docs/usage/add_an_effect.md
+// shows how to add one).
 #pragma once
 
 #include <Eigen/Dense>

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "diagnosis/replay/replay.h"
 #include "diagnosis/replay/sample_loops.h"
 
@@ -46,23 +47,23 @@ void Replay::FitForce(std::size_t k, EffectRodSolver& solver) {
     return;
   }
   if (rows.empty()) return;
-  const Eigen::LLT<Eigen::MatrixXd> noise(OwnCovariance(k, rows));
+  const Llt noise(OwnCovariance(k, rows));
   const Eigen::Matrix3d precision = ForcePrior(k).inverse();
   const auto residual = [&] { return Eigen::VectorXd(sample.compared.residual(rows)); };
   const Eigen::Vector3d mean_N = MeanForce(k);
   const auto merit = [&] {
     const Eigen::Vector3d off = sample.f_tip_N - mean_N;
-    return noise.matrixL().solve(residual()).squaredNorm() + off.dot(precision * off);
+    return noise.SolveL(residual()).squaredNorm() + off.dot(precision * off);
   };
   double damping = 0.0;
   sample.force_merit = merit();
   for (int i = 0; i < kForceSteps; ++i) {
     const Eigen::MatrixXd B = sample.compared.by_inputs(rows, Eigen::seqN(model_input::kForce, 3));
-    const Eigen::Matrix3d H = B.transpose() * noise.solve(B) + precision;
+    const Eigen::Matrix3d H = B.transpose() * noise.Solve(B) + precision;
     const Eigen::Vector3d g =
-        B.transpose() * noise.solve(residual()) - precision * (sample.f_tip_N - mean_N);
+        B.transpose() * noise.Solve(residual()) - precision * (sample.f_tip_N - mean_N);
     const Eigen::Matrix3d damped = H + damping * (H.trace() / 3.0) * Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d step = ShortStep(k, damped.llt().solve(g));
+    const Eigen::Vector3d step = ShortStep(k, Llt(damped).Solve(g));
     if (step.dot(g) < kForceRest) return;
     const ReplayedSample before = sample;
     const double now =

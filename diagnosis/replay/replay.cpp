@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/linear_algebra.h"
 #include "diagnosis/replay/sample_loops.h"
 
 namespace flextip::diagnosis {
@@ -85,7 +86,7 @@ double Replay::SmoothPortPlace(std::size_t k) const {
     N += basis * basis.transpose();
     rhs += basis * FreePortPlace(a);
   }
-  return N.llt().solve(rhs)[0];
+  return Llt(N).Solve(rhs)[0];
 }
 
 /// Returns the largest change of the port's friction since the last replay.

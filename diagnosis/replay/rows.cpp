@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "diagnosis/replay/replay.h"
 #include "diagnosis/replay/sample_loops.h"
 
@@ -14,11 +15,11 @@ struct Replay::Statistics {
   Eigen::VectorXd e;  // with the force at its prior
   Eigen::MatrixXd by_force;
   Eigen::Matrix3d force_prior;
-  Eigen::LLT<Eigen::MatrixXd> covariance;
+  Llt<Eigen::Dynamic> covariance;
 
   /// The force's most likely distance from its prior.
   Eigen::Vector3d Force(const Eigen::VectorXd& residual) const {
-    return force_prior * by_force.transpose() * covariance.solve(residual);
+    return force_prior * by_force.transpose() * covariance.Solve(residual);
   }
 };
 
@@ -72,7 +73,7 @@ Replay::Statistics Replay::StatisticsOf(std::size_t k,
   s.e += s.by_force * (sample.f_tip_N - MeanForce(k));
   const InputNoise all = input_noise_.empty() ? InputNoiseHere(k) : input_noise_[k];
   const Eigen::MatrixXd by_noise = all(s.rows, Eigen::all);
-  s.covariance.compute(OwnCovariance(k, s.rows) + by_noise * by_noise.transpose());
+  s.covariance = Llt(OwnCovariance(k, s.rows) + by_noise * by_noise.transpose());
   return s;
 }
 
@@ -81,8 +82,7 @@ Replay::InputNoise Replay::InputNoiseHere(std::size_t k) const {
   InputNoise noise;
   noise.leftCols<3>() =
       samples_.samples[k].p_RW_noise_m * by_inputs.middleCols<3>(model_input::kWrist);
-  noise.rightCols<3>() =
-      by_inputs.middleCols<3>(model_input::kForce) * Eigen::Matrix3d(ForcePrior(k).llt().matrixL());
+  noise.rightCols<3>() = by_inputs.middleCols<3>(model_input::kForce) * Llt(ForcePrior(k)).L();
   return noise;
 }
 
@@ -129,15 +129,14 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
     for (std::size_t k = begin; k < end; ++k) {
       if (all.Rows(k) == 0) continue;
       const Statistics s = StatisticsOf(k, rows_used);
-      const auto L = s.covariance.matrixL();
-      const Eigen::MatrixXd by_force = L.solve(s.by_force);
+      const Eigen::MatrixXd by_force = s.covariance.SolveL(s.by_force);
       all.force_share[k] = (by_force.transpose() * by_force * s.force_prior).trace();
-      all.e.segment(all.first_row[k], all.Rows(k)) = L.solve(s.e);
-      all.X.middleRows(all.first_row[k], all.Rows(k)) = L.solve(Derivatives(k, s.rows));
+      all.e.segment(all.first_row[k], all.Rows(k)) = s.covariance.SolveL(s.e);
+      all.X.middleRows(all.first_row[k], all.Rows(k)) = s.covariance.SolveL(Derivatives(k, s.rows));
       const Rows sd = RowNoise(k);
       Eigen::MatrixXd units = Eigen::MatrixXd::Zero(all.Rows(k), all.Rows(k));
       for (int i = 0; i < all.Rows(k); ++i) units(i, i) = sd[s.rows[i]];
-      all.units[k] = L.solve(units);
+      all.units[k] = s.covariance.SolveL(units);
       all.rows[k] = s.rows;
     }
   });

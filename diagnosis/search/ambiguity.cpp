@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "diagnosis/evidence/generic_basis.h"
 #include "diagnosis/search/motion_library.h"
 
@@ -20,7 +21,7 @@ double CostOf(const Eigen::MatrixXd& H, const Eigen::VectorXd& truth, const Eige
   Eigen::MatrixXd M = sd.asDiagonal() * H * sd.asDiagonal();
   M.diagonal().array() += 1.0;
   const Eigen::VectorXd sg = sd.asDiagonal() * g;
-  return truth.dot(g) - sg.dot(Eigen::VectorXd(M.llt().solve(sg)));
+  return truth.dot(g) - sg.dot(Eigen::VectorXd(Llt(M).Solve(sg)));
 }
 
 /// Effects that could stand in the place of `effect` with this data.

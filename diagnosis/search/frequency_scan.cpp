@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/linear_algebra.h"
+
 namespace flextip::diagnosis {
 namespace {
 
@@ -39,9 +41,9 @@ double BestPortFrequency(const Replay& replay) {
   const Eigen::MatrixXd X = rows.X * sd.asDiagonal();
   Eigen::MatrixXd M = X.transpose() * X;
   M.diagonal().array() += 1.0;
-  const Eigen::LLT<Eigen::MatrixXd> llt(M);
+  const Llt llt(M);
   const Eigen::VectorXd z = rows.e + rows.X * replay.Theta();
-  const Eigen::VectorXd left = z - X * llt.solve(X.transpose() * z);
+  const Eigen::VectorXd left = z - X * llt.Solve(X.transpose() * z);
 
   // Steps of a quarter of the resolution.
   const double step_hz = 0.25 / std::max(set.Duration(), 1.0);
@@ -57,10 +59,10 @@ double BestPortFrequency(const Replay& replay) {
       B.middleRows(rows.first_row[k], rows.Rows(k)).rightCols<3>() = std::cos(angle) * block;
     }
     const Eigen::MatrixXd XB = X.transpose() * B;
-    Eigen::MatrixXd A = B.transpose() * B - XB.transpose() * llt.solve(XB);
+    Eigen::MatrixXd A = B.transpose() * B - XB.transpose() * llt.Solve(XB);
     A.diagonal().array() += 1e-9 * A.trace() + 1e-12;
     const Eigen::VectorXd b = B.transpose() * left;
-    score[f] = b.dot(Eigen::VectorXd(A.llt().solve(b)));
+    score[f] = b.dot(Eigen::VectorXd(Llt(A).Solve(b)));
   });
   const auto best = std::max_element(score.begin(), score.end()) - score.begin();
   return kLowest_hz + double(best) * step_hz;

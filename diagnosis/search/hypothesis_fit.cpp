@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "diagnosis/effects/port_motion.h"
 #include "diagnosis/evidence/force_volume.h"
 #include "diagnosis/search/frequency_scan.h"
@@ -28,7 +29,7 @@ double Merit(const LinearProblem& problem, const Eigen::VectorXd& theta,
   Eigen::MatrixXd M =
       generic_sd.asDiagonal() * sums.H.bottomRightCorner(G, G) * generic_sd.asDiagonal();
   M.diagonal().array() += 1.0;
-  return merit - left.dot(Eigen::VectorXd(M.llt().solve(left)));
+  return merit - left.dot(Eigen::VectorXd(Llt(M).Solve(left)));
 }
 
 /// `mode` no further out than is plausible.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "recording/cameras/yaml.h"
 #include "recording/text/text.h"
 #include "recording/text/yaml_map.h"
@@ -46,8 +47,7 @@ Eigen::MatrixXd ReadCovariance(const YamlMap& map, const std::vector<std::string
   if (asymmetry > 1e-9 * C.cwiseAbs().maxCoeff()) throw map.Error("data", "not symmetric");
   const Eigen::VectorXd inverse = scale.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
   const Eigen::MatrixXd correlation = inverse.asDiagonal() * C * inverse.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation, Eigen::EigenvaluesOnly);
-  if (n > 0 && solver.eigenvalues()[0] < kLeastEigenvalue * static_cast<double>(n)) {
+  if (n > 0 && SymmetricEigenvalues(correlation)[0] < kLeastEigenvalue * static_cast<double>(n)) {
     throw map.Error("data", "no covariance: an eigenvalue is negative");
   }
   return C;

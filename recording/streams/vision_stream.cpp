@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/linear_algebra.h"
 #include "recording/streams/sensor_head.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/streams/series_file.h"
@@ -30,8 +31,7 @@ Eigen::Matrix3d ReadCovariance(const CsvReader& csv) {
   Eigen::Matrix3d covariance;
   covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
   // Rounding to a few digits may leave a vanishing eigenvalue a little below zero.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
-  const auto& values = solver.eigenvalues();
+  const Eigen::Vector3d values = SymmetricEigenvalues(covariance);
   if (values(0) < -1e-6 * std::max(values(2), 0.0) || values(2) < 0) {
     throw csv.Error(fmt::format(
         "the covariance has the eigenvalue {:.3g} m2, expected none below 0", values(0)));

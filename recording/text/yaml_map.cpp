@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "core/linear_algebra.h"
 #include "recording/text/text.h"
 
 namespace flextip {
@@ -217,8 +218,8 @@ Pose RigidPose(const std::vector<double>& data, const MakeError& error) {
                     off, pose.R.determinant()));
   }
   if (off > 1e-12) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(pose.R, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    pose.R = svd.matrixU() * svd.matrixV().transpose();
+    const Svd svd(pose.R);
+    pose.R = svd.U * svd.V.transpose();
   }
   return pose;
 }

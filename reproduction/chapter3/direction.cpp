@@ -5,6 +5,7 @@
 
 #include "control/direction_controller.h"
 #include "core/derivative_check.h"
+#include "core/linear_algebra.h"
 #include "reproduction/chapter3/parts.h"
 
 namespace flextip::reproduction {
@@ -50,11 +51,11 @@ AtDepth Examine(double depth, double force_N = kForce_N) {
       DirectionByRegistration(J.position, Eigen::Vector3d::Zero(), rod.p_RE, rod.end.t);
   // d by the place: the tip's direction as its place moves.
   const Eigen::Matrix3d by_place = J.direction * J.position.inverse();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(by_place);
+  const Eigen::Vector3d sigma = SingularValues(by_place);
   AtDepth at;
   at.registration_off = (by_registration - J.direction).norm() / J.direction.norm();
-  at.least_mm_per_deg = 1e3 * kDegree / svd.singularValues()[0];
-  at.most_mm_per_deg = 1e3 * kDegree / svd.singularValues()[1];
+  at.least_mm_per_deg = 1e3 * kDegree / sigma[0];
+  at.most_mm_per_deg = 1e3 * kDegree / sigma[1];
   at.by_insertion_deg = 0.01 * (by_place * rod.end.t).norm() / kDegree;
   return at;
 }

@@ -57,10 +57,7 @@ std::optional<Eigen::Matrix2d> StraightJacobian(const Measurements& z, const Ch4
 }
 
 EstimatorOptions Options(const Ch4Setup& setup) {
-  EstimatorOptions options;
-  options.instrument = setup.instrument;
-  options.p_RP = setup.p_RP;
-  options.gravity_m_s2 = setup.gravity_m_s2;
+  EstimatorOptions options = EstimatorOptionsFor(setup.instrument, setup.p_RP, setup.gravity_m_s2);
   options.estimate_tissue = setup.tissue;
   return options;
 }

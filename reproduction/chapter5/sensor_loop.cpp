@@ -4,8 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "control/controller.h"
-#include "estimation/window_estimator.h"
+#include "pipeline/instrument_controller.h"
 #include "simulation/closed_loop/tip_path.h"
 #include "simulation/plant/plant.h"
 #include "simulation/sensors/sensors.h"
@@ -86,41 +85,30 @@ ControllerKind KindFor(const SensorCase& setup) {
   return sees ? ControllerKind::kRodTrack : ControllerKind::kRodCalculate;
 }
 
-EstimatorOptions MakeEstimator(const SensorCase& setup) {
-  EstimatorOptions options;
-  options.instrument = kInstrument;
-  options.p_RP = kPort;
-  options.port_prior_m = setup.port_prior_m;
-  options.use_positions = setup.sensors.SeesTip();
+InstrumentControllerOptions MakeController(const SensorCase& setup) {
+  InstrumentControllerOptions options;
+  options.estimator =
+      EstimatorOptionsFor(kInstrument, kPort, Eigen::Vector3d::Zero(), setup.port_prior_m);
+  options.window_samples = setup.window ? WindowOptions().samples : 0;
+  options.control.kind = KindFor(setup);
+  options.control.max_step_m = 0.02;
+  options.em_is_tip = true;
+  options.straight_at_registered_port = true;
   return options;
 }
 
-/// The newest sample of the sensors in the set.
-Measurements Gather(const Recording& r, const SensorSet& sensors) {
-  Measurements z;
-  z.p_RW = r.wrist0->samples.back().value.p_RW;
-  z.wrist_position_noise_m = r.wrist0->position_noise_m;
-  z.R_RW = r.wrist0->samples.back().value.q_RW->toRotationMatrix();
-  z.wrist_orientation_noise_rad = r.wrist0->orientation_noise_rad;
-  if (sensors.tip) {
-    z.tip = r.vision0->tips.back().value;
-    z.tip_direction_noise_rad = r.vision0->direction_noise_rad;
-    if (!sensors.tip_direction) z.tip->d_RE.reset();
-  }
-  if (sensors.em_position || sensors.em_direction) {
-    const EmSample& em = r.em0->samples.back().value;
-    z.em = EmMeasurement{Pose::FromQuaternion(em.q_RS, em.p_RS), kEmFromTip_m,
-                         r.em0->position_noise_m, r.em0->orientation_noise_rad};
-    if (!sensors.em_position) z.em->position_noise_m = 1e3;  // its position says nothing
-  }
-  if (sensors.strain) {
-    z.strain =
-        StrainMeasurement{r.strain0->moments_Nm.back().value,
-                          {r.strain0->station_from_wrist_m[0], r.strain0->station_from_wrist_m[1]},
-                          r.strain0->moment_noise_Nm};
-  }
-  if (sensors.load) z.load = LoadMeasurement{r.load0->f_tip_N.back().value, r.load0->force_noise_N};
-  return z;
+/// The newest samples of the sensors in the set.
+SensorReadings ReadingsOf(const Recording& recording, const SensorSet& sensors) {
+  SensorReadings readings = NewestReadings(recording);
+  readings.em1.reset();
+  if (!sensors.tip) readings.tip.reset();
+  if (readings.tip && !sensors.tip_direction) readings.tip->value.tip.d_RE.reset();
+  if (!sensors.em_position && !sensors.em_direction) readings.em0.reset();
+  if (readings.em0 && !sensors.em_position)
+    readings.em0->value.position_noise_m = 1e3;  // its position says nothing
+  if (!sensors.strain) readings.strain.reset();
+  if (!sensors.load) readings.load.reset();
+  return readings;
 }
 
 class SensorLoop {
@@ -129,23 +117,18 @@ class SensorLoop {
       : setup_(setup),
         plant_(MakePlant(setup), {.links_before_port = 60, .links_behind_port = 60}),
         sensors_(AllSensors(), setup.seed),
-        single_(MakeEstimator(setup)),
-        window_({.estimator = MakeEstimator(setup)}),
-        controller_({.kind = KindFor(setup), .max_step_m = 0.02}) {}
+        controller_(MakeController(setup)) {}
 
   SensorRun Run() {
     Wander();
     if (run_.lost) return run_;
     std::optional<simulation::TipPath> path;
-    path.emplace(MakePath(setup_.move), shape_.T_RE().p, kRate_hz);
+    path.emplace(MakePath(setup_.move), shape_.T_RE(), kRate_hz);
     Eigen::Vector3d p_RW = kWrist;
     while (!path->Done() && Move(p_RW)) {
-      const Measurements z = Sense();
-      const ShaftEstimate estimate = Estimate(z);
-      const ControlInput input = MakeInput(z, estimate, path->Advance(Eigen::Vector3d::Zero()));
-      const ControlOutput output = controller_.Step(input);
-      Score(output, path->Deviation(shape_.T_RE().p));
-      p_RW = output.p_RW_command + (p_RW - z.p_RW);
+      const ControllerCommand command = Cycle(path->Advance(Eigen::Vector3d::Zero()));
+      Score(command, path->Deviation(shape_.T_RE().p));
+      p_RW = command.p_RW_command + (p_RW - command.measurements.p_RW);
     }
     const double count = std::max(1, run_.updates);
     run_.tip_rms_m = std::sqrt(run_.tip_rms_m / count);
@@ -159,7 +142,7 @@ class SensorLoop {
     for (int i = 0; i <= kWanderUpdates && !run_.lost; ++i) {
       const double turn = 2.0 * 3.14159265358979 * i / kWanderUpdates;
       const Eigen::Vector3d away(std::sin(turn), std::sin(2.0 * turn), std::sin(3.0 * turn));
-      if (Move(kWrist + kWander_m * away)) Estimate(Sense());
+      if (Move(kWrist + kWander_m * away)) Cycle({});
     }
   }
 
@@ -169,38 +152,20 @@ class SensorLoop {
     return !run_.lost;
   }
 
-  Measurements Sense() {
-    const TimeNs t_ns = simulation::kSimulationStart_ns + std::llround(tick_++ * 1e9 / kRate_hz);
-    sensors_.Sample(shape_, t_ns, recording_);
-    return Gather(recording_, setup_.sensors);
+  /// Without a goal the cycle only watches.
+  ControllerCommand Cycle(const std::optional<Eigen::Vector3d>& p_RE_desired) {
+    ControllerInputs inputs;
+    inputs.t_ns = simulation::kSimulationStart_ns + std::llround(tick_++ * 1e9 / kRate_hz);
+    sensors_.Sample(shape_, inputs.t_ns, recording_);
+    inputs.sensors = ReadingsOf(recording_, setup_.sensors);
+    inputs.p_RE_desired = p_RE_desired;
+    return controller_.Step(inputs);
   }
 
-  ShaftEstimate Estimate(const Measurements& z) {
-    return setup_.window ? window_.Update(z).shaft : single_.Update(z);
-  }
-
-  ControlInput MakeInput(const Measurements& z, const ShaftEstimate& estimate,
-                         const Eigen::Vector3d& p_RE_desired) const {
-    ControlInput input;
-    input.p_RW = z.p_RW;
-    input.p_RE_desired = p_RE_desired;
-    input.model = estimate.model;
-    if (setup_.model == SensorModel::kStraight) input.model.p_RP = kPort;
-    input.tip_measured = setup_.sensors.SeesTip();
-    if (z.tip) {
-      input.p_RE_measured = z.tip->p_RE;
-    } else if (z.em) {
-      input.p_RE_measured = z.em->T_RS.p + kEmFromTip_m * z.em->T_RS.R.col(0);
-    }
-    const bool fused = setup_.model == SensorModel::kRod && estimate.status == EstimateStatus::kOk;
-    if (fused) input.p_RE_measured = estimate.p_RE;
-    return input;
-  }
-
-  void Score(const ControlOutput& output, double deviation_m) {
+  void Score(const ControllerCommand& command, double deviation_m) {
     ++run_.updates;
-    run_.without_model += output.status != ControlStatus::kOk;
-    run_.tip_rms_m += (output.p_RE_used - shape_.T_RE().p).squaredNorm();
+    run_.without_model += command.status != ControlStatus::kOk;
+    run_.tip_rms_m += (command.p_RE_used - shape_.T_RE().p).squaredNorm();
     run_.path_rms_m += deviation_m * deviation_m;
     run_.path_max_m = std::max(run_.path_max_m, deviation_m);
   }
@@ -208,9 +173,7 @@ class SensorLoop {
   SensorCase setup_;
   simulation::Plant plant_;
   simulation::Sensors sensors_;
-  ShaftEstimator single_;
-  WindowEstimator window_;
-  TipController controller_;
+  InstrumentController controller_;
   Recording recording_;
   simulation::PlantShape shape_;
   SensorRun run_;

@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <cstdint>
 
+#include "estimation/shaft_estimator.h"
+
 namespace flextip::reproduction {
 
 /// What is measured besides the pose of the wrist.
@@ -28,9 +30,9 @@ struct SensorCase {
   SensorSet sensors;
   SensorModel model = SensorModel::kRod;  ///< tracks the tip where it is seen, else calculates it
   SensorMove move = SensorMove::kPress;
-  double port_off_m = 0.0;       ///< true port from the registered one, across the shaft
-  double port_prior_m = 0.0003;  ///< how well the estimator believes it knows the port
-  bool window = false;           ///< estimate over a window
+  double port_off_m = 0.0;  ///< true port from the registered one, across the shaft
+  double port_prior_m = kPortRegistration_m;  ///< how well the estimator believes it knows the port
+  bool window = false;                        ///< estimate over a window
   std::uint64_t seed = 1;
 };
 

@@ -41,10 +41,7 @@ simulation::SensorSetup MakeSensors(const TrialSetup& setup, const TrialPlaces& 
 }
 
 EstimatorOptions MakeEstimator(const TrialSetup& setup, const TrialPlaces& places) {
-  EstimatorOptions options;
-  options.instrument = Rod();
-  options.p_RP = places.p_RP;
-  options.gravity_m_s2 = kGravity;
+  EstimatorOptions options = EstimatorOptionsFor(Rod(), places.p_RP, kGravity);
   options.use_positions = UsesTipMeasurement(setup.kind);
   options.estimate_tissue = setup.tissue_response;
   return options;

@@ -7,6 +7,8 @@
 
 #include "control/virtual_fixture.h"
 #include "estimation/slope_fit.h"
+#include "pipeline/sensor_readings.h"
+#include "pipeline/tip_fusion.h"
 #include "reproduction/chapter5/setup.h"
 #include "reproduction/chapter5/wrist.h"
 #include "simulation/plant/plant.h"
@@ -132,22 +134,18 @@ class TrialRun {
       age = std::min(static_cast<std::size_t>(std::lround(setup_.vision_latency_s * tick_hz_)),
                      wrists.size() - 1);
     }
-    const WristSample& wrist = wrists[wrists.size() - 1 - age].value;
-    z_ = Measurements();
-    z_.p_RW = wrist.p_RW;
-    z_.wrist_position_noise_m = kEncoderNoise_m;
-    z_.R_RW = wrist.q_RW->toRotationMatrix();
-    z_.wrist_orientation_noise_rad = setup_.em_orientation_noise_rad;
+    SensorReadings readings;
+    const Sample<WristSample>& wrist = wrists[wrists.size() - 1 - age];
+    readings.wrist = {wrist.t_ns, Measured(*recording_.wrist0, wrist.value)};
     p_RW_then_ = p_RW_before_[p_RW_before_.size() - 1 - age];
+    const SensorReadings newest = NewestReadings(recording_);
     if (setup_.sense == TipSense::kVision) {
-      z_.tip = recording_.vision0->tips.back().value;
-      z_.tip_direction_noise_rad = recording_.vision0->direction_noise_rad;
-      if (hidden_) z_.tip->status = TipStatus::kLost;
+      if (!hidden_) readings.tip = newest.tip;
+      z_ = *Gather(readings);
       return;
     }
-    const EmSample& em = recording_.em0->samples.back().value;
-    z_.em = EmMeasurement{Pose::FromQuaternion(em.q_RS, em.p_RS), kSensorFromTip_m,
-                          setup_.em_position_noise_m, setup_.em_orientation_noise_rad};
+    readings.em0 = newest.em0;
+    z_ = *Gather(readings);
     if (!UsesClosedForm(setup_)) return;
     z_.tip.emplace();  // the thesis's closed forms take the tip by itself
     z_.tip->status = TipStatus::kOk;
@@ -176,7 +174,7 @@ class TrialRun {
   void FindTip(const ShaftEstimate& estimate, ControlInput& input) {
     input.tip_measured = setup_.sense == TipSense::kEm || !hidden_;
     if (!input.tip_measured) return;
-    input.p_RE_measured = setup_.sense == TipSense::kEm ? p_RE_em_ : z_.tip->p_RE;
+    input.p_RE_measured = *MeasuredTip(z_, true);
     tip_variance_m2_ = std::pow(setup_.em_position_noise_m, 2);
     if (setup_.kind != ControllerKind::kRodTrack || estimate.status != EstimateStatus::kOk) return;
     if (setup_.level_tip) {

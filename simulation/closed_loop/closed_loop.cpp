@@ -5,19 +5,29 @@
 #include <optional>
 
 #include "core/error.h"
-#include "estimation/shaft_estimator.h"
+#include "pipeline/instrument_controller.h"
 
 namespace flextip::simulation {
 namespace {
 
-EstimatorOptions MakeEstimatorOptions(const LoopSetup& setup) {
-  EstimatorOptions options;
-  options.instrument = setup.base.instrument;
-  options.p_RP = setup.base.p_RP;
-  options.gravity_m_s2 = setup.base.gravity_m_s2;
-  options.port_prior_m = setup.port_prior_m;
-  options.use_positions = UsesTipMeasurement(setup.controller.kind);
+InstrumentControllerOptions MakeControllerOptions(const LoopSetup& setup) {
+  const Recording& base = setup.base;
+  InstrumentControllerOptions options;
+  options.estimator =
+      EstimatorOptionsFor(base.instrument, base.p_RP, base.gravity_m_s2, setup.port_prior_m);
+  options.control = setup.controller;
+  options.direction = setup.direction;
+  options.direction_free_axis = setup.direction_free_axis;
+  options.fixtures = setup.fixtures;
   return options;
+}
+
+/// The tracker of recordings; none where the tip's sensor is simulated by its figures.
+std::unique_ptr<InstrumentTracker> MakeTracker(const LoopSetup& setup, const LoopCamera* camera) {
+  if (camera == nullptr) return nullptr;
+  InstrumentTrackerSetup tracker = TrackerSetupOf(setup.base, camera->tracker);
+  tracker.with_model = true;
+  return std::make_unique<InstrumentTracker>(tracker);
 }
 
 /// With a camera, the tip is what vision sees, not what a figure says it would.
@@ -34,9 +44,8 @@ class Loop {
         camera_(camera),
         plant_(setup.plant, setup.plant_options),
         sensors_(WithoutTipIf(camera != nullptr, setup.sensors), setup.seed, setup.sensor_effects),
-        model_(setup.model ? setup.model() : nullptr),
-        estimator_(MakeEstimatorOptions(setup)),
-        controller_(setup.controller),
+        controller_(MakeControllerOptions(setup), setup.model ? setup.model() : nullptr,
+                    MakeTracker(setup, camera)),
         p_RW_(setup.p_RW_start),
         p_RW_command_(setup.p_RW_start) {
     result_.recording = setup.base;
@@ -46,7 +55,7 @@ class Loop {
       throw InputError(
           fmt::format("the shaft has no equilibrium at the start: {}", shape_.message));
     }
-    path_.emplace(setup.path, shape_.T_RE().p, setup.update_rate_hz);
+    path_.emplace(setup.path, shape_.T_RE(), setup.update_rate_hz);
   }
 
   LoopResult Run(const std::function<void(int, int)>& progress) {
@@ -84,8 +93,6 @@ class Loop {
   }
 
   void StartCamera() {
-    const CameraStream& stream = *setup_.base.cam0;
-    tracker_.emplace(stream.calibration, *setup_.base.tags0, camera_->tracker);
     result_.recording.vision0.emplace();
     result_.recording.vision0->comment = "tip by vision, as the loop saw it";
     result_.recording.vision0->rate_hz = setup_.update_rate_hz;
@@ -108,99 +115,59 @@ class Loop {
     result_.truth.push_back({t_ns_, {shape_.T_RE().p, shape_.T_RE().Quaternion(), p_RW_}});
   }
 
-  /// The camera's frame, rendered, kept, and tracked as a recorded one would be.
-  void See() {
+  /// The camera's frame, rendered and kept.
+  Image TakePicture() {
     const int number = static_cast<int>(result_.recording.cam0->filenames.size());
-    const Image frame = camera_->laparoscope.Render(shape_.Curve(), number);
+    Image frame = camera_->laparoscope.Render(shape_.Curve(), number);
     result_.recording.cam0->filenames.push_back({t_ns_, fmt::format("{}.png", t_ns_)});
     if (camera_->save) camera_->save(t_ns_, frame);
-    const TipTrack track = tracker_->Track(frame, t_ns_);
-    result_.recording.vision0->tips.push_back({t_ns_, track.tip});
-    direction_noise_rad_ = track.direction_noise_rad;
-    if (track.tip.d_RE) {
-      squared_direction_noise_ += track.direction_noise_rad * track.direction_noise_rad;
-      ++directions_;
-    }
+    return frame;
   }
 
-  /// What the sensors have said by now: each one's last sample, and the tip only if it is new.
-  Measurements Gather() const {
-    const Recording& r = result_.recording;
-    Measurements z;
-    const WristSample& wrist = r.wrist0->samples.back().value;
-    z.p_RW = wrist.p_RW;
-    z.wrist_position_noise_m = r.wrist0->position_noise_m;
-    if (wrist.q_RW) z.R_RW = wrist.q_RW->toRotationMatrix();
-    z.wrist_orientation_noise_rad = r.wrist0->orientation_noise_rad;
-    if (r.vision0 && !r.vision0->tips.empty() && r.vision0->tips.back().t_ns == t_ns_) {
-      z.tip = r.vision0->tips.back().value;
-      z.tip_direction_noise_rad =
-          camera_ != nullptr ? direction_noise_rad_ : r.vision0->direction_noise_rad;
-    }
-    if (r.em0 && !r.em0->samples.empty()) {
-      const EmSample& em = r.em0->samples.back().value;
-      z.em = EmMeasurement{Pose::FromQuaternion(em.q_RS, em.p_RS), r.em0->distance_from_tip_m,
-                           r.em0->position_noise_m, r.em0->orientation_noise_rad};
-    }
-    if (r.em1 && !r.em1->samples.empty()) {
-      z.port_direction = r.em1->samples.back().value.q_RS.toRotationMatrix().col(0);
-      z.port_direction_noise_rad = r.em1->orientation_noise_rad;
-    }
-    if (r.strain0 && !r.strain0->moments_Nm.empty()) {
-      z.strain = StrainMeasurement{
-          r.strain0->moments_Nm.back().value,
-          {r.strain0->station_from_wrist_m[0], r.strain0->station_from_wrist_m[1]},
-          r.strain0->moment_noise_Nm};
-    }
-    if (r.load0 && !r.load0->f_tip_N.empty()) {
-      z.load = LoadMeasurement{r.load0->f_tip_N.back().value, r.load0->force_noise_N};
-    }
-    return z;
+  void NoteTip(const TipTrack& track) {
+    result_.recording.vision0->tips.push_back({t_ns_, track.tip});
+    if (!track.tip.d_RE) return;
+    squared_direction_noise_ += track.direction_noise_rad * track.direction_noise_rad;
+    ++directions_;
   }
 
   void Update() {
-    if (camera_ != nullptr) See();
-    const Measurements measured = Gather();
-    if (model_) model_->Advance(t_ns_, measured, f_tip_N_);
-    const Measurements z = model_ ? model_->Correct(measured) : measured;
-    ControlInput input;
-    input.p_RW = z.p_RW;
-    const ShaftEstimate estimate = estimator_.Update(z, model_ ? model_->Shaft() : ShaftChange());
-    f_tip_N_ = estimate.model.f_tip_N;
-    input.model = estimate.model;
-    if (z.tip && z.tip->status != TipStatus::kLost) {
-      input.tip_measured = true;
-      // The thesis's controllers take the tip as its sensor gives it; ours as all sensors give it.
-      const bool fused = setup_.controller.kind == ControllerKind::kRodTrack &&
-                         estimate.status == EstimateStatus::kOk;
-      input.p_RE_measured = fused ? estimate.p_RE : z.tip->p_RE;
-    }
-    input.p_RE_desired = path_->Advance(p_RE_known_.value_or(input.p_RE_measured));
-    const ControlOutput output = controller_.Step(input);
-    if (output.status != ControlStatus::kNoTip) p_RE_known_ = output.p_RE_used;
+    ControllerInputs inputs;
+    inputs.t_ns = inputs.pictures_t_ns = t_ns_;
+    inputs.sensors = NewestReadings(result_.recording);
+    inputs.p_RE_desired = path_->Advance(p_RE_known_);
+    inputs.d_RE_desired = path_->Direction();
+    std::optional<Image> frame;
+    if (camera_ != nullptr) frame = TakePicture();
+    const Image* const pictures[] = {frame ? &*frame : nullptr};
+    if (frame) inputs.pictures = pictures;
+    const ControllerCommand command = controller_.Step(inputs);
+    if (frame) NoteTip(*controller_.Track());
+    if (command.status != ControlStatus::kNoTip) p_RE_known_ = command.p_RE_used;
     // The arm is commanded from where its encoders say it is.
-    p_RW_command_ = output.p_RW_command + (p_RW_ - z.p_RW);
-    Note(input, output);
+    p_RW_command_ = command.p_RW_command + (p_RW_ - command.measurements.p_RW);
+    Note(command);
   }
 
-  void Note(const ControlInput& input, const ControlOutput& output) {
+  void Note(const ControllerCommand& command) {
     if (!result_.recording.command0) {
       result_.recording.command0.emplace();
       result_.recording.command0->comment = Name(setup_.controller.kind);
       result_.recording.command0->rate_hz = setup_.update_rate_hz;
     }
-    result_.recording.command0->p_RW.push_back({t_ns_, output.p_RW_command});
-    ++result_.control_statuses[Name(output.status)];
+    result_.recording.command0->p_RW.push_back({t_ns_, command.p_RW_command});
+    ++result_.control_statuses[Name(command.status)];
     if (result_.recording.vision0 && !result_.recording.vision0->tips.empty()) {
       ++result_.tip_statuses[Name(result_.recording.vision0->tips.back().value.status)];
     }
-    result_.steps_limited += output.step_limited;
-    result_.steps_damped += output.damped;
+    if (!setup_.fixtures.list.empty()) ++result_.fixture_statuses[Name(command.goal.status)];
+    result_.steps_limited += command.step_limited;
+    result_.steps_damped += command.damped;
     LoopUpdate update;
     update.t_ns = t_ns_;
-    update.p_RE_desired = input.p_RE_desired;
+    update.p_RE_desired = command.goal.p_RE_desired;
     update.p_RE = shape_.T_RE().p;
-    update.status = output.status;
+    update.status = command.status;
     result_.updates.push_back(update);
   }
 
@@ -216,6 +183,10 @@ class Loop {
   void Finish() {
     result_.rms_deviation_m = std::sqrt(squared_deviation_ / scored_);
     result_.final_error_m = (shape_.T_RE().p - result_.updates.back().p_RE_desired).norm();
+    if (const auto d_RE = path_->Direction()) {
+      const Eigen::Vector3d is = shape_.T_RE().R.col(0);
+      result_.final_direction_error_rad = std::atan2(is.cross(*d_RE).norm(), is.dot(*d_RE));
+    }
     if (directions_ > 0) {
       result_.recording.vision0->direction_noise_rad =
           std::sqrt(squared_direction_noise_ / directions_);
@@ -226,17 +197,13 @@ class Loop {
   const LoopCamera* camera_;
   Plant plant_;
   Sensors sensors_;
-  std::unique_ptr<InstrumentModel> model_;
-  ShaftEstimator estimator_;
-  TipController controller_;
-  std::optional<TipTracker> tracker_;
+  InstrumentController controller_;
   std::optional<TipPath> path_;
   PlantShape shape_;
   Eigen::Vector3d p_RW_, p_RW_command_;
-  Eigen::Vector3d f_tip_N_ = Eigen::Vector3d::Zero();  // as estimated last
-  std::optional<Eigen::Vector3d> p_RE_known_;
+  Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();  // by the controller
   TimeNs t_ns_ = kSimulationStart_ns;
-  double direction_noise_rad_ = 0.0, squared_direction_noise_ = 0.0, squared_deviation_ = 0.0;
+  double squared_direction_noise_ = 0.0, squared_deviation_ = 0.0;
   int directions_ = 0, scored_ = 0;
   LoopResult result_;
 };

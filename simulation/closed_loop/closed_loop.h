@@ -5,12 +5,16 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "control/controller.h"
+#include "control/direction_controller.h"
+#include "control/fixtures.h"
 #include "core/image.h"
 #include "estimation/instrument_model.h"
+#include "estimation/shaft_estimator.h"
 #include "recording/recording.h"
 #include "recording/truth.h"
 #include "simulation/closed_loop/tip_path.h"
@@ -35,7 +39,10 @@ struct LoopSetup {
   double update_rate_hz = 30.0;  ///< of the controller: the camera's
   PathSetup path;
   ControllerOptions controller;
-  double port_prior_m = 0.0003;
+  std::optional<DirectionOptions> direction;  ///< where the path's waypoints have directions
+  Eigen::Vector3d direction_free_axis = Eigen::Vector3d::Zero();
+  Fixtures fixtures;
+  double port_prior_m = kPortRegistration_m;
   std::uint64_t seed = 1;
 };
 
@@ -49,9 +56,9 @@ struct LoopCamera {
 /// One update, for scoring and pictures.
 struct LoopUpdate {
   TimeNs t_ns = 0;
-  Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();
-  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();  ///< true
-  double deviation_m = 0.0;                        ///< of the true tip from the path
+  Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();  ///< as the fixtures left it
+  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();          ///< true
+  double deviation_m = 0.0;                                ///< of the true tip from the path
   ControlStatus status = ControlStatus::kOk;
 };
 
@@ -60,8 +67,10 @@ struct LoopResult {
   Series<TruthSample> truth;
   std::vector<LoopUpdate> updates;
   double max_deviation_m = 0.0, rms_deviation_m = 0.0;
-  double final_error_m = 0.0;  ///< of the true tip from the last waypoint
+  double final_error_m = 0.0;              ///< of the true tip from the last waypoint
+  double final_direction_error_rad = 0.0;  ///< where the path has directions
   std::map<std::string, int> control_statuses, tip_statuses;
+  std::map<std::string, int> fixture_statuses;  ///< empty without fixtures
   int steps_limited = 0, steps_damped = 0;
 };
 

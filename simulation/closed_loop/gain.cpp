@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "diagnosis/model/model_at.h"
 #include "simulation/closed_loop/closed_loop.h"
-#include "simulation/plant/instrument_effects.h"
+#include "simulation/effects/catalogue.h"
 
 namespace flextip::simulation {
 namespace {
@@ -55,6 +56,13 @@ std::optional<Stream> Empty(std::optional<Stream> stream, Samples Stream::*sampl
   return stream;
 }
 
+/// An EM sensor of the simulation stands in R as it says.
+std::optional<EmStream> EmptyEm(const std::optional<EmStream>& recorded) {
+  auto em = Empty(recorded, &EmStream::samples);
+  if (em) em->registration_noise_m = em->registration_noise_rad = 0.0;
+  return em;
+}
+
 TipSensorSetup TipSensor(const Recording& recording, const Eigen::Vector3d& p_tip,
                          const Eigen::Vector3d& to_port) {
   TipSensorSetup tip;
@@ -74,10 +82,9 @@ TipSensorSetup TipSensor(const Recording& recording, const Eigen::Vector3d& p_ti
     ++count;
   }
   if (count == 0) return tip;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance / count);
-  tip.depth_noise_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
-  tip.across_noise_m =
-      std::sqrt(std::max(0.0, 0.5 * (eigen.eigenvalues()[0] + eigen.eigenvalues()[1])));
+  const Eigen::Vector3d variances = SymmetricEigenvalues(covariance / count);
+  tip.depth_noise_m = std::sqrt(std::max(0.0, variances[2]));
+  tip.across_noise_m = std::sqrt(std::max(0.0, 0.5 * (variances[0] + variances[1])));
   tip.direction_noise_rad = recording.vision0->direction_noise_rad;
   return tip;
 }
@@ -114,12 +121,12 @@ diagnosis::ExtendedModel Simulated(diagnosis::ExtendedModel model,
 }
 
 /// What the simulation has a parameter for: it turns a pose by the focal length as it must.
-std::map<std::string, hidden::EffectParameters> ValuesOf(const diagnosis::ExtendedModel& model) {
-  std::map<std::string, hidden::EffectParameters> values;
+EffectValues ValuesOf(const diagnosis::ExtendedModel& model) {
+  EffectValues values;
   for (const auto* list : {&model.effects, &model.within_tolerance}) {
     for (const diagnosis::EffectFit& fit : *list) {
       if (fit.effect == kRegistration) continue;
-      const hidden::EffectParameters& known = NeutralEffects().at(fit.effect);
+      const EffectParameters& known = NeutralEffects().at(fit.effect);
       for (const diagnosis::ReportedParameter& parameter : fit.parameters)
         if (known.contains(parameter.name)) values[fit.effect][parameter.name] = parameter.value;
     }
@@ -150,15 +157,15 @@ LoopSetup MakeSetup(const Recording& recording, const diagnosis::ExtendedModel& 
     plant.load.constant_N =
         Mean(recording.load0->f_tip_N, [](const Eigen::Vector3d& f) { return f; });
   }
-  const InstrumentEffects effects = EffectsByName(ValuesOf(model), recording.instrument);
+  const InstrumentEffects effects = EffectsOfWholeMass(ValuesOf(model), recording.instrument);
   plant.effects = effects.plant;
   setup.plant_options = {kLinks, kLinks};
   setup.sensor_effects = effects.sensors;
   setup.sensor_effects.em_centre_m = model.centre_m;
 
   setup.sensors.wrist = Empty(recording.wrist0, &WristStream::samples);
-  setup.sensors.em0 = Empty(recording.em0, &EmStream::samples);
-  setup.sensors.em1 = Empty(recording.em1, &EmStream::samples);
+  setup.sensors.em0 = EmptyEm(recording.em0);
+  setup.sensors.em1 = EmptyEm(recording.em1);
   setup.sensors.strain = Empty(recording.strain0, &StrainStream::moments_Nm);
   setup.sensors.load = Empty(recording.load0, &LoadStream::f_tip_N);
   setup.sensors.tip = TipSensor(recording, p_tip, to_port);

@@ -7,7 +7,8 @@
 #include "recording/cameras/camera_file.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/yaml_map.h"
-#include "simulation/plant/instrument_effects.h"
+#include "simulation/closed_loop/task_reader.h"
+#include "simulation/effects/catalogue.h"
 
 namespace flextip::simulation {
 namespace {
@@ -31,8 +32,7 @@ class ScenarioReader {
     ReadSensors();
     ReadCamera();
     ReadEffects();
-    ReadPath();
-    ReadControllers();
+    ReadTask(top_, file_.parent_path(), scenario_, sections_);
     scenario_.loop.seed = static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
     RejectUnknownKeys();
     return std::move(scenario_);
@@ -53,7 +53,7 @@ class ScenarioReader {
     instrument.mass_per_length_kg_m = map.NonNegativeOr("mass_per_length_kg_m", 0.0);
     scenario_.loop.base.p_RP = Section(top_, "port").Vector3("position_m");
     scenario_.loop.base.gravity_m_s2 = VectorOr(top_, "gravity_m_s2", {0.0, 0.0, -9.81});
-    scenario_.loop.port_prior_m = top_.PositiveOr("port_registration_m", 0.0003);
+    scenario_.loop.port_prior_m = top_.PositiveOr("port_registration_m", kPortRegistration_m);
 
     PlantSetup& plant = scenario_.loop.plant;
     plant.instrument = instrument;
@@ -77,17 +77,11 @@ class ScenarioReader {
     const YamlMap tissue = Section(map, "tissue");
     Tissue& t = load.tissue.emplace();
     t.p_surface = tissue.Vector3("point_m");
-    t.normal = Unit(tissue, "normal");
+    t.normal = ReadUnit(tissue, "normal");
     t.stiffness_N_m = tissue.NonNegative("stiffness_N_m");
     t.tangential_stiffness_N_m = tissue.NonNegativeOr("tangential_stiffness_N_m", 0.0);
     t.p_anchor = VectorOr(tissue, "anchor_m", t.p_surface);
     t.onset_m = tissue.PositiveOr("onset_m", 0.001);
-  }
-
-  static Eigen::Vector3d Unit(const YamlMap& map, const std::string& key) {
-    const Eigen::Vector3d v = map.Vector3(key);
-    if (v.norm() < 1e-9) throw map.Error(key, "found a zero vector, expected a direction");
-    return v.normalized();
   }
 
   void ReadSensors() {
@@ -153,7 +147,7 @@ class ScenarioReader {
     tip.across_noise_m = map.NonNegative("across_noise_m");
     tip.depth_noise_m = map.NonNegative("depth_noise_m");
     tip.direction_noise_rad = map.NonNegative("direction_noise_rad");
-    if (map.Has("line_of_sight")) tip.line_of_sight = Unit(map, "line_of_sight");
+    if (map.Has("line_of_sight")) tip.line_of_sight = ReadUnit(map, "line_of_sight");
     tip.rate_hz = map.Has("rate_hz") ? map.Positive("rate_hz") : 30.0;
   }
 
@@ -187,7 +181,7 @@ class ScenarioReader {
         map.NonNegativeOr("read_noise_electrons", scope.read_noise_electrons);
     scope.tissue.relief_m = map.NonNegativeOr("tissue_relief_m", scope.tissue.relief_m);
     if (map.Has("tissue_point_m")) scope.tissue.point_R = map.Vector3("tissue_point_m");
-    if (map.Has("tissue_normal")) scope.tissue.normal_R = Unit(map, "tissue_normal");
+    if (map.Has("tissue_normal")) scope.tissue.normal_R = ReadUnit(map, "tissue_normal");
     if (map.Has("occluders")) {
       for (const YamlMap& occluder : map.Maps("occluders")) ReadOccluder(occluder);
     }
@@ -220,7 +214,7 @@ class ScenarioReader {
     if (!top_.Has("effects")) return;
     const YamlMap map = Section(top_, "effects");
     LoopSetup& loop = scenario_.loop;
-    std::map<std::string, hidden::EffectParameters> values;
+    EffectValues values;
     const Eigen::Vector3d to_port = (loop.base.p_RP - loop.p_RW_start).normalized();
     Eigen::Vector3d em_centre = loop.p_RW_start + loop.base.instrument.length_m * to_port;
     for (const std::string& name : map.Keys()) {
@@ -233,7 +227,7 @@ class ScenarioReader {
       }
       CheckEffect(map, name, values);
     }
-    const InstrumentEffects effects = EffectsByName(values, loop.base.instrument);
+    const InstrumentEffects effects = EffectsOfWholeMass(values, loop.base.instrument);
     loop.plant.effects = effects.plant;
     loop.plant.gravity_m_s2 = loop.base.gravity_m_s2;
     loop.sensor_effects = effects.sensors;
@@ -242,70 +236,14 @@ class ScenarioReader {
   }
 
   /// So that a complaint names the line.
-  void CheckEffect(const YamlMap& map, const std::string& name,
-                   const std::map<std::string, hidden::EffectParameters>& values) const {
+  void CheckEffect(const YamlMap& map, const std::string& name, const EffectValues& values) const {
     const bool of_camera = name == "hand_eye" || name == "focal_length";
     if (of_camera && !scenario_.has_camera) throw map.Error(name, "needs a section camera");
     try {
-      EffectsByName(values, scenario_.loop.base.instrument);
+      EffectsOfWholeMass(values, scenario_.loop.base.instrument);
     } catch (const InputError& error) {
       throw map.Error(name, error.what());
     }
-  }
-
-  void ReadPath() {
-    const YamlMap map = Section(top_, "path");
-    PathSetup& path = scenario_.loop.path;
-    const std::string mode = map.TextOr("mode", "continuous");
-    if (mode != "continuous" && mode != "steps") {
-      throw map.Error("mode", fmt::format("found '{}', expected continuous or steps", mode));
-    }
-    path.mode = mode == "steps" ? PathMode::kSteps : PathMode::kContinuous;
-    for (const YamlMap& waypoint : map.Maps("waypoints")) {
-      sections_.push_back(waypoint);
-      path.waypoints_m.push_back(waypoint.Vector3("to_m"));
-    }
-    if (path.waypoints_m.empty()) throw map.Error("waypoints", "found none, expected at least one");
-    path.speed_m_s = map.PositiveOr("speed_m_s", path.speed_m_s);
-    path.settle_s = map.NonNegativeOr("settle_s", path.settle_s);
-    path.step_m = map.PositiveOr("step_m", path.step_m);
-    path.reached_m = map.PositiveOr("reached_m", path.reached_m);
-  }
-
-  void ReadControllers() {
-    if (top_.IsList("controllers")) {
-      for (const std::string& name : top_.Texts("controllers")) AddController(name);
-    } else if (top_.Text("controllers") == "all") {
-      for (int i = 0; i < kControllerKinds; ++i) {
-        scenario_.controllers.push_back(static_cast<ControllerKind>(i));
-      }
-    } else {
-      AddController(top_.Text("controllers"));
-    }
-    ControllerOptions& options = scenario_.loop.controller;
-    if (!top_.Has("control")) return;
-    const YamlMap map = Section(top_, "control");
-    options.gain = map.PositiveOr("gain", options.gain);
-    options.max_step_m = map.PositiveOr("max_step_m", options.max_step_m);
-    options.min_singular_value = map.PositiveOr("min_singular_value", options.min_singular_value);
-    const std::string law = map.TextOr("beam_load_law", "tip_force");
-    if (law != "tip_force" && law != "port_force") {
-      throw map.Error("beam_load_law",
-                      fmt::format("found '{}', expected tip_force or port_force", law));
-    }
-    options.beam_load_law = law == "tip_force" ? BeamLoadLaw::kTipForce : BeamLoadLaw::kPortForce;
-  }
-
-  void AddController(const std::string& name) {
-    const auto kind = ControllerKindNamed(name);
-    if (!kind) {
-      std::string known = "all";
-      for (int i = 0; i < kControllerKinds; ++i) {
-        known += std::string(", ") + Name(static_cast<ControllerKind>(i));
-      }
-      throw top_.Error("controllers", fmt::format("found '{}', expected some of {}", name, known));
-    }
-    scenario_.controllers.push_back(*kind);
   }
 
   void CheckReach() const {

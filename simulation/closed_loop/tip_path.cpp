@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rotation.h"
+
 namespace flextip::simulation {
 namespace {
 
@@ -16,9 +18,19 @@ double DistanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
 
 }  // namespace
 
-TipPath::TipPath(const PathSetup& setup, const Eigen::Vector3d& p_start, double update_rate_hz)
-    : setup_(setup), update_rate_hz_(update_rate_hz), points_{p_start} {
-  for (const auto& waypoint : setup.waypoints_m) points_.emplace_back(p_start + waypoint);
+TipPath::TipPath(const PathSetup& setup, const Pose& T_RE, double update_rate_hz)
+    : setup_(setup), update_rate_hz_(update_rate_hz), points_{T_RE.p}, d_start_(T_RE.R.col(0)) {
+  for (const auto& waypoint : setup.waypoints_m) points_.emplace_back(T_RE.p + waypoint);
+}
+
+std::optional<Eigen::Vector3d> TipPath::Direction() const {
+  if (setup_.directions.empty()) return {};
+  const Eigen::Vector3d& from = leg_ > 0 ? setup_.directions[leg_ - 1] : d_start_;
+  const Eigen::Vector3d& to = setup_.directions[leg_];
+  const double length = LegLength(leg_);
+  const double part = length > 0 ? std::min(1.0, travelled_m_ / length) : 1.0;
+  const Eigen::Matrix3d turn = ExpRotation(part * LogRotation(RotationWithoutTwist(from, to)));
+  return turn * from;
 }
 
 Eigen::Vector3d TipPath::Along(std::size_t leg, double travelled_m) const {

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
 #include <vector>
+
+#include "core/pose.h"
 
 namespace flextip::simulation {
 
@@ -14,6 +17,7 @@ enum class PathMode {
 struct PathSetup {
   PathMode mode = PathMode::kContinuous;
   std::vector<Eigen::Vector3d> waypoints_m;  ///< relative to where the tip starts, in R
+  std::vector<Eigen::Vector3d> directions;   ///< of the tip there, in R, unit; empty: any
   double speed_m_s = 0.02;                   ///< kContinuous
   double settle_s = 0.5;                     ///< kContinuous: held at the last waypoint
   double step_m = 0.002;                     ///< kSteps
@@ -24,10 +28,13 @@ struct PathSetup {
 /// Where the tip should be, update by update.
 class TipPath {
  public:
-  TipPath(const PathSetup& setup, const Eigen::Vector3d& p_start, double update_rate_hz);
+  /// `T_RE`: the tip at the start.
+  TipPath(const PathSetup& setup, const Pose& T_RE, double update_rate_hz);
 
   /// The goal of the next update. `p_RE_known` is the tip as the controller knows it.
   Eigen::Vector3d Advance(const Eigen::Vector3d& p_RE_known);
+  /// The tip's direction wanted with the last goal: turns evenly along a leg. Empty: any.
+  std::optional<Eigen::Vector3d> Direction() const;
   bool Done() const { return done_; }
 
   /// How far `p` is from the path travelled so far: from the leg under way and the one before.
@@ -44,6 +51,7 @@ class TipPath {
   PathSetup setup_;
   double update_rate_hz_;
   std::vector<Eigen::Vector3d> points_;  // the start and the waypoints, in R
+  Eigen::Vector3d d_start_;              // of the tip, in R
   std::size_t leg_ = 0;
   double travelled_m_ = 0.0;  // on the leg
   int updates_ = 0;           // on the leg, or of settling

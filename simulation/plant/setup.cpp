@@ -93,7 +93,7 @@ ChainProblem MakeChain(const PlantSetup& setup, const PlantOptions& options,
   problem.q = fraction * weight * length / force;
   problem.q_inside = fraction * effects.shaft_load_N_m * length / force;
   problem.load = [&setup, p_RW, fraction, length, force](const Eigen::Vector3d& x_tip) {
-    const TipForce load = setup.load.At(p_RW + length * x_tip);
+    const LinearTipForce load = setup.load.At(p_RW + length * x_tip);
     return ChainForce{fraction / force * load.f_N, fraction * length / force * load.df_dp_N_m};
   };
   problem.taper = effects.taper;

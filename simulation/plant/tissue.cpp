@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "simulation/plant/chain_geometry.h"
 
 namespace flextip::simulation {
@@ -42,7 +43,7 @@ class Acceleration {
     last_g_ = g;
     last_error_ = error;
     if (count_ == 0) return g;
-    return g - dg_ * de_.colPivHouseholderQr().solve(error);
+    return g - dg_ * LeastSquares(de_, error);
   }
 
  private:

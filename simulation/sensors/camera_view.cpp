@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip::simulation {
@@ -38,7 +39,7 @@ Pose SolveBack(const Pose& T_CE, double scale) {
       normal += J.transpose() * J;
       right += J.transpose() * residual;
     }
-    const Eigen::Matrix<double, 6, 1> step = normal.ldlt().solve(right);
+    const Eigen::Matrix<double, 6, 1> step = Ldlt(normal).Solve(right);
     pose.p += step.head<3>();
     pose.R = ExpRotation(step.tail<3>()) * pose.R;
     if (step.norm() < 1e-10) break;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/linear_algebra.h"
+
 namespace flextip::simulation {
 namespace {
 
@@ -30,9 +32,9 @@ Eigen::Matrix3d FieldGradient(const Eigen::Vector3d& r, const Eigen::Vector3d& m
 EmField::EmField(const Eigen::Matrix3d& gradient, const Eigen::Vector3d& p_centre, double curvature)
     : gradient_(gradient), p_centre_(p_centre) {
   if (curvature == 0.0 || gradient.isZero(0.0)) return;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  dipole_ = kDipoleDistance_m * svd.matrixV().col(0);
-  moment_ = svd.matrixU().col(0);
+  const Svd svd(gradient);
+  dipole_ = kDipoleDistance_m * svd.V.col(0);
+  moment_ = svd.U.col(0);
   // RMS over the sphere, by points spread evenly along a spiral.
   constexpr int kPoints = 200;
   double squares = 0.0;

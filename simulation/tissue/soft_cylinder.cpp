@@ -80,12 +80,12 @@ Eigen::Vector2d SoftCylinder::Across(const Eigen::Vector3d& p_tip) const {
   return across_.transpose() * (p_tip - setup_.p_surface);
 }
 
-TipForce SoftCylinder::At(const Eigen::Vector3d& p_tip) const {
+LinearTipForce SoftCylinder::At(const Eigen::Vector3d& p_tip) const {
   const Eigen::Vector3d& n = setup_.normal;
   const double depth = Depth(p_tip);
   const Ramp ramp = RampAt(depth, setup_.onset_m);
   if (ramp.value <= 0.0) return {};
-  TipForce force;
+  LinearTipForce force;
   // Along the axis: from where the end has cut to.
   const Ramp dent = RampAt(depth - floor_m_, setup_.onset_m);
   const double axial = setup_.puncture_N;

@@ -45,7 +45,7 @@ class SoftCylinder {
 
   /// The force on a tip at `p_tip` (m, in R) with the memory as it is; continuous, with its
   /// derivative.
-  TipForce At(const Eigen::Vector3d& p_tip) const;
+  LinearTipForce At(const Eigen::Vector3d& p_tip) const;
   /// The tip has come to `p_tip`: what gave way stays so, what was cut stays cut.
   void MoveTo(const Eigen::Vector3d& p_tip);
 

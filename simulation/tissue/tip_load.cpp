@@ -14,12 +14,12 @@ Ramp RampAt(double depth, double onset) {
   return {depth - 0.5 * onset, 1.0, 0.0};
 }
 
-TipForce TissueForce(const Tissue& tissue, const Eigen::Vector3d& p_tip) {
+LinearTipForce TissueForce(const Tissue& tissue, const Eigen::Vector3d& p_tip) {
   const Eigen::Vector3d& n = tissue.normal;
   const Ramp ramp = RampAt(-n.dot(p_tip - tissue.p_surface), tissue.onset_m);
   const Eigen::Matrix3d along = Eigen::Matrix3d::Identity() - n * n.transpose();
   const Eigen::Vector3d pulled = along * (p_tip - tissue.p_anchor);
-  TipForce force;
+  LinearTipForce force;
   force.f_N =
       tissue.stiffness_N_m * ramp.value * n - tissue.tangential_stiffness_N_m * ramp.slope * pulled;
   force.df_dp_N_m = -tissue.stiffness_N_m * ramp.slope * n * n.transpose() -
@@ -30,11 +30,11 @@ TipForce TissueForce(const Tissue& tissue, const Eigen::Vector3d& p_tip) {
 
 }  // namespace
 
-TipForce TipLoad::At(const Eigen::Vector3d& p_tip) const {
-  TipForce force = tissue ? TissueForce(*tissue, p_tip) : TipForce{};
+LinearTipForce TipLoad::At(const Eigen::Vector3d& p_tip) const {
+  LinearTipForce force = tissue ? TissueForce(*tissue, p_tip) : LinearTipForce{};
   force.f_N += constant_N;
   if (other) {
-    const TipForce more = other(p_tip);
+    const LinearTipForce more = other(p_tip);
     force.f_N += more.f_N;
     force.df_dp_N_m += more.df_dp_N_m;
   }

@@ -21,7 +21,7 @@ struct Tissue {
 };
 
 /// A force on the tip and how it changes with the tip's position.
-struct TipForce {
+struct LinearTipForce {
   Eigen::Vector3d f_N = Eigen::Vector3d::Zero();
   Eigen::Matrix3d df_dp_N_m = Eigen::Matrix3d::Zero();
 };
@@ -31,9 +31,9 @@ struct TipLoad {
   Eigen::Vector3d constant_N = Eigen::Vector3d::Zero();
   std::optional<Tissue> tissue;
   /// Any other law, continuous in the tip's position (soft_cylinder.h); empty: none.
-  std::function<TipForce(const Eigen::Vector3d& p_tip)> other = {};
+  std::function<LinearTipForce(const Eigen::Vector3d& p_tip)> other = {};
 
-  TipForce At(const Eigen::Vector3d& p_tip) const;
+  LinearTipForce At(const Eigen::Vector3d& p_tip) const;
 };
 
 }  // namespace flextip::simulation

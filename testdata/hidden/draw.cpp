@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "core/error.h"
 #include "core/rotation.h"
@@ -29,36 +29,40 @@ enum class Form {
 
 struct Row {
   const char *effect, *parameter;
-  int count;
-  double neutral, tolerance, lowest, highest;  // of the deviation, for present effects
+  double tolerance, lowest, highest;  // of the deviation, for present effects
   Form form;
+
+  std::span<const double> Neutral() const {
+    return simulation::FindEffectParameter(effect, parameter).neutral;
+  }
+  int Count() const { return static_cast<int>(Neutral().size()); }
 };
 
 /// docs/effects.md with the plausible limits of a deviation; what is not a size (frequency, phase,
 /// axis) is drawn apart.
 constexpr Row kRows[] = {
-    {"stiffness", "scale", 1, 1.0, 0.02, -0.4, 0.5, Form::kSigned},
-    {"length", "delta_m", 1, 0.0, 0.0003, -0.008, 0.008, Form::kSigned},
-    {"self_weight", "mass_per_length_kg_m", 1, 0.0, 0.003, 0.0, 0.15, Form::kPositive},
-    {"precurvature", "curvature_1_m", 2, 0.0, 0.003, 0.0, 0.3, Form::kAny},
-    {"port_offset", "offset_m", 3, 0.0, 0.0003, 0.0, 0.008, Form::kAcross},
-    {"port_motion", "amplitude_m", 3, 0.0, 0.0001, 0.0, 0.004, Form::kAcross},
-    {"port_compliance", "compliance_m_N", 1, 0.0, 0.00003, 0.0, 0.002, Form::kPositive},
-    {"port_friction", "coefficient", 1, 0.0, 0.03, 0.0, 0.6, Form::kPositive},
-    {"port_moment", "stiffness_Nm_rad", 1, 0.0, 0.005, 0.0, 0.3, Form::kPositive},
-    {"shaft_load", "force_per_length_N_m", 3, 0.0, 0.02, 0.0, 1.0, Form::kAcross},
-    {"wrist_compliance", "compliance_m_N", 1, 0.0, 0.00003, 0.0, 0.002, Form::kPositive},
-    {"tip_compliance", "compliance_m_N", 1, 0.0, 0.00003, 0.0, 0.002, Form::kPositive},
-    {"backlash", "width_m", 1, 0.0, 0.0001, 0.0, 0.003, Form::kPositive},
-    {"em_distortion", "gradient", 9, 0.0, 0.001, 0.0, 0.03, Form::kEntries},
-    {"em_latency", "delay_s", 1, 0.0, 0.003, 0.0, 0.15, Form::kPositive},
-    {"camera_latency", "delay_s", 1, 0.0, 0.003, 0.0, 0.15, Form::kPositive},
-    {"hand_eye", "rotation_rad", 3, 0.0, 0.001, 0.0, 0.04, Form::kAny},
-    {"hand_eye", "translation_m", 3, 0.0, 0.0002, 0.0, 0.006, Form::kAny},
-    {"focal_length", "scale", 1, 1.0, 0.002, -0.1, 0.1, Form::kSigned},
-    {"tag_offset", "offset_m", 3, 0.0, 0.0002, 0.0, 0.004, Form::kAny},
-    {"strain_gain", "gain", 4, 1.0, 0.01, -0.3, 0.3, Form::kGages},
-    {"strain_drift", "rate_Nm_s", 4, 0.0, 0.00002, -0.002, 0.002, Form::kGages},
+    {"stiffness", "scale", 0.02, -0.4, 0.5, Form::kSigned},
+    {"length", "delta_m", 0.0003, -0.008, 0.008, Form::kSigned},
+    {"self_weight", "mass_per_length_kg_m", 0.003, 0.0, 0.15, Form::kPositive},
+    {"precurvature", "curvature_1_m", 0.003, 0.0, 0.3, Form::kAny},
+    {"port_offset", "offset_m", 0.0003, 0.0, 0.008, Form::kAcross},
+    {"port_motion", "amplitude_m", 0.0001, 0.0, 0.004, Form::kAcross},
+    {"port_compliance", "compliance_m_N", 0.00003, 0.0, 0.002, Form::kPositive},
+    {"port_friction", "coefficient", 0.03, 0.0, 0.6, Form::kPositive},
+    {"port_moment", "stiffness_Nm_rad", 0.005, 0.0, 0.3, Form::kPositive},
+    {"shaft_load", "force_per_length_N_m", 0.02, 0.0, 1.0, Form::kAcross},
+    {"wrist_compliance", "compliance_m_N", 0.00003, 0.0, 0.002, Form::kPositive},
+    {"tip_compliance", "compliance_m_N", 0.00003, 0.0, 0.002, Form::kPositive},
+    {"backlash", "width_m", 0.0001, 0.0, 0.003, Form::kPositive},
+    {"em_distortion", "gradient", 0.001, 0.0, 0.03, Form::kEntries},
+    {"em_latency", "delay_s", 0.003, 0.0, 0.15, Form::kPositive},
+    {"camera_latency", "delay_s", 0.003, 0.0, 0.15, Form::kPositive},
+    {"hand_eye", "rotation_rad", 0.001, 0.0, 0.04, Form::kAny},
+    {"hand_eye", "translation_m", 0.0002, 0.0, 0.006, Form::kAny},
+    {"focal_length", "scale", 0.002, -0.1, 0.1, Form::kSigned},
+    {"tag_offset", "offset_m", 0.0002, 0.0, 0.004, Form::kAny},
+    {"strain_gain", "gain", 0.01, -0.3, 0.3, Form::kGages},
+    {"strain_drift", "rate_Nm_s", 0.00002, -0.002, 0.002, Form::kGages},
 };
 
 double Uniform(Rng& rng, double from, double to) {
@@ -95,7 +99,7 @@ double CutNormal(Rng& rng) {
 }
 
 Eigen::VectorXd AbsentDeviation(const Row& row, Rng& rng, bool unsigned_value) {
-  Eigen::VectorXd deviation(row.count);
+  Eigen::VectorXd deviation(row.Count());
   for (double& x : deviation) {
     x = row.tolerance * CutNormal(rng);
     if (unsigned_value) x = std::abs(x);
@@ -120,12 +124,13 @@ Eigen::VectorXd PresentDeviation(const Row& row, const EffectDraw& draw, Rng& rn
   if (row.form == Form::kSigned) {
     return Eigen::VectorXd::Constant(1, std::clamp(Sign(rng) * size, row.lowest, row.highest));
   }
-  Eigen::VectorXd direction = row.count == 1 ? Eigen::VectorXd::Ones(1) : Direction(row.count, rng);
+  Eigen::VectorXd direction =
+      row.Count() == 1 ? Eigen::VectorXd::Ones(1) : Direction(row.Count(), rng);
   if (row.form == Form::kAcross) {
     while (direction.head<3>().cross(draw.mean_axis).norm() < 0.5) direction = Direction(3, rng);
   }
   if (row.form == Form::kEntries) {
-    return (size * std::sqrt(double(row.count)) * direction)
+    return (size * std::sqrt(double(row.Count())) * direction)
         .cwiseMax(-row.highest)
         .cwiseMin(row.highest);
   }
@@ -136,7 +141,7 @@ std::vector<double> Values(const Eigen::VectorXd& v) { return {v.data(), v.data(
 
 /// What has no tolerance of its own: the breath's rhythm and the incision's rest axis.
 void DrawOthers(const EffectDraw& draw, Rng& rng, HiddenLabel& label) {
-  EffectParameters& breath = label.parameters["port_motion"];
+  simulation::EffectParameters& breath = label.parameters["port_motion"];
   breath["frequency_hz"] = {Uniform(rng, 0.15, 0.5)};
   breath["phase_rad"] = {Uniform(rng, 0.0, 2.0 * std::numbers::pi)};
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
@@ -152,7 +157,7 @@ bool Has(const std::vector<std::string>& names, const std::string& name) {
 
 void CheckNames(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    if (!Has(CatalogueEffects(), name) && !Has(OtherForms(), name)) {
+    if (!Has(simulation::CatalogueEffects(), name) && !Has(OtherForms(), name)) {
       throw InputError(
           fmt::format("effect \"{}\" is unknown: expected a name of docs/effects.md, or one of {}",
                       name, fmt::join(OtherForms(), ", ")));
@@ -160,30 +165,7 @@ void CheckNames(const std::vector<std::string>& names) {
   }
 }
 
-double Scalar(const HiddenLabel& label, const char* effect, const char* parameter) {
-  return label.parameters.at(effect).at(parameter).at(0);
-}
-
-template <int N>
-Eigen::Matrix<double, N, 1> Vector(const HiddenLabel& label, const char* effect,
-                                   const char* parameter) {
-  const std::vector<double>& values = label.parameters.at(effect).at(parameter);
-  assert(values.size() == N);
-  return Eigen::Map<const Eigen::Matrix<double, N, 1>>(values.data());
-}
-
 }  // namespace
-
-const std::vector<std::string>& CatalogueEffects() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> unique;
-    for (const Row& row : kRows) {
-      if (!Has(unique, row.effect)) unique.emplace_back(row.effect);
-    }
-    return unique;
-  }();
-  return names;
-}
 
 const std::vector<std::string>& OtherForms() {
   static const std::vector<std::string> names = {"port_grip", "taper", "shaft_tissue",
@@ -199,7 +181,7 @@ HiddenLabel DrawEffects(const EffectDraw& draw, Rng& rng) {
     // A seed of its own: the others do not change with what is present, nor with draws thrown away.
     Rng own(rng());
     const bool present = Has(draw.present, row.effect);
-    Eigen::VectorXd deviation = Eigen::VectorXd::Zero(row.count);
+    Eigen::VectorXd deviation = Eigen::VectorXd::Zero(row.Count());
     if (present) {
       deviation = PresentDeviation(row, draw, own);
     } else if (!draw.exact) {
@@ -207,48 +189,11 @@ HiddenLabel DrawEffects(const EffectDraw& draw, Rng& rng) {
       deviation =
           AbsentDeviation(row, own, row.form == Form::kPositive && (!weight || draw.massless));
     }
-    label.parameters[row.effect][row.parameter] =
-        Values((deviation.array() + row.neutral).matrix());
+    for (int i = 0; i < row.Count(); ++i) deviation[i] += row.Neutral()[i];
+    label.parameters[row.effect][row.parameter] = Values(deviation);
   }
   DrawOthers(draw, rng, label);
   return label;
-}
-
-simulation::PlantEffects PlantEffectsOf(const HiddenLabel& label) {
-  simulation::PlantEffects effects;
-  effects.stiffness_scale = Scalar(label, "stiffness", "scale");
-  effects.length_delta_m = Scalar(label, "length", "delta_m");
-  effects.mass_per_length_kg_m = Scalar(label, "self_weight", "mass_per_length_kg_m");
-  effects.curvature_1_m = Vector<2>(label, "precurvature", "curvature_1_m");
-  effects.port_offset_m = Vector<3>(label, "port_offset", "offset_m");
-  effects.port_motion.amplitude_m = Vector<3>(label, "port_motion", "amplitude_m");
-  effects.port_motion.frequency_hz = Scalar(label, "port_motion", "frequency_hz");
-  effects.port_motion.phase_rad = Scalar(label, "port_motion", "phase_rad");
-  effects.port_compliance_m_N = Scalar(label, "port_compliance", "compliance_m_N");
-  effects.port_friction.coefficient = Scalar(label, "port_friction", "coefficient");
-  effects.port_stiffness_Nm_rad = Scalar(label, "port_moment", "stiffness_Nm_rad");
-  effects.port_rest_axis = Vector<3>(label, "port_moment", "rest_axis");
-  effects.shaft_load_N_m = Vector<3>(label, "shaft_load", "force_per_length_N_m");
-  effects.wrist_compliance_m_N = Scalar(label, "wrist_compliance", "compliance_m_N");
-  effects.tip_compliance_m_N = Scalar(label, "tip_compliance", "compliance_m_N");
-  effects.backlash_m = Scalar(label, "backlash", "width_m");
-  return effects;
-}
-
-simulation::SensorEffects SensorEffectsOf(const HiddenLabel& label) {
-  simulation::SensorEffects effects;
-  const std::vector<double>& gradient = label.parameters.at("em_distortion").at("gradient");
-  effects.em_gradient =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(gradient.data());
-  effects.em_latency_s = Scalar(label, "em_latency", "delay_s");
-  effects.camera_latency_s = Scalar(label, "camera_latency", "delay_s");
-  effects.hand_eye_rotation_rad = Vector<3>(label, "hand_eye", "rotation_rad");
-  effects.hand_eye_translation_m = Vector<3>(label, "hand_eye", "translation_m");
-  effects.focal_scale = Scalar(label, "focal_length", "scale");
-  effects.tag_offset_m = Vector<3>(label, "tag_offset", "offset_m");
-  effects.strain_gain = Vector<4>(label, "strain_gain", "gain");
-  effects.strain_drift_Nm_s = Vector<4>(label, "strain_drift", "rate_Nm_s");
-  return effects;
 }
 
 }  // namespace flextip::hidden

@@ -3,13 +3,11 @@
 
 #include <Eigen/Dense>
 #include <cstdint>
-#include <map>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "simulation/plant/effects.h"
-#include "simulation/sensors/effects.h"
+#include "simulation/effects/catalogue.h"
 
 namespace flextip::hidden {
 
@@ -17,16 +15,10 @@ namespace flextip::hidden {
 /// is plausible (a stiffness of 0.6 to 1.5 times the nominal one, 8 mm of port offset, ...).
 enum class EffectSize : std::uint8_t { kSubtle, kPlain, kStrong };
 
-/// Parameter name to values (matrices by rows), as in docs/effects.md.
-using EffectParameters = std::map<std::string, std::vector<double>>;
-
 struct HiddenLabel {
-  std::vector<std::string> present;                    ///< catalogue effects and other forms
-  std::map<std::string, EffectParameters> parameters;  ///< of every catalogue effect
+  std::vector<std::string> present;     ///< catalogue effects and other forms
+  simulation::EffectValues parameters;  ///< of every catalogue effect
 };
-
-/// The catalogue's names, in its order.
-const std::vector<std::string>& CatalogueEffects();
 
 /// Forms the catalogue lacks: port_grip, taper, shaft_tissue, second_contact, strain_clip. What
 /// they need of the scene is set with it (hidden_recording.h).
@@ -45,9 +37,5 @@ struct EffectDraw {
 /// magnitude (a vector's norm; each entry's RMS of the EM gradient), any direction, port and shaft
 /// effects at least half across the shaft. Of the gages one to four are off.
 HiddenLabel DrawEffects(const EffectDraw& draw, std::mt19937_64& rng);
-
-/// What the plant and the sensors make of it; forms outside the catalogue are left neutral.
-simulation::PlantEffects PlantEffectsOf(const HiddenLabel& label);
-simulation::SensorEffects SensorEffectsOf(const HiddenLabel& label);
 
 }  // namespace flextip::hidden

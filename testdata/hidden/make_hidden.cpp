@@ -41,7 +41,7 @@ std::map<std::string, LoadKind> LoadNames() {
   return names;
 }
 
-nlohmann::json Json(const EffectParameters& parameters) {
+nlohmann::json Json(const simulation::EffectParameters& parameters) {
   nlohmann::json json;
   for (const auto& [name, values] : parameters) {
     if (values.size() == 1) {
@@ -146,6 +146,6 @@ void Run(Arguments& arguments) {
 }  // namespace flextip::hidden
 
 int main(int argc, char** argv) {
-  return flextip::RunTool(argc, argv, "Recordings whose effect is hidden", flextip::AddOptions,
-                          flextip::Run);
+  return flextip::bench::RunTool(argc, argv, "Recordings whose effect is hidden",
+                                 flextip::hidden::AddOptions, flextip::hidden::Run);
 }

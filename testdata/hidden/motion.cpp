@@ -203,7 +203,7 @@ std::vector<MotionKind> Kinds(MotionFamily family) {
   return {kSines, kRaster, kInOut, kCircle, kSpiral, kPress, kWander, kStar};
 }
 
-WristMotion::WristMotion(const MotionSetup& setup, std::uint64_t seed, double duration_s)
+WristCourse::WristCourse(const MotionSetup& setup, std::uint64_t seed, double duration_s)
     : setup_(setup), sideways_(NormalBasis(setup.axis)) {
   Rng rng(seed);
   course_ = MakeCourse(setup.kind, rng, kFastest * duration_s + 1.0);
@@ -214,7 +214,7 @@ WristMotion::WristMotion(const MotionSetup& setup, std::uint64_t seed, double du
   }
 }
 
-double WristMotion::PeakSpeed(double duration_s) const {
+double WristCourse::PeakSpeed(double duration_s) const {
   constexpr double kStep_s = 0.02;
   double peak = 0.0;
   for (double t = 0.0; t < duration_s; t += kStep_s) {
@@ -223,15 +223,15 @@ double WristMotion::PeakSpeed(double duration_s) const {
   return peak;
 }
 
-Eigen::Vector3d WristMotion::Direction(double t_s) const {
+Eigen::Vector3d WristCourse::Direction(double t_s) const {
   const Eigen::Vector3d x = size_ * course_(pace_ * t_s);
   const Eigen::Vector2d angles = setup_.angle_rad * x.tail<2>();
   return (setup_.axis + sideways_ * angles.array().tan().matrix()).normalized();
 }
 
-Eigen::Vector3d WristMotion::At(double t_s) const { return StraightPoint(t_s, 0.0); }
+Eigen::Vector3d WristCourse::At(double t_s) const { return StraightPoint(t_s, 0.0); }
 
-Eigen::Vector3d WristMotion::StraightPoint(double t_s, double s_m) const {
+Eigen::Vector3d WristCourse::StraightPoint(double t_s, double s_m) const {
   const double x = size_ * course_(pace_ * t_s).x();
   const double depth =
       0.5 * (setup_.depth_from + setup_.depth_to) + 0.5 * (setup_.depth_to - setup_.depth_from) * x;

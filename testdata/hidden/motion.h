@@ -43,12 +43,12 @@ struct MotionSetup {
 
 /// One motion: where the wrist is at any time from -1 s on. The wrist lies (1 - depth) L from the
 /// port, on the line through it whose direction is turned from the axis by two angles.
-class WristMotion {
+class WristCourse {
  public:
   /// Draws what the kind leaves open from `seed`; time is stretched to the peak speed over the
   /// first `duration_s`, or the motion made smaller where its frequencies would leave 0.05 to
   /// 0.6 Hz.
-  WristMotion(const MotionSetup& setup, std::uint64_t seed, double duration_s);
+  WristCourse(const MotionSetup& setup, std::uint64_t seed, double duration_s);
 
   Eigen::Vector3d At(double t_s) const;
   /// The straight shaft's direction from wrist to port, unit.

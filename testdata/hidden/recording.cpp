@@ -62,7 +62,7 @@ bool CanShow(const std::string& effect, const HiddenOptions& options) {
 
 std::vector<std::string> PresentEffects(const HiddenOptions& options, Rng& rng) {
   std::vector<std::string> present = options.effects, candidates;
-  for (const std::string& name : CatalogueEffects()) {
+  for (const std::string& name : simulation::CatalogueEffects()) {
     if (!Has(present, name) && CanShow(name, options)) candidates.push_back(name);
   }
   std::shuffle(candidates.begin(), candidates.end(), rng);
@@ -95,7 +95,7 @@ simulation::PlantSetup MakePlantSetup(const HiddenScene& scene,
 std::optional<Run> RunPlant(const HiddenScene& scene, const simulation::PlantSetup& setup,
                             const HiddenOptions& options) {
   simulation::Plant plant(setup, {options.links_per_side, options.links_per_side});
-  const WristMotion motion = scene.Motion();
+  const WristCourse motion = scene.Motion();
   Run run;
   const int lead_in = static_cast<int>(std::lround(kLeadIn_s * options.tick_rate_hz));
   const int ticks = static_cast<int>(std::lround(scene.duration_s * options.tick_rate_hz));
@@ -139,7 +139,7 @@ double HighestMoment(const Run& run, const StrainStream& strain) {
 simulation::SensorEffects MakeSensorEffects(const HiddenLabel& label, const HiddenScene& scene,
                                             const Run& run, const HiddenOptions& options,
                                             Rng& rng) {
-  simulation::SensorEffects effects = SensorEffectsOf(label);
+  simulation::SensorEffects effects = simulation::EffectsOf(label.parameters).sensors;
   effects.em_centre_m = EmCentre(run, *scene.sensors.em0);
   effects.em_curvature = Uniform(rng, 0.1, 0.2);
   effects.noise_scale = options.noise_free ? 0.0 : options.noise_scale;
@@ -197,7 +197,7 @@ std::optional<HiddenRecording> Attempt(const HiddenOptions& options, std::uint64
   draw.massless = scene.instrument.mass_per_length_kg_m == 0.0;
   draw.mean_axis = scene.motion_setup.axis;
   hidden.label = DrawEffects(draw, effect_rng);
-  simulation::PlantEffects effects = PlantEffectsOf(hidden.label);
+  simulation::PlantEffects effects = simulation::EffectsOf(hidden.label.parameters).plant;
   effects.port_motion.second_harmonic = Uniform(form_rng, 0.1, 0.2);
   for (const std::string& form : draw.present) AddShaftForm(form, scene, form_rng, effects);
 

@@ -70,7 +70,7 @@ MotionSetup DrawMotion(const SceneDraw& draw, const HiddenScene& scene, Rng& rng
 }
 
 std::vector<Eigen::Vector3d> StraightPoints(const HiddenScene& scene, double s_m) {
-  const WristMotion motion = scene.Motion();
+  const WristCourse motion = scene.Motion();
   std::vector<Eigen::Vector3d> points;
   for (double t = 0.0; t < scene.duration_s; t += 0.1) {
     points.push_back(motion.StraightPoint(t, s_m));

@@ -57,7 +57,7 @@ struct HiddenScene {
   simulation::SensorSetup sensors;
   double duration_s = 20.0;
 
-  WristMotion Motion() const { return {motion_setup, motion_seed, duration_s}; }
+  WristCourse Motion() const { return {motion_setup, motion_seed, duration_s}; }
   double RollAt(double t_s) const;
   /// EI / L^2: the force that bends clearly.
   double UnitForce() const {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "recording/calibrations/file.h"
 #include "recording/recording_writer.h"
@@ -53,7 +54,7 @@ TEST(CalibrateTip, TheTipOnTheWristIsWritten) {
   EXPECT_EQ(found.kind, "tip");
   const auto& tip = found.numbers.at("tip.p_WE");
   const Eigen::Vector3d e = Eigen::Vector3d(tip[0], tip[1], tip[2]) - kTip;
-  EXPECT_LT(e.dot(found.CovarianceOf("tip.p_WE").ldlt().solve(e)), 16.3);
+  EXPECT_LT(e.dot(Ldlt(found.CovarianceOf("tip.p_WE")).Solve(e)), 16.3);
   EXPECT_LT(e.norm(), 5e-4);
   EXPECT_EQ(found.CovarianceOf("pivot.p_R").rows(), 3);
   const auto summary = nlohmann::json::parse(ReadText(folder / "out/summary.json"));

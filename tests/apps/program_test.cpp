@@ -1,6 +1,8 @@
 // What holds for every command.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "tests/apps/run_program.h"
 
 namespace flextip {
@@ -34,6 +36,17 @@ TEST(Program, RefusesWrongUsageInOneLine) {
   for (const auto& command : kCommands) {
     EXPECT_TRUE(IsRefused(RunProgram({command, "--no-such-option"}), {})) << command;
   }
+}
+
+TEST(Program, SaysHowToBuildTheReproductionWhereItIsMissing) {
+  const TestFolder folder;
+  const auto alone = folder / "flextip";
+  std::filesystem::copy_file(FLEXTIP_PROGRAM, alone);
+  const auto result = RunProgram({"reproduce", "2", "-o", "out"}, alone.string());
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, StartsWith("flextip: flextip-reproduce is neither beside"));
+  EXPECT_THAT(result.err, HasSubstr("cmake --build build/release --target flextip-reproduce"));
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
 }
 
 }  // namespace

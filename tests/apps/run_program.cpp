@@ -15,9 +15,8 @@ namespace flextip {
 namespace {
 
 /// In the child: stdout and stderr into files, then the program.
-[[noreturn]] void Become(const std::vector<std::string>& arguments, const std::string& out,
-                         const std::string& err) {
-  std::string program = FLEXTIP_PROGRAM;
+[[noreturn]] void Become(std::string program, const std::vector<std::string>& arguments,
+                         const std::string& out, const std::string& err) {
   std::vector<std::string> copies(arguments);
   std::vector<char*> argv{program.data()};
   for (auto& argument : copies) argv.push_back(argument.data());
@@ -30,11 +29,11 @@ namespace {
 
 }  // namespace
 
-ProgramResult RunProgram(const std::vector<std::string>& arguments) {
+ProgramResult RunProgram(const std::vector<std::string>& arguments, const std::string& program) {
   const TestFolder folder;
   const std::string out = (folder / "stdout").string(), err = (folder / "stderr").string();
   const pid_t child = fork();
-  if (child == 0) Become(arguments, out, err);
+  if (child == 0) Become(program, arguments, out, err);
   int status = 0;
   waitpid(child, &status, 0);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadText(out), ReadText(err)};
@@ -47,7 +46,7 @@ void KillAtFileSize(const std::vector<std::string>& arguments, std::uintmax_t by
     const rlimit size{bytes, bytes}, none{0, 0};
     setrlimit(RLIMIT_CORE, &none);
     setrlimit(RLIMIT_FSIZE, &size);
-    Become(arguments, messages / "out", messages / "err");
+    Become(FLEXTIP_PROGRAM, arguments, messages / "out", messages / "err");
   }
   int status = 0;
   waitpid(child, &status, 0);

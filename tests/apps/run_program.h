@@ -15,8 +15,10 @@ struct ProgramResult {
   std::string out, err;
 };
 
-/// Runs the built program with `arguments`, without a shell and with stderr not a terminal.
-ProgramResult RunProgram(const std::vector<std::string>& arguments);
+/// Runs a program, by default the built one, with `arguments`, without a shell and with stderr not
+/// a terminal.
+ProgramResult RunProgram(const std::vector<std::string>& arguments,
+                         const std::string& program = FLEXTIP_PROGRAM);
 
 /// Runs the program until a file it writes would hold more than `bytes`: the system kills it then,
 /// in the midst of writing and however fast it is.

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 Separation OfTaper(hidden::LoadKind load) {
@@ -43,4 +43,4 @@ TEST(MatrixForm, AnotherDrawIsNotCompared) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 enum : int { kStiffness, kLength, kEmLatency, diagnosis::kTipCompliance };
@@ -125,4 +125,4 @@ TEST(MatrixRival, GenericTermsTakeWhatTheirPriorAllows) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -6,7 +6,7 @@
 #include "bench/diagnosis_matrix/truth.h"
 #include "diagnosis/replay/replay.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -108,4 +108,4 @@ TEST(MatrixTruth, IsInTheTermsOfTheReport) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench

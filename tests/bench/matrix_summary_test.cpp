@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using testing::HasSubstr;
@@ -126,4 +126,4 @@ TEST(MatrixRecordFile, RoundTripIsExact) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench

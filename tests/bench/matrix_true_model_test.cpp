@@ -10,7 +10,7 @@
 #include "bench/diagnosis_matrix/heldout.h"
 #include "diagnosis/evidence/linear_problem.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 std::array<double, diagnosis::kChannelCount> StatedNoise() {
@@ -122,7 +122,7 @@ double WeightedRms(const diagnosis::Replay& replay) {
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < residuals.size(); ++k) {
     const diagnosis::Rows sd = replay.RowNoise(k);
-    for (int r = 0; r < row::kCount; ++r) {
+    for (int r = 0; r < diagnosis::row::kCount; ++r) {
       if (!replay.Set().samples[k].present[r]) continue;
       sum += std::pow(residuals[k][r] / sd[r], 2);
       count += 1.0;
@@ -154,4 +154,4 @@ TEST(TrueHeldOut, WhatTheLabelDoesNotNameIsFitted) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -2,10 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "bench/tip_bound/fisher.h"
+#include "core/linear_algebra.h"
 #include "simulation/render/film.h"
 #include "vision/tags/reprojection.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -40,7 +41,7 @@ TEST(TipBound, IsAttainedFromTheTrueDerivatives) {
     const Image frame = film.Develop(light, i);
     const auto normalised = [&](const PixelModel& model) {
       const Vector6 e = model.Step(frame);
-      return e.dot(model.Bound(true).covariance.ldlt().solve(e)) / kFrames;
+      return e.dot(Ldlt(model.Bound(true).covariance).Solve(e)) / kFrames;
     };
     collar += normalised(b.models.collar);
     all += normalised(b.models.all);
@@ -87,4 +88,4 @@ TEST(TipBound, MoreKnownOrMoreSeenBoundsLower) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench

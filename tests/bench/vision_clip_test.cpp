@@ -4,7 +4,7 @@
 
 #include "core/rotation.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 // Between two frames the collar goes on by the step that its case states, along all of the circle:
@@ -43,4 +43,4 @@ TEST(VisionClip, IsSeenInEveryFrame) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench

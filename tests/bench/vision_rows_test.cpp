@@ -10,7 +10,7 @@
 #include "core/rotation.h"
 #include "recording/text/text.h"
 
-namespace flextip {
+namespace flextip::bench {
 namespace {
 
 const CameraCalibration kCamera = BenchCamera(1280, 2.2);
@@ -128,4 +128,4 @@ TEST(CompareRows, TablesHaveDashesWhereNothingWasMeasured) {
 }
 
 }  // namespace
-}  // namespace flextip
+}  // namespace flextip::bench

@@ -14,6 +14,7 @@
 #include "calibration/camera/corner_error.h"
 #include "calibration/camera/start.h"
 #include "core/derivative_check.h"
+#include "core/linear_algebra.h"
 #include "tests/calibration/camera_synthetic.h"
 
 namespace flextip {
@@ -112,7 +113,7 @@ TEST(BoardShape, CovarianceCountsTheShape) {
     const Eigen::VectorXd error = Intrinsics(s.camera) - Intrinsics(truth.camera);
     const auto weigh = [&](const CameraSolution& with) {
       const Eigen::MatrixXd P = with.Covariance().topLeftCorner(kNumbers, kNumbers);
-      return error.dot(P.ldlt().solve(error)) / kTrials;
+      return MahalanobisSquared(error, P) / kTrials;
     };
     nees += weigh(s);
     CameraSolution held = s;

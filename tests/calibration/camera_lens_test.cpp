@@ -1,17 +1,17 @@
-// The lens models for any scalar against vision's, which has derivatives of its own.
-#include <ceres/jet.h>
+// The lens models with their derivatives: against vision's, and against central differences.
+#include "calibration/camera/lens_derivative.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "calibration/camera/lens_function.h"
+#include "core/derivative_check.h"
 #include "vision/camera_model.h"
 
 namespace flextip {
 namespace {
 
-template <Distortion kModel, int kTerms>
-void AgreesWithVision(std::vector<double> k) {
+void AgreesWithVision(Distortion distortion, const std::vector<double>& k) {
   CameraCalibration c;
   c.width_px = 640;
   c.height_px = 480;
@@ -19,10 +19,11 @@ void AgreesWithVision(std::vector<double> k) {
   c.fv_px = 510;
   c.cu_px = 320;
   c.cv_px = 240;
-  c.distortion = kModel;
+  c.distortion = distortion;
   c.distortion_coefficients = k;
   const CameraModel model(c);
-  std::mt19937 random(kTerms);
+  const int terms = static_cast<int>(k.size());
+  std::mt19937 random(static_cast<unsigned>(terms));
   std::uniform_real_distribution<double> u(-0.6, 0.6);
   int tried = 0;
   for (int i = 0; i < 200; ++i) {
@@ -32,26 +33,28 @@ void AgreesWithVision(std::vector<double> k) {
     const auto px = model.Project({m.x(), m.y(), 1.0}, &J);
     if (!px) continue;
     ++tried;
-    using Jet = ceres::Jet<double, 2>;
-    Jet coefficients[kTerms];
-    for (int j = 0; j < kTerms; ++j) coefficients[j] = Jet(k[static_cast<std::size_t>(j)]);
-    const auto d = DistortLens<kModel, kTerms>(
-        coefficients, Eigen::Matrix<Jet, 2, 1>(Jet(m.x(), 0), Jet(m.y(), 1)));
-    EXPECT_NEAR(500 * d.x().a + 320, px->x(), 1e-9);
-    EXPECT_NEAR(510 * d.y().a + 240, px->y(), 1e-9);
-    EXPECT_TRUE((500 * d.x().v.transpose()).isApprox(J.row(0).head<2>(), 1e-9));
-    EXPECT_TRUE((510 * d.y().v.transpose()).isApprox(J.row(1).head<2>(), 1e-9));
+    const LensDerivative lens = DifferentiateLens(distortion, k.data(), terms, m);
+    EXPECT_NEAR(500 * lens.d.x() + 320, px->x(), 1e-9);
+    EXPECT_NEAR(510 * lens.d.y() + 240, px->y(), 1e-9);
+    EXPECT_TRUE((500 * lens.by_m.row(0)).isApprox(J.row(0).head<2>(), 1e-9));
+    EXPECT_TRUE((510 * lens.by_m.row(1)).isApprox(J.row(1).head<2>(), 1e-9));
+    const Eigen::MatrixXd by_k = NumericJacobian(
+        [&](const Eigen::VectorXd& moved) -> Eigen::VectorXd {
+          return DifferentiateLens(distortion, moved.data(), terms, m).d;
+        },
+        Eigen::Map<const Eigen::VectorXd>(k.data(), terms), 1e-4);
+    EXPECT_LT((lens.by_k.leftCols(terms) - by_k).cwiseAbs().maxCoeff(), 1e-10);
   }
   EXPECT_GT(tried, 150);
 }
 
-TEST(LensFunction, AgreesWithVision) {
-  AgreesWithVision<Distortion::kRadialTangential, 4>({-0.3, 0.1, 0.001, -0.002});
-  AgreesWithVision<Distortion::kOpenCv, 5>({-0.3, 0.1, 0.001, -0.002, -0.01});
-  AgreesWithVision<Distortion::kOpenCv, 8>({0.1, -0.2, 0.001, -0.002, 0.05, 0.3, -0.1, 0.02});
-  AgreesWithVision<Distortion::kOpenCv, 12>(
-      {0.1, -0.2, 0.001, -0.002, 0.05, 0.3, -0.1, 0.02, 0.01, -0.02, 0.03, -0.04});
-  AgreesWithVision<Distortion::kEquidistant, 4>({0.05, -0.02, 0.01, -0.003});
+TEST(LensDerivative, AgreesWithVisionAndWithDifferences) {
+  AgreesWithVision(Distortion::kRadialTangential, {-0.3, 0.1, 0.001, -0.002});
+  AgreesWithVision(Distortion::kOpenCv, {-0.3, 0.1, 0.001, -0.002, -0.01});
+  AgreesWithVision(Distortion::kOpenCv, {0.1, -0.2, 0.001, -0.002, 0.05, 0.3, -0.1, 0.02});
+  AgreesWithVision(Distortion::kOpenCv,
+                   {0.1, -0.2, 0.001, -0.002, 0.05, 0.3, -0.1, 0.02, 0.01, -0.02, 0.03, -0.04});
+  AgreesWithVision(Distortion::kEquidistant, {0.05, -0.02, 0.01, -0.003});
 }
 
 }  // namespace

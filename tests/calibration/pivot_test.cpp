@@ -9,12 +9,11 @@
 
 #include "calibration/residual_statistics.h"
 #include "calibration/tip/tip_poses.h"
+#include "core/linear_algebra.h"
 #include "tests/calibration/pivot_scene.h"
 
 namespace flextip {
 namespace {
-
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 Vector6d ErrorOf(const PivotResult& result, const PivotScene& scene) {
   Vector6d e;
@@ -32,7 +31,7 @@ double MeanNees(const PivotScene& scene, int draws, unsigned seed,
     const PivotResult result = CalibratePivot(DrawPivot(scene, random));
     EXPECT_EQ(result.status, PivotStatus::kOk);
     const Vector6d e = ErrorOf(result, scene);
-    sum += e.dot(result.covariance.ldlt().solve(e)) / draws;
+    sum += MahalanobisSquared(e, result.covariance) / draws;
     mean += Eigen::Vector2d(result.position_noise_scale, result.orientation_noise_scale) / draws;
   }
   if (scales != nullptr) *scales = mean;
@@ -120,7 +119,7 @@ TEST(Pivot, OutliersAreNamedAndNothingElse) {
   }
   EXPECT_THAT(result.residuals[3].reason, testing::HasSubstr("sigmas"));
   const Vector6d e = ErrorOf(result, scene);
-  EXPECT_LT(e.dot(result.covariance.ldlt().solve(e)), 22.5);  // 99.9 %
+  EXPECT_LT(MahalanobisSquared(e, result.covariance), 22.5);  // 99.9 %
 }
 
 TEST(Pivot, HeldOutResidualsAreThoseOfFitsWithoutThePose) {
@@ -254,7 +253,7 @@ TEST(Pivot, RealPointer) {
   const PivotResult second = CalibratePivot({all.begin() + 28, all.end()});
   Vector6d apart;
   apart << first.p_BE - second.p_BE, first.p_R - second.p_R;
-  EXPECT_LT(apart.dot((first.covariance + second.covariance).ldlt().solve(apart)), 16.8);  // 99 %
+  EXPECT_LT(apart.dot(Ldlt(first.covariance + second.covariance).Solve(apart)), 16.8);  // 99 %
 }
 
 }  // namespace

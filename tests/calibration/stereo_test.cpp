@@ -11,6 +11,7 @@
 #include "calibration/stereo/stereo_calibration.h"
 #include "core/derivative_check.h"
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "tests/calibration/stereo_scene.h"
 #include "vision/tags/reprojection.h"
 
@@ -56,9 +57,9 @@ TEST(StereoBundle, CovarianceIsTheSpreadOfWhatIsFound) {
     const Eigen::MatrixXd covariance = s.Covariance();
     ASSERT_GT(covariance.rows(), 0);
     const int n = static_cast<int>(error.size());
-    nees += error.dot(covariance.topLeftCorner(n, n).ldlt().solve(error)) / n / kRuns;
+    nees += error.dot(Ldlt(covariance.topLeftCorner(n, n)).Solve(error)) / n / kRuns;
     const Eigen::Matrix<double, 6, 6> pair = covariance.block<6, 6>(n - 6, n - 6);
-    nees_pair += error.tail<6>().dot(pair.ldlt().solve(error.tail<6>())) / 6 / kRuns;
+    nees_pair += MahalanobisSquared(error.tail<6>(), pair) / 6 / kRuns;
     const Baseline baseline = BaselineOf(s.T_C0C1, pair.bottomRightCorner<3, 3>());
     inside += std::abs(baseline.length_m - scene.T_C0C1.p.norm()) < baseline.sd_m ? 1.0 / kRuns : 0;
   }
@@ -116,7 +117,7 @@ TEST(StereoBundle, TheShapeIsEliminatedAsByDifferences) {
   const Eigen::MatrixXd eliminated =
       whole.topLeftCorner(n, n) -
       whole.topRightCorner(n, all - n) *
-          whole.bottomRightCorner(all - n, all - n).llt().solve(whole.bottomLeftCorner(all - n, n));
+          Llt(whole.bottomRightCorner(all - n, all - n)).Solve(whole.bottomLeftCorner(all - n, n));
   EXPECT_TRUE(s.normal_matrix.isApprox(eliminated, 1e-6));
 }
 

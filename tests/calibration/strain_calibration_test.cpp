@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "tests/calibration/hung_masses.h"
 
 namespace flextip {
@@ -39,7 +40,7 @@ double Nees(const StrainCalibration& result, const Bench& bench) {
   Eigen::MatrixXd C(20, 20);
   C << all.topLeftCorner(16, 16), all.topRightCorner(16, 4), all.bottomLeftCorner(4, 16),
       all.bottomRightCorner(4, 4);
-  return error.dot(C.ldlt().solve(error));
+  return MahalanobisSquared(error, C);
 }
 
 TEST(StrainCalibration, FindsTheGagesAsWellAsItSays) {

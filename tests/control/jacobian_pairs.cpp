@@ -103,10 +103,10 @@ MotionPair<N> ForSearch(const JacobianPair<N>& pair) {
   const Long J_hat = pair.J_hat.template cast<long double>();
   const Long inverse = J_hat.inverse();
   const Square<N> A = (J * inverse).template cast<double>();
-  const Eigen::JacobiSVD<Square<N>> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Svd<N> svd(A);
   Eigen::Matrix<double, N, 1> D = Eigen::Matrix<double, N, 1>::Ones();
-  if constexpr (N == 3) D[0] = svd.singularValues()[1] / svd.singularValues()[0];
-  const Square<N> VD = svd.matrixV() * D.asDiagonal();
+  if constexpr (N == 3) D[0] = svd.sigma[1] / svd.sigma[0];
+  const Square<N> VD = svd.V * D.asDiagonal();
   const Long P = (inverse * VD.template cast<long double>())
                      .template cast<double>()
                      .template cast<long double>();

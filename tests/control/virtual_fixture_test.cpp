@@ -10,6 +10,7 @@
 #include "allocation_counter.h"
 #include "control/virtual_fixture_mesh.h"
 #include "core/error.h"
+#include "core/linear_algebra.h"
 
 namespace flextip {
 namespace {
@@ -79,7 +80,7 @@ double DistanceToTriangle(const Vector3d& a, const Vector3d& b, const Vector3d& 
                           const Vector3d& p) {
   Eigen::Matrix<double, 3, 2> sides;
   sides << b - a, c - a;
-  const Eigen::Vector2d uv = (sides.transpose() * sides).ldlt().solve(sides.transpose() * (p - a));
+  const Eigen::Vector2d uv = Ldlt(sides.transpose() * sides).Solve(sides.transpose() * (p - a));
   if (uv.minCoeff() >= 0.0 && uv.sum() <= 1.0) return (a + sides * uv - p).norm();
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [u, v] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {

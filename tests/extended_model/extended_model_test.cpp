@@ -48,7 +48,7 @@ diagnosis::ExtendedModel Everything() {
   diagnosis::ExtendedModel model;
   double x = 0.1;
   int count = 0;
-  std::vector<std::string> names = hidden::CatalogueEffects();
+  std::vector<std::string> names = simulation::CatalogueEffects();
   std::sort(names.begin(), names.end());
   for (const std::string& name : names) {
     diagnosis::EffectFit fit{name, diagnosis::ParametersOf(*diagnosis::MakeEffect(name))};
@@ -128,7 +128,7 @@ TEST_F(ModelFile, OlderFilesLackSomeParameters) {
 /// What is fitted comes back from what is reported, all of it.
 TEST(ExtendedEffect, ReportedParametersHoldTheFittedOnes) {
   double x = 0.01;
-  for (const std::string& name : hidden::CatalogueEffects()) {
+  for (const std::string& name : simulation::CatalogueEffects()) {
     const auto effect = diagnosis::MakeEffect(name);
     Eigen::VectorXd theta(effect->Parameters(diagnosis::SampleSet{}).size());
     for (double& value : theta) value = (x += 0.003);

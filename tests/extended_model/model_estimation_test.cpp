@@ -44,17 +44,16 @@ struct Errors {
 
 Errors Compare(const hidden::HiddenRecording& hidden, bool use_positions) {
   const Recording& recording = hidden.recording;
-  EstimatorOptions options;
-  options.instrument = recording.instrument;
-  options.p_RP = recording.p_RP;
-  options.gravity_m_s2 = recording.gravity_m_s2;
+  EstimatorOptions options =
+      EstimatorOptionsFor(recording.instrument, recording.p_RP, recording.gravity_m_s2);
   options.use_positions = use_positions;
   options.estimate_tissue = false;
   const diagnosis::ExtendedModel found = ModelOfLabel(hidden);
   diagnosis::ModelAt model(found, recording);
-  return {TipError(EstimateRecording(recording, options), hidden.truth),
-          TipError(EstimateRecording(diagnosis::WithoutLatency(recording, found), options, &model),
-                   hidden.truth)};
+  InstrumentEstimator without(options), with(options);
+  const Recording timed = diagnosis::WithoutLatency(recording, found);
+  return {TipError(EstimateRecording(recording, without), hidden.truth),
+          TipError(EstimateRecording(timed, with, &model), hidden.truth)};
 }
 
 struct Case {

@@ -21,7 +21,7 @@ diagnosis::ExtendedModel ModelOfLabel(const hidden::HiddenRecording& hidden) {
   }
   for (const std::string& name : hidden.label.present) {
     diagnosis::EffectFit fit{name, diagnosis::ParametersOf(*diagnosis::MakeEffect(name))};
-    const hidden::EffectParameters& label = hidden.label.parameters.at(name);
+    const simulation::EffectParameters& label = hidden.label.parameters.at(name);
     for (diagnosis::ReportedParameter& parameter : fit.parameters) {
       // A pose found from tags keeps its attitude to the line of sight, which the scale moves.
       if (parameter.name == "turn") parameter.value[0] = std::log(label.at("scale").at(0));

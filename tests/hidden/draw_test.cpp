@@ -108,7 +108,7 @@ TEST(HiddenDraw, EmGradientEntriesHaveTheirSize) {
   for (int i = 0; i < 100; ++i) {
     const HiddenLabel label =
         DrawEffects({.present = {"em_distortion"}, .size = EffectSize::kPlain}, rng);
-    const Eigen::Matrix3d gradient = SensorEffectsOf(label).em_gradient;
+    const Eigen::Matrix3d gradient = simulation::EffectsOf(label.parameters).sensors.em_gradient;
     EXPECT_LE(gradient.cwiseAbs().maxCoeff(), 0.03);
     EXPECT_GE(gradient.norm() / 3.0, 0.0075);
     EXPECT_LE(gradient.norm() / 3.0, 0.0201);
@@ -119,11 +119,12 @@ TEST(HiddenDraw, ExactIsNeutral) {
   std::mt19937_64 rng(5);
   const HiddenLabel label = DrawEffects({.exact = true}, rng);
   for (const Limits& row : kLimits) EXPECT_EQ(Deviation(label, row), 0.0) << row.effect;
-  const simulation::PlantEffects plant = PlantEffectsOf(label);
+  const simulation::PlantEffects plant = simulation::EffectsOf(label.parameters).plant;
   const simulation::PlantEffects none;
   EXPECT_EQ(plant.stiffness_scale, none.stiffness_scale);
   EXPECT_EQ(plant.port_motion.amplitude_m, none.port_motion.amplitude_m);
-  EXPECT_EQ(SensorEffectsOf(label).strain_gain, simulation::SensorEffects{}.strain_gain);
+  EXPECT_EQ(simulation::EffectsOf(label.parameters).sensors.strain_gain,
+            simulation::SensorEffects{}.strain_gain);
 }
 
 TEST(HiddenDraw, OtherParametersDoNotChangeWithWhatIsPresent) {
@@ -141,8 +142,8 @@ TEST(HiddenDraw, ParametersReachPlantAndSensors) {
   const auto value = [&](const char* effect, const char* parameter, int i = 0) {
     return label.parameters.at(effect).at(parameter).at(i);
   };
-  const simulation::PlantEffects plant = PlantEffectsOf(label);
-  const simulation::SensorEffects sensors = SensorEffectsOf(label);
+  const simulation::PlantEffects plant = simulation::EffectsOf(label.parameters).plant;
+  const simulation::SensorEffects sensors = simulation::EffectsOf(label.parameters).sensors;
   EXPECT_EQ(plant.curvature_1_m.y(), value("precurvature", "curvature_1_m", 1));
   EXPECT_EQ(plant.port_friction.coefficient, value("port_friction", "coefficient"));
   EXPECT_EQ(plant.shaft_load_N_m.z(), value("shaft_load", "force_per_length_N_m", 2));

@@ -8,9 +8,10 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "estimation/shaft_estimator.h"
-#include "pipeline/measurements_at.h"
+#include "pipeline/sensor_readings.h"
 #include "recording/recording_reader.h"
 #include "recording/text/text.h"
 #include "testdata/hidden/recording.h"
@@ -154,7 +155,7 @@ double Distance(const Recording& a, const Recording& b) {
   }
   for (std::size_t i = 0; i < a.vision0->tips.size(); ++i) {
     const TipObservation &p = a.vision0->tips[i].value, &q = b.vision0->tips[i].value;
-    sum += (p.p_RE - q.p_RE).dot(p.covariance_m2.ldlt().solve(p.p_RE - q.p_RE));
+    sum += (p.p_RE - q.p_RE).dot(Ldlt(p.covariance_m2).Solve(p.p_RE - q.p_RE));
     sum += ((*p.d_RE - *q.d_RE) / a.vision0->direction_noise_rad).squaredNorm();
   }
   return std::sqrt(sum);
@@ -181,7 +182,7 @@ TEST_P(EveryEffect, StandsOutFromTheNoise) {
 }
 
 std::vector<std::string> AllForms() {
-  std::vector<std::string> names = CatalogueEffects();
+  std::vector<std::string> names = simulation::CatalogueEffects();
   names.insert(names.end(), OtherForms().begin(), OtherForms().end());
   return names;
 }

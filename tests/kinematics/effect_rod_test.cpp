@@ -18,7 +18,6 @@ Eigen::Vector3d AxisAcross(const RodProblem& rod) {
 
 TEST(EffectRod, WithoutEffectsEqualsTheReferenceTable) {
   const auto rows = ReadRodReference();
-  if (rows.empty()) GTEST_SKIP() << "no reference table";
   ASSERT_EQ(rows.size(), 150u);
   double tip = 0.0, tangent = 0.0, place = 0.0, force = 0.0, moment = 0.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -13,9 +13,9 @@ namespace flextip {
 
 using ReferenceRow = std::map<std::string, double>;
 
-/// Empty where the table is absent.
+/// Returns the rows of testdata/reference/rod_equilibria.csv, each column by its name.
 inline std::vector<ReferenceRow> ReadRodReference() {
-  std::ifstream file(std::string(FLEXTIP_SHARED_DIR) + "/reference/rod_equilibria.csv");
+  std::ifstream file(FLEXTIP_SOURCE_DIR "/testdata/reference/rod_equilibria.csv");
   const auto split = [](const std::string& line) {
     std::vector<std::string> cells;
     std::stringstream stream(line);

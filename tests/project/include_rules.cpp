@@ -24,24 +24,28 @@ const std::map<std::string, Names>& Arrows() {
       {"vision", {"core"}},
       {"recording", {"core"}},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
+      {"pipeline", {"core", "kinematics", "estimation", "control", "vision", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording"}},
       {"reproduction",
-       {"core", "kinematics", "estimation", "control", "simulation", "workspace", "report"}},
+       {"core", "kinematics", "estimation", "control", "pipeline", "simulation", "workspace",
+        "report", "recording", "apps"}},
+      {"testdata", {"core", "recording", "simulation", "bench"}},
       {"apps",
        {"core", "kinematics", "estimation", "control", "vision", "recording", "calibration",
-        "simulation", "diagnosis", "report", "workspace", "reproduction"}},
+        "pipeline", "simulation", "diagnosis", "report", "workspace"}},
       {"bench",
        {"core", "kinematics", "estimation", "control", "vision", "recording", "calibration",
-        "simulation", "diagnosis", "report", "workspace", "reproduction"}},
+        "pipeline", "simulation", "diagnosis", "report", "workspace", "testdata"}},
   };
   return arrows;
 }
 
 /// The files of the target closed_loop join the plant with the controllers, and no others do.
-const Names kClosedLoop{"core", "recording", "vision", "control", "estimation"};
+const Names kClosedLoop{"core",       "recording", "vision",   "control",
+                        "estimation", "pipeline",  "diagnosis"};
 
 /// Foreign header's beginning -> the folders whose .cpp files may include it.
 const std::map<std::string, Names>& ForeignHeaders() {
@@ -53,8 +57,8 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"tbb/", {"vision", "simulation", "diagnosis", "workspace", "reproduction", "apps", "bench"}},
       {"geos", {"reproduction"}},
       {"boost/", {"workspace", "reproduction"}},
-      {"nlohmann/", {"report", "apps", "bench"}},
-      {"CLI/", {"apps", "bench"}},
+      {"nlohmann/", {"report", "reproduction", "apps", "testdata", "bench"}},
+      {"CLI/", {"apps", "reproduction", "bench"}},
   };
   return foreign;
 }
@@ -119,7 +123,8 @@ std::string ForeignComplaint(const std::string& path, const std::string& header)
 
 /// The plant shares no solver with what is tested against it, not even through a third header.
 std::string PlantComplaint(const SourceTree& tree, const std::string& path) {
-  if (FolderOf(path) != "simulation" || ClosesTheLoop(path)) return "";
+  const bool plant = FolderOf(path) == "simulation" || FolderOf(path) == "testdata";
+  if (!plant || ClosesTheLoop(path)) return "";
   for (const auto& header : Reachable(tree, path)) {
     if (FolderOf(header) == "kinematics") {
       return fmt::format("{}: reaches {}, but the plant has no part of the models", path, header);

@@ -1,4 +1,5 @@
 // Recordings made by other programs and on real robots.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -14,7 +15,10 @@ namespace {
 
 using ::testing::IsEmpty;
 
-const std::filesystem::path kData = std::filesystem::path(FLEXTIP_SHARED_DIR) / "data";
+const std::filesystem::path kRecordings = FLEXTIP_SOURCE_DIR "/testdata/recordings";
+/// Data of others, which is not in the project.
+const std::filesystem::path kShared = FLEXTIP_SHARED_DIR "/data";
+const std::filesystem::path kOpenCvDoc = "/usr/share/doc/opencv-doc/examples/data";
 
 /// Lines after the header, counted without the reader.
 std::size_t Rows(const std::filesystem::path& file) {
@@ -24,45 +28,45 @@ std::size_t Rows(const std::filesystem::path& file) {
   return lines - 1;
 }
 
-TEST(ThirdParty, EveryRecordingReadsWholeAndWithoutWarnings) {
-  if (!std::filesystem::exists(kData / "recordings")) GTEST_SKIP() << "no shared recordings";
+/// Reads the recording in `path`, and writes and reads it again without a change.
+void ExpectReadsWhole(const std::filesystem::path& path) {
+  SCOPED_TRACE(path.string());
   const flextip::testing::TemporaryFolder folder;
-  int recordings = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(kData / "recordings")) {
-    if (entry.path().filename() != "recording.yaml") continue;
-    const auto path = entry.path().parent_path();
-    SCOPED_TRACE(path.string());
-    const auto result = ReadRecording(path);
-    const auto& r = result.recording;
-    EXPECT_THAT(result.warnings, IsEmpty());
-    ++recordings;
-    ASSERT_TRUE(r.wrist0 && r.vision0);
-    EXPECT_EQ(r.wrist0->samples.size(), Rows(path / "wrist0/data.csv"));
-    EXPECT_EQ(r.vision0->tips.size(), Rows(path / "vision0/data.csv"));
-    if (r.em0) {
-      EXPECT_EQ(r.em0->samples.size(), Rows(path / "em0/data.csv"));
-    }
-    if (r.strain0) {
-      EXPECT_EQ(r.strain0->moments_Nm.size(), Rows(path / "strain0/data.csv"));
-    }
-    EXPECT_EQ(r.em0.has_value(), std::filesystem::exists(path / "em0"));
-    EXPECT_EQ(r.load0.has_value(), std::filesystem::exists(path / "load0"));
-    // What was read, written and read again is written in the same bytes.
-    WriteRecording(folder / "once", r);
-    WriteRecording(folder / "twice", ReadRecording(folder / "once").recording);
-    for (const char* file : {"recording.yaml", "wrist0/data.csv", "vision0/data.csv"}) {
-      EXPECT_EQ(flextip::testing::ReadText(folder / "once" / file),
-                flextip::testing::ReadText(folder / "twice" / file));
-    }
-    std::filesystem::remove_all(folder / "once");
-    std::filesystem::remove_all(folder / "twice");
+  const auto result = ReadRecording(path);
+  const auto& r = result.recording;
+  EXPECT_THAT(result.warnings, IsEmpty());
+  ASSERT_TRUE(r.wrist0 && r.vision0);
+  EXPECT_EQ(r.wrist0->samples.size(), Rows(path / "wrist0/data.csv"));
+  EXPECT_EQ(r.vision0->tips.size(), Rows(path / "vision0/data.csv"));
+  if (r.em0) {
+    EXPECT_EQ(r.em0->samples.size(), Rows(path / "em0/data.csv"));
   }
-  EXPECT_GE(recordings, 8);
+  if (r.strain0) {
+    EXPECT_EQ(r.strain0->moments_Nm.size(), Rows(path / "strain0/data.csv"));
+  }
+  EXPECT_EQ(r.em0.has_value(), std::filesystem::exists(path / "em0"));
+  EXPECT_EQ(r.load0.has_value(), std::filesystem::exists(path / "load0"));
+  // What was read, written and read again is written in the same bytes.
+  WriteRecording(folder / "once", r);
+  WriteRecording(folder / "twice", ReadRecording(folder / "once").recording);
+  for (const char* file : {"recording.yaml", "wrist0/data.csv", "vision0/data.csv"}) {
+    EXPECT_EQ(flextip::testing::ReadText(folder / "once" / file),
+              flextip::testing::ReadText(folder / "twice" / file));
+  }
+}
+
+TEST(ThirdParty, SampleRecordingsReadWholeAndWithoutWarnings) {
+  for (int i = 0; i < 6; ++i) ExpectReadsWhole(kRecordings / fmt::format("sample_{}", i));
+}
+
+TEST(ThirdParty, RecordingsOfRealArmsReadWholeAndWithoutWarnings) {
+  if (!std::filesystem::exists(kShared / "recordings")) GTEST_SKIP() << "no shared recordings";
+  for (const char* name : {"dvrk_insertion_a", "dvrk_press_x"})
+    ExpectReadsWhole(kShared / "recordings" / name);
 }
 
 TEST(ThirdParty, ValuesAreTheFilesOwn) {
-  const auto path = kData / "recordings/samples/sample_0";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared recordings";
+  const auto path = kRecordings / "sample_0";
   const auto r = ReadRecording(path).recording;
   EXPECT_EQ(r.instrument.bending_stiffness_Nm2, 0.303973018);
   EXPECT_EQ(r.p_RP, Eigen::Vector3d(-0.00976031379, 0.01710896, -0.00173916909));
@@ -78,16 +82,15 @@ TEST(ThirdParty, ValuesAreTheFilesOwn) {
 }
 
 TEST(ThirdParty, UnmeasuredOrientationsAndDirectionsAreAbsent) {
-  const auto path = kData / "recordings/dvrk_press_x";
+  const auto path = kShared / "recordings/dvrk_press_x";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared recordings";
   const auto r = ReadRecording(path).recording;
   for (const auto& sample : r.wrist0->samples) EXPECT_FALSE(sample.value.q_RW.has_value());
   for (const auto& sample : r.vision0->tips) EXPECT_FALSE(sample.value.d_RE.has_value());
 }
 
-TEST(ThirdParty, TheRenderedSampleReads) {
-  if (!std::filesystem::exists(kData / "rendered_sample")) GTEST_SKIP() << "no rendered sample";
-  const auto result = ReadRecording(kData / "rendered_sample");
+TEST(ThirdParty, TheRenderedRecordingReads) {
+  const auto result = ReadRecording(kRecordings / "rendered");
   EXPECT_THAT(result.warnings, IsEmpty());
   EXPECT_EQ(result.recording.cam0->filenames.size(), 8u);
   EXPECT_EQ(result.recording.cam0->calibration.gamma, 2.2);
@@ -97,10 +100,12 @@ TEST(ThirdParty, TheRenderedSampleReads) {
   EXPECT_NEAR(T_EG.R(1, 1), 0.866025404, 2e-9);
 }
 
-TEST(ThirdParty, HeadsOfRealImagesAgreeWithTheDecoder) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no shared data";
+/// Compares the heads of up to 40 pictures below `folder` with OpenCV's decoder. Returns their
+/// count.
+int CheckHeads(const std::filesystem::path& folder) {
   int images = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(kData)) {
+  std::error_code absent;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, absent)) {
     const auto kind = entry.path().extension();
     if ((kind != ".png" && kind != ".jpg") || images >= 40) continue;
     const cv::Mat image = cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED);
@@ -109,7 +114,16 @@ TEST(ThirdParty, HeadsOfRealImagesAgreeWithTheDecoder) {
     EXPECT_EQ(cv::Size(head.width_px, head.height_px), image.size()) << entry.path();
     ++images;
   }
-  EXPECT_GT(images, 10);
+  return images;
+}
+
+TEST(ThirdParty, HeadsOfImagesAgreeWithTheDecoder) {
+  EXPECT_EQ(CheckHeads(kRecordings), 8);
+  for (const auto& folder : {kOpenCvDoc, kShared}) {
+    if (std::filesystem::exists(folder)) {
+      EXPECT_GT(CheckHeads(folder), 10) << folder;
+    }
+  }
 }
 
 }  // namespace

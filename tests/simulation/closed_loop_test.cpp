@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -91,6 +92,46 @@ TEST(ClosedLoop, SensorNoiseIsAsStated) {
   }
   const double n = 3.0 * static_cast<double>(wrist.size());
   EXPECT_NEAR(std::sqrt(sum / n) / 5e-5, 1.0, 4.0 / std::sqrt(2 * n));
+}
+
+// The goal goes 10 mm down and 6 mm aside; a floor is 6 mm down and a box 4 mm aside.
+TEST(ClosedLoop, FixturesKeepTheTipOutOfForbiddenRegions) {
+  Scenario scenario = ReadScenario(kScenarios + "fixtures.yaml");
+  const auto furthest = [&](double& down_m, double& aside_m) {
+    const LoopResult result = RunLoop(scenario, ControllerKind::kRodTrack);
+    down_m = aside_m = 0.0;
+    for (const LoopUpdate& update : result.updates) {
+      down_m = std::max(down_m, -0.0021 - update.p_RE.z());
+      aside_m = std::max(aside_m, update.p_RE.y());
+    }
+    return result.fixture_statuses;
+  };
+  double down_m, aside_m;
+  const auto statuses = furthest(down_m, aside_m);
+  EXPECT_LT(down_m, 0.0063);
+  EXPECT_GT(down_m, 0.0045);
+  EXPECT_LT(aside_m, 0.0043);
+  EXPECT_GT(aside_m, 0.0025);
+  EXPECT_GT(statuses.at("moved"), 20);
+  EXPECT_GT(statuses.at("free"), 5);
+  scenario.loop.fixtures.list.clear();
+  EXPECT_TRUE(furthest(down_m, aside_m).empty());
+  EXPECT_GT(down_m, 0.0095);
+  EXPECT_GT(aside_m, 0.0055);
+}
+
+TEST(ClosedLoop, TheTipTurnsWhereTheWaypointsSay) {
+  Scenario scenario = ReadScenario(kScenarios + "direction.yaml");
+  for (const ControllerKind kind : scenario.controllers) {
+    const LoopResult both = RunLoop(scenario, kind);
+    EXPECT_LT(both.final_direction_error_rad, 0.01) << Name(kind);
+    // The height is free, the rest of the place is not.
+    const Eigen::Vector3d left = both.updates.back().p_RE - both.updates.back().p_RE_desired;
+    EXPECT_LT(left.head<2>().norm(), 1.5e-3) << Name(kind);
+    Scenario place = scenario;
+    place.loop.direction.reset();
+    EXPECT_GT(RunLoop(place, kind).final_direction_error_rad, 0.03) << Name(kind);
+  }
 }
 
 TEST(ClosedLoop, ThroughTheLaparoscope) {

@@ -25,7 +25,7 @@ struct Row {
 
 std::vector<Row> ReadRows() {
   std::vector<Row> rows;
-  std::ifstream in(FLEXTIP_SHARED_DIR "/reference/rod_equilibria.csv");
+  std::ifstream in(FLEXTIP_SOURCE_DIR "/testdata/reference/rod_equilibria.csv");
   std::string line;
   std::getline(in, line);
   while (std::getline(in, line)) {
@@ -79,7 +79,6 @@ double GroupError(const Eigen::Matrix<double, 22, 1>& error, int group) {
 
 TEST(PlantReference, ConvergesWithSecondOrderToEveryRow) {
   const std::vector<Row> rows = ReadRows();
-  if (rows.empty()) GTEST_SKIP() << "the reference table is not here";
   ASSERT_EQ(rows.size(), 150u);
   double worst[8][4] = {}, ratio_low = 1e9, ratio_high = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -31,8 +31,7 @@ Signals SignalsOf(const PlantShape& shape, const Recording& recording) {
 }
 
 TEST(PlantReplay, HealthyRecordingIsReproducedToItsNoise) {
-  const std::string folder = FLEXTIP_SHARED_DIR "/data/recordings/samples/sample_0";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the sample recordings are not here";
+  const std::string folder = FLEXTIP_SOURCE_DIR "/testdata/recordings/sample_0";
   const Recording recording = ReadRecording(folder).recording;
   const auto& wrist = recording.wrist0->samples;
   PlantSetup setup;

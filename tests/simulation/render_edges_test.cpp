@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "simulation/render/face.h"
 #include "simulation/render/tag_pattern.h"
@@ -69,7 +70,7 @@ Vector2d FitLevel(const Field& f, int x0, int from, int to, int line, bool swapp
     N += row * row.transpose();
     b += row * f.At(x0 + d, line, swapped);
   }
-  return N.ldlt().solve(b);
+  return Ldlt(N).Solve(b);
 }
 
 // Where the field steps along a line of pixels, by the area under it: the levels on both sides

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "simulation/closed_loop/mesh_file.h"
 #include "simulation/closed_loop/tip_path.h"
 
 namespace flextip::simulation {
@@ -73,6 +74,83 @@ TEST(Scenario, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(Complaint("controllers: all", "controllers: [rod-track, flex-track]"), "");
 }
 
+TEST(Scenario, FixturesAndDirectionsRead) {
+  const fs::path folder = kPress.parent_path();
+  const Scenario fixtures = ReadScenario(folder / "fixtures.yaml");
+  ASSERT_EQ(fixtures.loop.fixtures.list.size(), 3u);
+  EXPECT_DOUBLE_EQ(fixtures.loop.fixtures.margin_sd, 2.0);
+  EXPECT_EQ(std::get<ForbiddenMesh>(fixtures.loop.fixtures.list[1]).TriangleCount(), 12);
+  EXPECT_TRUE(std::get<ForbiddenSphere>(fixtures.loop.fixtures.list[2]).forbidden_outside);
+  const Scenario direction = ReadScenario(folder / "direction.yaml");
+  ASSERT_TRUE(direction.loop.direction);
+  EXPECT_EQ(direction.loop.direction->priority, DirectionPriority::kPositionFirst);
+  EXPECT_EQ(direction.loop.direction_free_axis, Eigen::Vector3d::UnitZ());
+  EXPECT_DOUBLE_EQ(direction.loop.direction->max_step_m, 0.02);
+  EXPECT_NEAR(direction.loop.path.directions.at(0).norm(), 1.0, 1e-12);
+}
+
+/// The press with `fixture` as its only one.
+std::string FixtureComplaint(const std::string& fixture) {
+  return Complaint("controllers: all", "fixtures:\n  - " + fixture + "\ncontrollers: all");
+}
+
+TEST(Scenario, SaysWhatIsWrongWithFixtures) {
+  EXPECT_EQ(FixtureComplaint("guidance: {points: [{at_m: [0, 0, 0]}, {at_m: [1, 0, 0]}]}"), "");
+  EXPECT_EQ(FixtureComplaint("sphere: {centre_m: [0, 0, 0], radius_m: 1}"), "");
+  EXPECT_THAT(FixtureComplaint("cube: {edge_m: 1}"), HasSubstr("found cube"));
+  EXPECT_THAT(FixtureComplaint("sphere: {centre_m: [0, 0, 0], radius_m: 0}"),
+              HasSubstr("radius_m"));
+  EXPECT_THAT(FixtureComplaint("sphere: {centre_m: [0, 0, 0], radius_m: 1, forbidden: all}"),
+              HasSubstr("'all'"));
+  EXPECT_THAT(FixtureComplaint("half_space: {point_m: [0, 0, 0], normal: [0, 0, 0]}"),
+              HasSubstr("zero vector"));
+  EXPECT_THAT(FixtureComplaint("half_space: {point_m: [0, 0, 0], norml: [0, 0, 1]}"),
+              HasSubstr("norm"));
+  EXPECT_THAT(FixtureComplaint("mesh: {file: none.obj}"), HasSubstr("none.obj"));
+  EXPECT_THAT(FixtureComplaint("guidance: {points: [{at_m: [0, 0, 0]}]}"), HasSubstr("two points"));
+}
+
+TEST(Scenario, SaysWhatIsWrongWithDirections) {
+  const std::string first = "{to_m: [0.0, 0.0, -0.010]}";
+  EXPECT_THAT(Complaint(first, "{to_m: [0, 0, -0.01], direction: [1, 0, 0]}"),
+              HasSubstr("1 of 3 waypoints"));
+  EXPECT_THAT(Complaint("max_step_m: 0.02", "direction: {priority: weighted}"),
+              HasSubstr("needs a direction"));
+  EXPECT_THAT(Complaint("    - " + first +
+                            "\n    - {to_m: [0.0, 0.006, -0.010]}\n    - {to_m: [0.0, 0.006, 0.0]}",
+                        "    - {to_m: [0, 0, -0.01], direction: [1, 0, 0]}"),
+              HasSubstr("straight-calculate"));
+}
+
+/// What reading says of a mesh file.
+std::string MeshComplaint(const std::string& text) {
+  const fs::path file =
+      fs::path(testing::TempDir()) / ("mesh_test_" + std::to_string(::getpid()) + ".obj");
+  std::ofstream(file) << text;
+  try {
+    ReadMesh(file);
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr(file.string()));
+    return e.what();
+  }
+  return "";
+}
+
+TEST(MeshFile, CutsPolygonsAndSkipsWhatItDoesNotNeed) {
+  const TriangleMesh box = ReadMesh(kPress.parent_path() / "box.obj");
+  EXPECT_EQ(box.points.size(), 8u);
+  EXPECT_EQ(box.triangles.size(), 12u);
+  EXPECT_EQ(MeshComplaint("o box\nv 0 0 0\nv 1 0 0\nvn 0 0 1\nv 0 1 0\nf 1//1 2/3/1 -1\n"), "");
+}
+
+TEST(MeshFile, SaysWhatIsWrongAndWhere) {
+  EXPECT_THAT(MeshComplaint("v 0 0\n"), HasSubstr(":1:"));
+  EXPECT_THAT(MeshComplaint("v 0 0 0\nf 1 1\n"), HasSubstr(":2:"));
+  EXPECT_THAT(MeshComplaint("v 0 0 0\nf 1 2 1\n"), HasSubstr("'2'"));
+  EXPECT_THAT(MeshComplaint("v 0 0 0\nf 0 1 1\n"), HasSubstr("'0'"));
+  EXPECT_THAT(MeshComplaint("v 0 0 0\nf 1 x 1\n"), HasSubstr("'x'"));
+}
+
 /// The press with a section of effects.
 std::string EffectComplaint(const std::string& effects) {
   return Complaint("controllers: all", "effects:\n" + effects + "controllers: all");
@@ -133,7 +211,7 @@ TEST(TipPath, ContinuousFollowsItsLegsAtItsSpeed) {
   setup.waypoints_m = {{0.01, 0, 0}, {0.01, 0.02, 0}};
   setup.speed_m_s = 0.03;
   setup.settle_s = 0.1;
-  TipPath path(setup, {1, 2, 3}, 30.0);
+  TipPath path(setup, {Eigen::Matrix3d::Identity(), {1, 2, 3}}, 30.0);
   Eigen::Vector3d last(1, 2, 3);
   double length = 0.0;
   int updates = 0;
@@ -150,11 +228,26 @@ TEST(TipPath, ContinuousFollowsItsLegsAtItsSpeed) {
   EXPECT_NEAR(path.Deviation(Eigen::Vector3d(1.013, 2.01, 3)), 0.003, 1e-12);
 }
 
+TEST(TipPath, DirectionsTurnEvenlyAlongALeg) {
+  PathSetup setup;
+  setup.waypoints_m = {{0.02, 0, 0}, {0.02, 0.02, 0}};
+  setup.directions = {Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitY()};
+  setup.speed_m_s = 0.02;
+  TipPath path(setup, Pose(), 10.0);
+  for (int i = 1; i <= 10; ++i) {
+    path.Advance(Eigen::Vector3d::Zero());
+    const Eigen::Vector3d d = *path.Direction();
+    EXPECT_NEAR(std::atan2(d.y(), d.x()), i < 10 ? 0.1 * i * M_PI_2 : M_PI_2, 1e-9) << i;
+  }
+  setup.directions.clear();
+  EXPECT_FALSE(TipPath(setup, Pose(), 10.0).Direction());
+}
+
 TEST(TipPath, StepsWaitAtTheEndUntilTheTipIsThere) {
   PathSetup setup;
   setup.mode = PathMode::kSteps;
   setup.waypoints_m = {{0.01, 0, 0}};
-  TipPath path(setup, {0, 0, 0}, 30.0);
+  TipPath path(setup, Pose(), 30.0);
   for (int i = 1; i <= 5; ++i) EXPECT_NEAR(path.Advance({0, 0, 0}).x(), 0.002 * i, 1e-15);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(path.Advance({0.009, 0, 0}).x(), 0.01);
   EXPECT_FALSE(path.Done());

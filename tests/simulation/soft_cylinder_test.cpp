@@ -48,7 +48,7 @@ TEST(SoftCylinder, DerivativeMatchesDifferences) {
   int torn = 0;
   for (int i = 0; i < 300; ++i) {
     const Vector3d p(0.745 + 0.006 * uniform(rng), 0.01 * uniform(rng), 0.012 * uniform(rng));
-    const TipForce force = silicone.At(p);
+    const LinearTipForce force = silicone.At(p);
     for (int k = 0; k < 3; ++k) {
       const double h = 1e-7;
       const Vector3d slope = (silicone.At(p + h * Vector3d::Unit(k)).f_N -

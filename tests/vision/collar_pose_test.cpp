@@ -1,5 +1,6 @@
 // The collar's pose from corners that are known, exactly and with known noise.
 #include "vision/tags/collar_pose.h"
+#include "core/linear_algebra.h"
 
 #include <gtest/gtest.h>
 
@@ -91,9 +92,9 @@ TEST(CollarPose, CovarianceMatchesTheScatterForKnownNoise) {
       const CollarPose pose = EstimateCollarPose(model, kCollar, tags, options);
       ASSERT_TRUE(pose.IsUsable());
       const Eigen::Matrix<double, 6, 1> e = PoseDifference(pose.T_CE, T_CE);
-      sum6 += e.dot(pose.covariance.ldlt().solve(e));
+      sum6 += MahalanobisSquared(e, pose.covariance);
       const Eigen::Matrix3d of_tip = pose.covariance.bottomRightCorner<3, 3>();
-      sum3 += e.tail<3>().dot(of_tip.ldlt().solve(e.tail<3>()));
+      sum3 += MahalanobisSquared(e.tail<3>(), of_tip);
       ++n;
     }
     ASSERT_GT(n, 1000);
@@ -122,7 +123,7 @@ TEST(CollarPose, OneTagFacingTheCameraIsAmbiguousAndSaysSo) {
     const Eigen::Matrix<double, 6, 1> e = PoseDifference(pose.T_CE, T_CE);
     wrong += e.head<3>().norm() > 0.15;
     const Eigen::Matrix3d of_tip = pose.covariance.bottomRightCorner<3, 3>();
-    nees += e.tail<3>().dot(of_tip.ldlt().solve(e.tail<3>())) / kTrials;
+    nees += MahalanobisSquared(e.tail<3>(), of_tip) / kTrials;
     // An earlier pose decides.
     const CollarPose near = EstimateCollarPose(model, kCollar, tags, {}, T_CE);
     EXPECT_LE(PoseDifference(near.T_CE, T_CE).head<3>().norm(), e.head<3>().norm() + 1e-6);

@@ -1,5 +1,6 @@
 #include "tests/vision/outline_scene.h"
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "tests/vision/scope_scene.h"
 
@@ -39,14 +40,14 @@ simulation::Occluder CoverOfTheCollar(int first, int last) {
 double PositionNees(const Eigen::Vector3d& p_RE, const Eigen::Matrix3d& covariance_m2,
                     const Pose& truth) {
   const Eigen::Vector3d e = p_RE - truth.p;
-  return e.dot(covariance_m2.ldlt().solve(e));
+  return MahalanobisSquared(e, covariance_m2);
 }
 
 double DirectionNees(const TipPrediction& tip, const Pose& truth) {
   const Eigen::Matrix<double, 2, 3> across = NormalBasis(truth.R.col(0)).transpose();
   const Eigen::Vector2d e = across * LogRotation(tip.T_RE.R * truth.R.transpose());
   const Eigen::Matrix2d S = across * tip.covariance.topLeftCorner<3, 3>() * across.transpose();
-  return e.dot(S.ldlt().solve(e));
+  return MahalanobisSquared(e, S);
 }
 
 }  // namespace flextip

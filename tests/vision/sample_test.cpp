@@ -14,10 +14,10 @@
 namespace flextip {
 namespace {
 
-const std::filesystem::path kData = FLEXTIP_SHARED_DIR "/data";
+const std::filesystem::path kData = FLEXTIP_SOURCE_DIR "/testdata/recordings";
 
 std::map<TimeNs, Eigen::Vector3d> ReadSampleTruth() {
-  std::ifstream in(kData / "rendered_sample.truth.csv");
+  std::ifstream in(kData / "rendered.truth.csv");
   std::map<TimeNs, Eigen::Vector3d> truth;
   std::string line;
   std::getline(in, line);  // the names
@@ -40,8 +40,7 @@ Image ReadBgr(const std::filesystem::path& file) {
 
 // Gamma 2.2, and tags 0.02 mm above their stated places: corners alone are 0.85 mm too deep.
 TEST(RenderedSample, TipIsRightToATwentiethOfAMillimetre) {
-  const auto folder = kData / "rendered_sample";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is absent";
+  const auto folder = kData / "rendered";
   const Recording recording = ReadRecording(folder).recording;
   const auto truth = ReadSampleTruth();
   const CameraCalibration& camera = recording.cam0->calibration;

@@ -1,4 +1,5 @@
 // The shaft's outline found in rendered frames, the pose beside the truth.
+#include "core/linear_algebra.h"
 #include "vision/outline/contour.h"
 
 #include <gtest/gtest.h>
@@ -121,7 +122,7 @@ double NormalisedError(const ContourFit& fit, const Pose& truth) {
   pick.topLeftCorner<2, 3>() = NormalBasis(truth.R.col(0)).transpose();
   pick.bottomRightCorner<3, 3>().setIdentity();
   const Eigen::Matrix<double, 5, 1> e = pick * PoseDifference(truth, fit.T_CE);
-  return e.dot((pick * fit.covariance * pick.transpose()).ldlt().solve(e));
+  return e.dot(Ldlt(pick * fit.covariance * pick.transpose()).Solve(e));
 }
 
 ContourOptions LightAtLens() {
@@ -254,16 +255,15 @@ TEST(ShaftContour, RefusesColourAndSizesThatAreNone) {
 // Frames of a ray tracer outside the project: the shaft's end is flat, its light stands beside the
 // lens and throws a narrow shadow along one side, which looks like the shaft's own dark rim: that
 // side is seen 0.8 px too far out.
-TEST(ShaftContour, SharedSample) {
-  const std::filesystem::path data = FLEXTIP_SHARED_DIR "/data";
-  if (!std::filesystem::exists(data / "rendered_sample")) GTEST_SKIP() << data << " has no sample";
-  const Recording recording = ReadRecording(data / "rendered_sample").recording;
+TEST(ShaftContour, FindsTheShaftInTheRenderedRecording) {
+  const std::filesystem::path data = FLEXTIP_SOURCE_DIR "/testdata/recordings";
+  const Recording recording = ReadRecording(data / "rendered").recording;
   const CameraCalibration& camera = recording.cam0->calibration;
   TubeShape tube = Tube();
   tube.round_end = false;
   tube.collar->radius_m = 0.0085;  // with its shadow
   const ShaftContour contour(CameraModel(camera), tube);
-  std::ifstream in(data / "rendered_sample.truth.csv");
+  std::ifstream in(data / "rendered.truth.csv");
   std::string line;
   std::getline(in, line);
   std::mt19937 random(4);
@@ -277,7 +277,7 @@ TEST(ShaftContour, SharedSample) {
     Eigen::Quaterniond q;
     fields >> t_ns >> p.x() >> p.y() >> p.z() >> q.w() >> q.x() >> q.y() >> q.z();
     ASSERT_EQ(t_ns, frame.t_ns);
-    const auto file = data / "rendered_sample" / "cam0" / "data" / frame.value;
+    const auto file = data / "rendered" / "cam0" / "data" / frame.value;
     const cv::Mat picture = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
     Image image(picture.cols, picture.rows, 1);
     std::copy(picture.datastart, picture.dataend, image.data.begin());

@@ -1,5 +1,6 @@
 // The outline beside the tags and alone, the pose beside the truth of rendered frames.
 #include "vision/outline/tip_outline.h"
+#include "core/linear_algebra.h"
 
 #include <gtest/gtest.h>
 
@@ -48,7 +49,7 @@ double Cost(const Image& image, const Eigen::Vector2d& bend, const TipPrediction
             const Pose& T_RE) {
   const ShaftContour contour(CameraModel(ScopeCamera()), ScopeTube(), RingLight());
   const Vector6 off = PoseDifference(seen.T_RE, T_RE);
-  return off.dot(seen.covariance.ldlt().solve(off)) +
+  return MahalanobisSquared(off, seen.covariance) +
          contour.Linearise(image, ScopeCamera().T_RC.Inverse() * T_RE, bend, 4).chi2;
 }
 
@@ -135,9 +136,9 @@ TEST_F(Outline, TheJoinedPoseIsTheCheapestAround) {
   const auto joined = outline.Join({&image}, seen);
   ASSERT_TRUE(joined);
   const double here = Cost(image, bend, seen, joined->tip.T_RE);
-  const Eigen::SelfAdjointEigenSolver<Matrix6> axes(joined->tip.covariance);
+  const SymmetricEigen axes(joined->tip.covariance);
   for (int i = 0; i < 6; ++i) {
-    const Vector6 step = 3 * std::sqrt(axes.eigenvalues()[i]) * axes.eigenvectors().col(i);
+    const Vector6 step = 3 * std::sqrt(axes.values[i]) * axes.vectors.col(i);
     for (const double sign : {-1.0, 1.0}) {
       const double grown = Cost(image, bend, seen, MovePose(joined->tip.T_RE, sign * step)) - here;
       EXPECT_GT(grown, 3) << i;

@@ -1,5 +1,6 @@
 // The tracker on pictures and corners with known truth.
 #include "vision/tracking/tip_tracker.h"
+#include "core/linear_algebra.h"
 
 #include <gtest/gtest.h>
 
@@ -64,7 +65,7 @@ TEST(TipTracker, CovarianceIsHonest) {
       if (i < 20) continue;  // the first frames learn the noise
       const Pose T_RE = camera.T_RC * T_CE;
       const Eigen::Vector3d e = track.tip.p_RE - T_RE.p;
-      nees += e.dot(track.tip.covariance_m2.ldlt().solve(e));
+      nees += MahalanobisSquared(e, track.tip.covariance_m2);
       direction += (*track.tip.d_RE - T_RE.R.col(0)).squaredNorm() /
                    (2 * track.direction_noise_rad * track.direction_noise_rad);
       ++n;
@@ -91,7 +92,7 @@ TEST(TipTracker, PredictsBrieflyThenIsLostThenRecovers) {
     EXPECT_GT(track.tip.covariance_m2.trace(), trace);
     trace = track.tip.covariance_m2.trace();
     const Eigen::Vector3d e = track.tip.p_RE - (camera.T_RC * SweepPose(frame)).p;
-    EXPECT_LT(e.dot(track.tip.covariance_m2.ldlt().solve(e)), 16.3);  // 99.9 % of chi-square 3
+    EXPECT_LT(MahalanobisSquared(e, track.tip.covariance_m2), 16.3);  // 99.9 % of chi-square 3
   }
   for (int i = 0; i < 3; ++i, ++frame) {
     const TipTrack track = tracker.Track(std::vector<TagDetection>{}, frame * kFrame_ns);

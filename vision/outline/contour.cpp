@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "vision/outline/contour_coarse.h"
 #include "vision/tags/reprojection.h"
 
@@ -15,8 +16,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr int kMaxIterations = 12, kWideIterations = 2;
 constexpr int kWideSearch_px = 8;  // after the vote
-// Squared step over the covariance. Scan lines move with the pose and see another bit of the
-// background: six would be another draw of all errors.
+// Limit of the squared step over the covariance. Scan lines move with the pose and see another part
+// of the background: at six, all errors would be drawn anew.
 constexpr double kSettled = 1e-2, kNearlySettled = 3.0;
 constexpr int kLeastOfPart = 3;
 
@@ -27,7 +28,7 @@ void CheckGrey(const Image& image) {
   }
 }
 
-// The pose that brings the outline's points nearest to their new places, in the light of the prior.
+// Returns the pose that brings the outline's points nearest to their new places, with the prior.
 Vector6 StepToward(const std::vector<ContourPoint>& points, const std::vector<double>& outward_px,
                    const Matrix6& information, bool sides, bool end) {
   Matrix6 A = information;
@@ -38,7 +39,7 @@ Vector6 StepToward(const std::vector<ContourPoint>& points, const std::vector<do
     A += points[i].J_pose.transpose() * points[i].J_pose;
     b += points[i].J_pose.transpose() * outward_px[i];
   }
-  return A.ldlt().solve(b);
+  return Ldlt(A).Solve(b);
 }
 
 }  // namespace
@@ -78,8 +79,8 @@ ContourTerm ShaftContour::Linearise(const Image& grey, const Pose& T_CE,
   return MakeTerm(lines, prior);
 }
 
-// The sides first: where they are the end's lines cross the end. False where another place fits
-// nearly as well.
+// Finds the sides first: at their place the end's lines cross the end. Returns false where another
+// place fits nearly as well.
 bool ShaftContour::FindRoughly(const Image& grey, const Matrix6& information, Pose& T_CE) const {
   bool clear = true;
   for (const bool along : {false, true}) {
@@ -93,8 +94,8 @@ bool ShaftContour::FindRoughly(const Image& grey, const Matrix6& information, Po
   return clear;
 }
 
-// Where the tube's end is says only the end itself: an occluder's edge that crosses the tube may
-// look like part of one, so most of it must agree.
+// Judges the term. Only the end itself tells the end's place. An occluder's edge across the tube
+// may look like a part of the end, so most of the end must agree.
 ContourStatus ShaftContour::Judge(const ContourTerm& term) const {
   const auto [left, right, end] = term.points_of;
   if (term.points < options_.least_points || left < kLeastOfPart || right < kLeastOfPart ||
@@ -109,7 +110,7 @@ ContourStatus ShaftContour::Judge(const ContourTerm& term) const {
 ContourFit ShaftContour::Fit(const Image& grey, const Pose& predicted,
                              const Matrix6& covariance) const {
   CheckGrey(grey);
-  const Matrix6 information = covariance.ldlt().solve(Matrix6::Identity());
+  const Matrix6 information = Ldlt(covariance).Inverse();
   ContourFit fit;
   fit.T_CE = predicted;
   fit.bend = options_.bend_mean;
@@ -124,8 +125,8 @@ ContourFit ShaftContour::Fit(const Image& grey, const Pose& predicted,
     if (fit.term.points == 0) return fit;
     const Matrix6 A = fit.term.JtJ + information;
     const Vector6 b = fit.term.Jtr + information * PoseDifference(predicted, fit.T_CE);
-    const Vector6 step = -A.ldlt().solve(b);
-    fit.covariance = A.ldlt().solve(Matrix6::Identity());
+    const Vector6 step = -Ldlt(A).Solve(b);
+    fit.covariance = Ldlt(A).Inverse();
     if (!step.allFinite()) break;
     fit.T_CE = MovePose(fit.T_CE, step);
     fit.bend += fit.term.bend_step + fit.term.bend_by_pose * step;

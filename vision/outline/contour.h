@@ -17,7 +17,7 @@ struct ContourOptions {
   int fine_search_px = 4;      ///< ... and at last
   double blur_px = 0.7;        ///< of the picture, Gaussian
   double unknown_gamma = 2.2;  ///< taken where the camera has none
-  /// Of the bend (1/m^2, see TubeCentre): a known load makes it narrow.
+  /// Prior of the bend (1/m^2, see TubeCentre). A known load makes it narrow.
   Eigen::Vector2d bend_mean = Eigen::Vector2d::Zero();
   Eigen::Matrix2d bend_covariance = Eigen::Vector2d(400, 400).asDiagonal();
   ContourErrors errors;
@@ -37,7 +37,8 @@ enum class ContourStatus {
 struct ContourFit {
   ContourStatus status = ContourStatus::kTooFewPoints;
   Pose T_CE;
-  /// Of (dw, dp) as in MovePose; roll about the tube's axis comes from the prior alone.
+  /// Covariance of (dw, dp) as in MovePose (rad, m). The roll about the tube's axis comes from the
+  /// prior alone.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Vector2d bend = Eigen::Vector2d::Zero();
   ContourTerm term;  ///< at the last pose
@@ -50,17 +51,18 @@ struct ContourFit {
 /// neither the tube's brightness nor what is behind it is known.
 class ShaftContour {
  public:
-  /// @throws InputError for a diameter, a length or standard deviations that are not positive.
+  /// Makes the contour of `tube` before `camera`. Throws InputError for a diameter, a length or
+  /// standard deviations that are not positive.
   ShaftContour(const CameraModel& camera, const TubeShape& tube,
                const ContourOptions& options = {});
 
-  /// The Gauss-Newton term at T_CE and `bend`, looking `search_px` to either side. Zero where no
-  /// edge is found. @throws InputError where the picture is empty or not grey.
+  /// Returns the Gauss-Newton term at T_CE and `bend`, from edges within `search_px` to either
+  /// side. Zero where no edge is found. Throws InputError where the picture is empty or not grey.
   ContourTerm Linearise(const Image& grey, const Pose& T_CE, const Eigen::Vector2d& bend,
                         int search_px) const;
 
-  /// The pose from the outline alone, near `predicted` with the covariance of (dw, dp).
-  /// @throws InputError as Linearise.
+  /// Fits the pose from the outline alone, near `predicted` with the covariance of (dw, dp). Throws
+  /// InputError as Linearise. Failures are a status in the result.
   ContourFit Fit(const Image& grey, const Pose& predicted,
                  const Eigen::Matrix<double, 6, 6>& covariance) const;
 

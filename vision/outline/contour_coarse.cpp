@@ -44,7 +44,8 @@ std::vector<Voter> Voters(const ScanEdgeFinder& finder, const Image& grey,
   return voters;
 }
 
-// What another place must have to count as nearly as good: textures give every place some votes.
+// Share of votes from which another place counts as nearly as good: textures give every place some
+// votes.
 double NearlyAsGood(const std::vector<double>& votes, double best) {
   const double mean =
       std::accumulate(votes.begin(), votes.end(), 0.0) / static_cast<double>(votes.size());
@@ -67,7 +68,7 @@ std::optional<CoarseShift> ShiftAside(const ScanEdgeFinder& finder, const Image&
   for (std::size_t cell = 0; cell < votes.size(); ++cell) {
     const int a = static_cast<int>(cell) / n - search_px,
               b = static_cast<int>(cell) % n - search_px;
-    // Of equal places the nearer one.
+    // Takes the nearer of equal places.
     votes[cell] = -0.5 * (a * a + b * b) / (search_px * search_px);
     for (const Voter& voter : voters) {
       const auto d = static_cast<int>(std::lround(shift(points[voter.point], a, b)));

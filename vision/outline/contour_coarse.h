@@ -9,19 +9,19 @@
 
 namespace flextip {
 
-/// How far the outline has moved outward at each point of `points` (px, whole).
+/// The shift of the outline, outward, at each point of `points` (px, whole).
 struct CoarseShift {
   std::vector<double> outward_px;
   bool ambiguous = false;  ///< another place has nearly as many votes
 };
 
-/// Both sides move aside together by a straight line a + b `place`, |a| and |b| up to `search_px`;
-/// the place with the most evidence wins. Points of the end get what that means for them (0).
-/// Empty with fewer than six lines in the picture.
+/// Finds the shift of both sides together: aside by a straight line a + b `place`, |a| and |b| up
+/// to `search_px`. The place with the most evidence wins. Points of the end get their part of that
+/// (0). Empty with fewer than six lines in the picture.
 std::optional<CoarseShift> ShiftAside(const ScanEdgeFinder& finder, const Image& grey,
                                       const std::vector<ContourPoint>& points, int search_px);
 
-/// The same of the end alone, along the tube; the sides get 0.
+/// Finds the shift of the end alone, along the tube; the sides get 0.
 std::optional<CoarseShift> ShiftAlong(const ScanEdgeFinder& finder, const Image& grey,
                                       const std::vector<ContourPoint>& points, int search_px);
 

@@ -64,8 +64,8 @@ ScanEdgeFinder::ScanEdgeFinder(double gamma, double blur_px)
   flat_ = MakeModel(TubeRim::kFlat, kInside, kFlatOutside);
 }
 
-// Columns that span what a step at each phase may look like; rows out of the window are zero, as
-// the samples there will be.
+// Makes columns that span the possible pictures of a step at each phase. Rows out of the window are
+// zero, as the samples there will be.
 ScanEdgeFinder::Model ScanEdgeFinder::MakeModel(TubeRim rim, int inside, int outside) const {
   Model model;
   model.first = kInside - inside;

@@ -1,5 +1,4 @@
-// Where along a short line across a tube's outline the picture steps from the tube to what is
-// behind.
+// Finds the step from the tube to its background on a short line across the tube's outline.
 #pragma once
 
 #include <Eigen/Dense>
@@ -21,25 +20,26 @@ struct ScanEdge {
   double evidence = 0.0;  ///< log of residuals without over with an edge
 };
 
-/// Fits, in linear light, a blurred step: on the tube's side a level and what its rim does, behind
-/// a level and a slope (behind a flat rim only 3 px are read: the shadow there is narrow). Neither
-/// sign nor brightness is assumed.
+/// Fits a blurred step in linear light. On the tube's side: a level and the darkening of its rim.
+/// Behind: a level and a slope; behind a flat rim only 3 px are read, since the shadow there is
+/// narrow. Neither sign nor brightness is assumed.
 class ScanEdgeFinder {
  public:
-  /// `gamma`: of the camera; `blur_px`: of the picture, Gaussian, without the pixel's own width.
+  /// Takes the camera's gamma and the picture's Gaussian blur (px), without the pixel's own width.
   ScanEdgeFinder(double gamma, double blur_px);
 
-  /// The light (0 to 1) at `px + d outward` for d = -half .. half in whole pixels, each the mean
-  /// over 2 `aside` + 1 neighbours along the edge. Empty where it leaves the picture.
+  /// Samples the light (0 to 1) at `px + d outward` for d = -half .. half in whole pixels, each the
+  /// mean over 2 `aside` + 1 neighbours along the edge. Returns false where a sample leaves the
+  /// picture.
   bool Sample(const Image& grey, const Eigen::Vector2d& px, const Eigen::Vector2d& outward,
               int half_px, int aside, std::vector<float>& light) const;
 
-  /// The evidence for an edge at each whole pixel from -search to search; `light` has half_px =
-  /// search + kMargin. `radius_px` is the tube's.
+  /// Gives the evidence for an edge at each whole pixel from -search to search. `light` has half_px
+  /// = search + kMargin. `radius_px` is the tube's.
   void Evidence(const std::vector<float>& light, TubeRim rim, double radius_px,
                 std::vector<float>& evidence) const;
 
-  /// The edge nearest to the pixel `at` (within 1.5 px), to a fraction of a pixel.
+  /// Returns the edge nearest to the pixel `at` (within 1.5 px), to a fraction of a pixel.
   std::optional<ScanEdge> Refine(const std::vector<float>& light, TubeRim rim, double radius_px,
                                  int at) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -22,8 +23,8 @@ constexpr double kTukey = 4.685, kCounts = 0.2;
 constexpr int kReweightings = 6;
 constexpr double kScaleFreedom = 5.0;  // of the belief that the stated variances are right
 
-// Among the peaks of the evidence the one near the line's middle; of two that are nearly as good
-// the inner one: beside a tube lies its shadow, and the shadow's own far edge.
+// Chooses the peak of the evidence near the line's middle. Of two nearly equal peaks, takes the
+// inner one: beside a tube lies its shadow, and the shadow's own far edge.
 std::optional<ScanEdge> FindEdge(const ScanEdgeFinder& finder, const std::vector<float>& light,
                                  const std::vector<float>& evidence, const ContourPoint& p) {
   const int search = static_cast<int>(evidence.size()) / 2;
@@ -91,10 +92,11 @@ Equations Sum(const std::vector<ContourLine>& lines, const std::vector<VectorAll
   return e;
 }
 
-// The step of everything that fits the lines best; what they do not determine stays.
+// Returns the step of all unknowns that fits the lines best. Unknowns that the lines do not
+// determine stay.
 VectorAll OwnStep(Equations e) {
   for (int i = 0; i < kPose; ++i) e.A(i, i) += 1e-9 + 1e-7 * e.A(i, i);
-  return -e.A.ldlt().solve(e.b);
+  return -Ldlt(e.A).Solve(e.b);
 }
 
 void SetVariances(std::vector<ContourLine>& lines, const ContourErrors& errors) {
@@ -158,9 +160,9 @@ void Reweigh(std::vector<ContourLine>& lines, const std::vector<VectorAll>& rows
 
 void Eliminate(const Equations& e, ContourTerm& term) {
   const auto H_po = e.A.topRightCorner<kPose, kOther>();
-  const auto inverse = e.A.bottomRightCorner<kOther, kOther>().ldlt();
-  const Eigen::Matrix<double, kOther, kPose> by_pose = -inverse.solve(H_po.transpose());
-  const Eigen::Matrix<double, kOther, 1> step = -inverse.solve(e.b.tail<kOther>());
+  const Ldlt H_oo(e.A.bottomRightCorner<kOther, kOther>());
+  const Eigen::Matrix<double, kOther, kPose> by_pose = -H_oo.Solve(H_po.transpose());
+  const Eigen::Matrix<double, kOther, 1> step = -H_oo.Solve(e.b.tail<kOther>());
   term.JtJ = e.A.topLeftCorner<kPose, kPose>() + H_po * by_pose;
   term.Jtr = e.b.head<kPose>() + H_po * step;
   term.chi2 = e.squares + e.b.tail<kOther>().dot(step);

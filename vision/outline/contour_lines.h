@@ -11,12 +11,11 @@
 
 namespace flextip {
 
-/// What is known beforehand of the outline's systematic errors (standard deviations, px). Errors
-/// of neighbouring scan lines go together: light from the side, a narrow shadow beside the tube, a
-/// blur that is not as assumed. So each side has an offset and a slope of its own, the end an
-/// offset, a slope and a curvature, beside the inset common to all edges. The defaults allow for a
-/// light some centimetres off the lens, whose shadow moves one side by half a pixel; `LightAtLens`
-/// is for a ring light.
+/// Prior of the outline's systematic errors (standard deviations, px). Errors of neighbouring scan
+/// lines go together: light from the side, a narrow shadow beside the tube, a wrong blur. So each
+/// side has an offset and a slope of its own, the end an offset, a slope and a curvature, and all
+/// edges a common inset. The defaults allow for a light some centimetres off the lens, whose shadow
+/// moves one side by half a pixel. `LightAtLens` is for a ring light.
 struct ContourErrors {
   double inset_px = 0.3;  ///< how far all edges stand inward alike: limb darkening, gamma, blur
   double side_px = 0.4, slope_px = 0.05;  ///< of each side: at its middle, and from there to an end
@@ -33,7 +32,7 @@ struct ContourLine {
 };
 
 /// Normal equations of the step (dw, dp) of MovePose, in units of the residuals' own standard
-/// deviations, all other unknowns eliminated.
+/// deviations. All other unknowns are eliminated.
 struct ContourTerm {
   Eigen::Matrix<double, 6, 6> JtJ = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> Jtr = Eigen::Matrix<double, 6, 1>::Zero();
@@ -56,12 +55,13 @@ struct ContourPrior {
   ContourErrors errors;
 };
 
-/// Looks for each line's edge within `search_px` of its point; lines that leave the picture go.
+/// Looks for each line's edge within `search_px` of its point. Leaves out lines that leave the
+/// picture.
 std::vector<ContourLine> MeasureLines(const ScanEdgeFinder& finder, const Image& grey,
                                       const std::vector<ContourPoint>& points, int search_px);
 
-/// Robust weights (Tukey's, about the contour's own best step, so that a wrong pose costs no line),
-/// then the equations.
+/// Makes the equations with robust weights. The weights are Tukey's, about the contour's own best
+/// step, so that a wrong pose costs no line.
 ContourTerm MakeTerm(std::vector<ContourLine>& lines, const ContourPrior& prior);
 
 }  // namespace flextip

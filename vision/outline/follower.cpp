@@ -5,8 +5,8 @@
 namespace flextip {
 namespace {
 
-// How much of an outline's agreement with the tags is new from check to check; from what on an
-// outline is believed without them; how many frames are checked at first, then one in how many.
+// Weight of a new check in the agreement with the tags; agreement from which an outline is believed
+// without the tags; frames checked at first, and then one frame in so many.
 constexpr double kNewAgreement = 0.3, kBelieved = 0.5;
 constexpr int kFirstChecks = 4, kCheckEvery = 5;
 
@@ -38,13 +38,13 @@ void OutlineFollower::Join(const std::vector<const Image*>& images, Sight& sight
   sight.outline_used = true;
 }
 
-void OutlineFollower::LeaveFrom(const TipFilter& filter, TimeNs t_ns) {
+void OutlineFollower::LeaveFrom(const ConstantVelocityFilter& filter, TimeNs t_ns) {
   by_tags_ = filter;
   last_seen_ns_ = t_ns;
 }
 
-// What is known without the outline, about where the outline was last. Its errors (light, blur) are
-// much the same from frame to frame: a frame must not gain from what the outline said before.
+// Returns the prior without the outline, about the outline's last place. The outline's errors
+// (light, blur) are much the same from frame to frame: a frame must not gain from earlier outlines.
 TipPrediction OutlineFollower::Prior(TimeNs t_ns, const TipPrediction& expected,
                                      const std::optional<TipPrediction>& model) const {
   const Eigen::Matrix3d moved_m2 = by_tags_->At(t_ns).covariance_m2;

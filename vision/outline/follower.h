@@ -1,4 +1,4 @@
-// When the shaft's outline is looked at, and when it is believed.
+// Decides when the shaft's outline is looked at, and when it is believed.
 #pragma once
 
 #include <optional>
@@ -15,26 +15,27 @@ namespace flextip {
 /// covered, if it agreed with them before.
 class OutlineFollower {
  public:
-  /// Throws InputError as ShaftContour does. `options.tube` is there.
+  /// Needs `options.tube`. Throws InputError as ShaftContour does.
   OutlineFollower(const std::vector<CameraCalibration>& cameras, const TrackerOptions& options);
 
-  /// Where the tags leave the direction uncertain, the outline's long base line is worth its time.
-  /// Now and then it is looked at all the same: one that is not where the tags say (another
-  /// diameter, another end) is not believed later without them.
+  /// Joins the outline to the tags in `sight`, where the tags leave the direction uncertain and the
+  /// outline's long base line is worth its time. Now and then the outline is looked at all the
+  /// same: one that is not where the tags say (another diameter, another end) is not believed later
+  /// without them.
   void Join(const std::vector<const Image*>& images, Sight& sight);
 
-  /// The tags were seen at `t_ns`, with which `filter` went on.
-  void LeaveFrom(const TipFilter& filter, TimeNs t_ns);
-  /// No tags were seen for long.
+  /// Takes over the state of `filter` after the tags were seen at `t_ns`.
+  void LeaveFrom(const ConstantVelocityFilter& filter, TimeNs t_ns);
+  /// Forgets the tags, which were not seen for long.
   void Forget() { by_tags_.reset(); }
 
-  /// The pose by the outline alone, while it is believed. `expected`: with what the outline said
-  /// before; `model`: of this frame, not from pictures.
+  /// Returns the pose by the outline alone, while it is believed. `expected` is the expected tip,
+  /// earlier outlines included; `model` that of this frame by wrist and shaft, not from pictures.
   std::optional<TipPrediction> Follow(const std::vector<const Image*>& images, TimeNs t_ns,
                                       const TipPrediction& expected,
                                       const std::optional<TipPrediction>& model);
 
-  /// All that lasts from frame to frame.
+  /// Visits all that lasts from frame to frame.
   void VisitState(StateText& state);
 
  private:
@@ -43,9 +44,9 @@ class OutlineFollower {
 
   TrackerOptions options_;
   TipOutline outline_;
-  std::optional<TipFilter> by_tags_;  // as the tags left it, before an outline came in
-  TimeNs last_seen_ns_ = 0;           // of the last tags
-  double agreement_ = 0;              // with the tags, fading
+  std::optional<ConstantVelocityFilter> by_tags_;  // as the tags left it, before an outline came in
+  TimeNs last_seen_ns_ = 0;                        // of the last tags
+  double agreement_ = 0;                           // with the tags, fading
   int checks_ = 0, frames_since_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "vision/grey.h"
 #include "vision/tags/reprojection.h"
 
@@ -15,7 +16,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 constexpr int kJoinSearch_px = 4, kJoinSteps = 2;
 constexpr double kMargin_px = 45.0;
 constexpr double kBlurChange = 0.15;  // of the blur, from which on it is worth a new edge model
-// Squared distances over their covariances: beyond them it is another thing's outline.
+// Squared distances over their covariances above which an outline belongs to another thing.
 constexpr double kDisagree = 25.0, kFarFromExpected = 30.0;  // of 5 and of 6 degrees of freedom
 
 ContourOptions WithBlur(ContourOptions options, double blur_px) {
@@ -32,11 +33,12 @@ bool HasEnd(const ContourTerm& term, const ContourOptions& options) {
   return term.lines_of[2] > 0 && term.points_of[2] >= options.least_end * term.lines_of[2];
 }
 
-// The squared distance of the outline's own pose from one with `information`, at which the term
-// was made, over the covariance of both. (Roll, which the outline does not know, costs nothing.)
+// Returns the squared distance of the outline's own pose from a pose with `information`, at which
+// the term was made, over the covariance of both. Roll, which the outline does not know, costs
+// nothing.
 double Disagreement(const ContourTerm& term, const Matrix6& information) {
   const Matrix6 alone = term.JtJ + 1e-6 * information, both = term.JtJ + information;
-  return term.Jtr.dot(alone.ldlt().solve(term.Jtr) - both.ldlt().solve(term.Jtr));
+  return term.Jtr.dot(Ldlt(alone).Solve(term.Jtr) - Ldlt(both).Solve(term.Jtr));
 }
 
 }  // namespace
@@ -67,7 +69,7 @@ void TipOutline::VisitState(StateText& state) {
   }
 }
 
-// Grey values where the outline may be looked for.
+// Makes grey values where the outline may be looked for.
 const Image& TipOutline::GreyAround(View& view, const Image& image, const Pose& T_CE) const {
   if (image.channels == 1) return image;
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
@@ -90,7 +92,7 @@ const Image& TipOutline::GreyAround(View& view, const Image& image, const Pose& 
 
 std::optional<TipOutline::Joined> TipOutline::Join(const std::vector<const Image*>& images,
                                                    const TipPrediction& seen) {
-  const Matrix6 information = seen.covariance.ldlt().solve(Matrix6::Identity());
+  const Matrix6 information = Ldlt(seen.covariance).Inverse();
   Joined result{seen, false};
   TipPrediction& joined = result.tip;
   std::vector<Eigen::Vector2d> bends(views_.size(), options_.bend_mean);
@@ -114,10 +116,10 @@ std::optional<TipOutline::Joined> TipOutline::Join(const std::vector<const Image
       A += Turned(term.JtJ, T_RC.R);
       b -= Turned(term.Jtr, T_RC.R);
     }
-    const Vector6 step = A.ldlt().solve(b);
+    const Vector6 step = Ldlt(A).Solve(b);
     if (!found || !step.allFinite()) return {};
     joined.T_RE = MovePose(joined.T_RE, step);
-    joined.covariance = A.ldlt().solve(Matrix6::Identity());
+    joined.covariance = Ldlt(A).Inverse();
     for (std::size_t k = 0; k < views_.size(); ++k) {
       const Eigen::Matrix3d R_CR = views_[k].camera.Calibration().T_RC.R.transpose();
       bends[k] += terms[k].bend_step + terms[k].bend_by_pose * Turned(step, R_CR);
@@ -140,7 +142,7 @@ std::optional<TipPrediction> TipOutline::Find(const std::vector<const Image*>& i
     if (!fit.IsUsable()) continue;
     const TipPrediction here{T_RC * fit.T_CE, Turned(fit.covariance, T_RC.R)};
     const Vector6 off = PoseDifference(prior.T_RE, here.T_RE);
-    if (off.dot(prior.covariance.ldlt().solve(off)) < kFarFromExpected) found = here;
+    if (MahalanobisSquared(off, prior.covariance) < kFarFromExpected) found = here;
   }
   return found;
 }

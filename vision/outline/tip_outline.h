@@ -13,26 +13,28 @@ namespace flextip {
 
 class TipOutline {
  public:
-  /// Throws InputError as ShaftContour does.
+  /// Makes a contour a camera. Throws InputError as ShaftContour does.
   TipOutline(const std::vector<CameraCalibration>& cameras, const TubeShape& tube,
              const ContourOptions& options);
 
-  /// The blur of a camera's pictures (px), as the tags show it.
+  /// Sets the blur of a camera's pictures (px), as the tags show it.
   void SetBlur(std::size_t camera, double blur_px);
 
-  /// The blurs.
+  /// Visits the blurs.
   void VisitState(StateText& state);
 
   struct Joined {
     TipPrediction tip;
     bool end_seen = false;  ///< most of the shaft's end, in one of the pictures, where `tip` has it
   };
-  /// `seen` and the outlines in the pictures, each with its covariance: a Gauss-Newton step on all
-  /// of them from `seen`, and one more. Empty where no outline is seen that agrees with `seen`.
+  /// Joins `seen` and the outlines in the pictures, each with its covariance, by a Gauss-Newton
+  /// step on all of them from `seen`, and one more. Empty where no outline is seen that agrees with
+  /// `seen`.
   std::optional<Joined> Join(const std::vector<const Image*>& images, const TipPrediction& seen);
 
-  /// The pose by the outlines in all cameras that show one, `expected` being the prior (of which
-  /// roll and mostly depth are taken); empty where it cannot be told, or is not where expected.
+  /// Finds the pose by the outlines in all cameras that show one. `expected` is the prior; roll and
+  /// most of the depth come from there. Empty where the pose cannot be told, or is not where
+  /// expected.
   std::optional<TipPrediction> Find(const std::vector<const Image*>& images,
                                     const TipPrediction& expected);
 

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 constexpr double kClear_px = 4.0;   // from the end's corner and from the collar
 constexpr double kLeastSine = 0.2;  // of the angle between tube and line of sight
 constexpr int kWalkSteps = 24;
-// What a collar may stick out beyond its tags' white margins: of a tag's size, and at least.
+// Reach of a collar beyond its tags' white margins: as a part of a tag's size, and at least (m).
 constexpr double kBodyMargin = 0.05, kBodyMargin_m = 0.0003;
 
 struct View {
@@ -54,7 +54,7 @@ std::optional<ContourPoint> OnOutline(const View& v, const Vector3d& X, const Ve
   return point;
 }
 
-// Whether the ray to X, which touches the tube, may pass through or before the collar.
+// Returns whether the ray to X, which touches the tube, may pass through or before the collar.
 bool NearCollar(const View& v, const Vector3d& X) {
   if (!v.tube.collar) return false;
   const TubeShape::Collar& collar = *v.tube.collar;
@@ -67,8 +67,8 @@ bool NearCollar(const View& v, const Vector3d& X) {
   return x + margin > collar.from_m && x - margin < collar.to_m;
 }
 
-// Distances behind E whose points are evenly spaced in the picture, from `first_m` to where the
-// centre line leaves the picture or the length ends.
+// Returns distances behind E whose points are evenly spaced in the picture, from `first_m` to where
+// the centre line leaves the picture or the length ends.
 std::vector<double> EvenStations(const View& v, double first_m, int count) {
   std::vector<double> s, way_px;
   Vector2d last = Vector2d::Zero();
@@ -118,7 +118,7 @@ void AddSides(const View& v, int per_side, std::vector<ContourPoint>& points) {
   }
 }
 
-// The end's sphere: where rays touch it, on the half before its centre.
+// Adds the end's sphere: rays touch it on the half before its centre.
 void AddRoundEnd(const View& v, int at_end, std::vector<ContourPoint>& points) {
   const double r = v.RadiusM();
   const Vector3d t = v.T_CE.R.col(0), c = v.T_CE.p - r * t, e = c.normalized();
@@ -140,7 +140,8 @@ void AddRoundEnd(const View& v, int at_end, std::vector<ContourPoint>& points) {
   }
 }
 
-// The end's rim: it is outline where just one of the disc and the tube's side faces the camera.
+// Adds the end's rim. It is outline where just one of the disc and the tube's side faces the
+// camera.
 void AddFlatEnd(const View& v, int at_end, std::vector<ContourPoint>& points) {
   const double r = v.RadiusM();
   const Pose& E = v.T_CE;

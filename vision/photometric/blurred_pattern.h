@@ -12,9 +12,10 @@ namespace flextip {
 struct PatternBlur {
   float sigma_u = 0.2f, sigma_v = 0.2f, rho = 0.0f;
   float inverse_u = 5.0f, inverse_v = 5.0f;  ///< 1 / sigma
-  /// In perspective a blur that is the same all over the picture is not on the tag. A line u = e is
-  /// (e - u) inverse_u nearness (1 + rate_u (e - middle)) sigmas from (u, v), exactly but for the
-  /// rates' second order; nearness: the depth of the tag's middle over the depth at (u, v).
+  /// In perspective, a blur that is the same all over the picture is not the same on the tag. The
+  /// line u = e is (e - u) inverse_u nearness (1 + rate_u (e - middle)) sigmas away from (u, v),
+  /// exactly but for second order in the rates. `nearness` is the depth of the tag's middle over
+  /// the depth at (u, v).
   float rate_u = 0.0f, rate_v = 0.0f, middle = 0.0f;
 
   PatternBlur() = default;
@@ -41,7 +42,8 @@ class BlurredPattern {
 
   int Cells() const { return cells_; }
 
-  /// At (u, v) in cells from the top left corner of the pattern; `nearness` as in PatternBlur.
+  /// Returns the blurred pattern at (u, v), in cells from the pattern's top left corner; `nearness`
+  /// as in PatternBlur.
   PatternValue At(float u, float v, const PatternBlur& blur, float nearness = 1.0f) const {
     const float iu = blur.inverse_u * nearness, iv = blur.inverse_v * nearness;
     const Near near_u(u, blur.sigma_u, iu, blur.rate_u, blur.middle);
@@ -51,8 +53,8 @@ class BlurredPattern {
                                                             : AtMany(u, v, blur, nearness);
   }
 
-  /// Whether an edge between black and white lies within `reach_u`, `reach_v` cells (less than one)
-  /// of the point, along either axis or both.
+  /// Returns whether an edge between black and white lies within `reach_u`, `reach_v` cells (less
+  /// than one) of the point, along either axis or both.
   bool NearEdge(float u, float v, float reach_u, float reach_v) const {
     const auto cell = [](float at) { return static_cast<int>(at + kPad) - kPad; };
     const int k0 = cell(u - reach_u), k1 = cell(u + reach_u);
@@ -62,7 +64,7 @@ class BlurredPattern {
     return a[l0] != a[l1] || b[l0] != b[l1] || a[l0] != b[l0];
   }
 
-  /// False where an unknown cell lies within `reach_u`, `reach_v` cells of the point.
+  /// Returns whether all cells within `reach_u`, `reach_v` cells of the point are known.
   bool Known(float u, float v, float reach_u, float reach_v) const;
 
  private:

@@ -36,8 +36,8 @@ struct PhotometricFace::Geometry {
   struct Place {
     float u, v, z, nearness;  // z: depth; nearness: the middle's over it
   };
-  // How the light of a matt surface, lit from the lens, bends over the tag: it falls with the
-  // square of the distance and aslant, |p|^-3 in all. The linear part is left to the slopes.
+  // The light of a matt surface, lit from the lens, bends over the tag. It falls with the square of
+  // the distance and aslant, |p|^-3 in all. The linear part is left to the slopes.
   float Falloff(float fu, float fv) const {
     return 1 + bend[0] * fu * fu + bend[1] * fu * fv + bend[2] * fv * fv;
   }
@@ -58,8 +58,9 @@ double PhotometricFace::Cosine(const Pose& T_CE) const {
   return T_CG.R.col(2).dot(T_CG.p) / T_CG.p.norm();
 }
 
-// In cells from the top left corner: u low, u high, v low, v high. A neighbour that is turned more
-// toward the camera may hide this tag's rim: its plate need not end where the planes meet.
+// Returns the limits of the tag's surroundings in cells from the top left corner: u low, u high, v
+// low, v high. A neighbour that is turned more toward the camera may hide this tag's rim: its plate
+// need not end where the planes meet.
 Eigen::Vector4f PhotometricFace::Limits(const Pose& T_CE) const {
   Eigen::Vector4f limits;
   const double half = 0.5 * pattern_.Cells(), border = 0.5 * tag_.size_m / cell_m_;
@@ -196,7 +197,8 @@ struct PhotometricFace::Light {
   }
 };
 
-// By pose, print offset and blur; `by_c`: the grey value by the pattern's whiteness.
+// Differentiates by pose, print offset and blur; `by_c` is the derivative of the grey value by the
+// pattern's whiteness.
 void PhotometricFace::DifferentiatePlace(const Pixel& pixel, const Geometry& g,
                                          const PatternValue& p, const Eigen::Vector3f& pivot,
                                          float by_c, Row& row) {

@@ -17,12 +17,13 @@
 
 namespace flextip {
 
-/// What the lens, the film and the print do to a whole picture.
+/// Properties of a whole picture: the lens's blur, the film's gamma and the prints' offset.
 struct Optics {
-  /// Covariance xx, xy, yy (px^2) of the blur without a pixel's own extent: defocus and motion.
+  /// Covariance xx, xy, yy (px^2) of the blur, without a pixel's own extent: defocus and motion.
   Eigen::Vector3d blur_px2{0.6, 0.0, 0.6};
   double gamma = 2.2;
-  /// How far all tags lie off their stated places along their normals, outward: print and glue.
+  /// Distance of all tags from their stated planes along their normals, outward (m): print and
+  /// glue.
   double print_offset_m = 0.0;
 };
 
@@ -31,7 +32,7 @@ using FaceLevels = Eigen::Matrix<double, 6, 1>;  // black, black_u, black_v, whi
 
 class PhotometricFace {
  public:
-  /// What borders on the tag toward -x, +x, -y and +y of G.
+  /// The surroundings of the tag toward -x, +x, -y and +y of G.
   struct Side {
     double reach_m = 0;                  ///< how far from the centre the tag's surroundings go on
     std::optional<Pose> neighbour_T_EG;  ///< the tag that meets this one's plane there
@@ -39,28 +40,28 @@ class PhotometricFace {
   PhotometricFace(const CollarTag& tag, const TagCells& cells, const std::array<Side, 4>& sides);
 
   const CollarTag& Tag() const { return tag_; }
-  /// A cell's side over the tag's size.
+  /// Returns a cell's side over the tag's size.
   double CellPart() const { return cell_m_ / tag_.size_m; }
 
-  /// Whether the face looks to the camera at T_CE, less aslant than 84 degrees, and lies in the
-  /// picture at least in part.
+  /// Returns whether the face looks to the camera at T_CE, at less than 84 degrees from its normal,
+  /// and lies in the picture at least in part.
   bool IsSeen(const CameraModel& camera, const Pose& T_CE) const;
-  /// Cosine of the angle between the face's normal and the line of sight.
+  /// Returns the cosine of the angle between the face's normal and the line of sight.
   double Cosine(const Pose& T_CE) const;
 
-  /// Takes the pixels near the tag's edges, and a few others, at T_CE; every `stride`-th in both
+  /// Chooses the pixels near the tag's edges, and a few others, at T_CE: every `stride`-th in both
   /// directions.
   void SelectPixels(const CameraModel& camera, const LensMap& lens, const Image& image,
                     const Pose& T_CE, const Optics& optics, int stride);
   int Pixels() const { return static_cast<int>(pixels_.size()); }
 
-  /// The levels that the pixels show at T_CE, without slopes, and their correlation with the
-  /// pattern; 0 where the tag has no contrast there.
+  /// Sets the levels that the pixels show at T_CE, without slopes. Returns their correlation with
+  /// the pattern; 0 where the tag has no contrast there.
   double GuessLevels(const CameraModel& camera, const Pose& T_CE, const Optics& optics,
                      const ToneCurve& tone);
 
-  /// Adds the pixels' residuals and derivatives at T_CE. `pivot_C`: the point about which the pose
-  /// turns.
+  /// Adds the pixels' residuals (grey values) and derivatives at T_CE to `sums`. The pose turns
+  /// about the point `pivot_C` (m).
   void Accumulate(const CameraModel& camera, const Pose& T_CE, const Eigen::Vector3d& pivot_C,
                   const Optics& optics, const ToneCurve& tone, const RobustRule& rule,
                   FaceSums& sums) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "vision/tags/collar_faces.h"
 #include "vision/tags/reprojection.h"
@@ -14,8 +15,8 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// A stage ends with a step below so many pixels, the last with one whose square is below so
-// many of its own variances.
+// A stage ends with a step below this many pixels; the last stage ends with a step whose square is
+// below this many of its own variances.
 constexpr double kCoarseStep_px = 0.8, kFineStep_px = 0.25, kLastStep_px = 0.05;
 constexpr double kClearScatter = 2.0;   // over that of noise, which 32 patches seldom reach
 constexpr double kLeastLikeness = 0.4;  // of a tag that is within reach
@@ -90,7 +91,7 @@ struct PhotometricFit::Impl {
     return sums;
   }
 
-  // False where a picture's blur is not settled yet.
+  // Returns false where a picture's blur is not settled yet.
   bool Step(const Vector6& step_R) {
     bool settled = true;
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -100,7 +101,7 @@ struct PhotometricFit::Impl {
     return settled;
   }
 
-  // How far the collar moves in the pictures when E goes from one pose to the other (px).
+  // Returns the motion of the collar in the pictures when E goes from one pose to the other (px).
   double MovedPx(const Pose& from_T_RE, const Pose& to_T_RE) const {
     double most = 0;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -113,8 +114,8 @@ struct PhotometricFit::Impl {
     return most;
   }
 
-  // Keeps the first stages, which see few pixels through a wide blur, near where they began: by
-  // some pixels across, and in proportion along the line of sight and in rotation.
+  // Keeps the first stages near their start, since they see few pixels through a wide blur: by some
+  // pixels across, and in proportion along the line of sight and in rotation.
   Matrix6 StayNear(const Pose& T_RE) const {
     Eigen::Vector3d centre_E = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& x_E : points_E) centre_E += x_E;
@@ -133,7 +134,7 @@ struct PhotometricFit::Impl {
     return to_centre.transpose() * about_centre * to_centre;
   }
 
-  // Gauss-Newton until a step is small.
+  // Makes Gauss-Newton steps until a step is small.
   bool Iterate(Pose& T_RE, Sums& sums, int max_iterations, double small_px, Robustness kind,
                const Matrix6& near_start = Matrix6::Zero()) {
     const Pose start = T_RE;
@@ -142,7 +143,7 @@ struct PhotometricFit::Impl {
       sums = Linearise(T_RE, kind);
       if (sums.pixels == 0) return false;
       const Vector6 gone = PoseDifference(start, T_RE);
-      Vector6 step = (sums.JtJ + near_start).ldlt().solve(sums.Jtr - near_start * gone);
+      Vector6 step = Ldlt(sums.JtJ + near_start).Solve(sums.Jtr - near_start * gone);
       if (!step.allFinite()) return false;
       const double size = step.dot(sums.JtJ * step);
       const double turn = step.head<3>().norm();
@@ -175,8 +176,9 @@ struct PhotometricFit::Impl {
   PhotometricResult Report(const Pose& T_RE, const Sums& sums, bool converged) const;
 };
 
-// By the sandwich of M-estimators: the gradient's scatter over patches of the tags stands for the
-// noise, where it clearly exceeds that of independent pixels (glare, smoke, dirt, a wrong pattern).
+// Returns the covariance by the sandwich of M-estimators. The gradient's scatter over patches of
+// the tags stands for the noise where it clearly exceeds that of independent pixels (glare, smoke,
+// dirt, a wrong pattern).
 Matrix6 PhotometricFit::Impl::ResidualCovariance(const Matrix6& JtJ) const {
   Matrix6 scatter = Matrix6::Zero();
   double white = 0;
@@ -188,16 +190,17 @@ Matrix6 PhotometricFit::Impl::ResidualCovariance(const Matrix6& JtJ) const {
                (variance * variance);
     white = std::max(white, of_view);
   }
-  const Eigen::LLT<Matrix6> root(JtJ);
-  const Matrix6 half = root.matrixL().solve(scatter);
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(root.matrixL().solve(half.transpose()));
-  Vector6 noise = solver.eigenvalues();
+  const Llt root(JtJ);
+  const Matrix6 half = root.SolveL(scatter);
+  const SymmetricEigen axes(root.SolveL(half.transpose()));
+  Vector6 noise = axes.values;
   for (double& n : noise) n = n > kClearScatter * white ? n : white;
-  const Matrix6 out = root.matrixU().solve(solver.eigenvectors());
+  const Matrix6 out = root.SolveLTransposed(axes.vectors);
   return out * noise.asDiagonal() * out.transpose();
 }
 
-// As if the corners of all tags were measured with the model's noise.
+// Returns the covariance of the pose as if the corners of all tags were measured with the model's
+// noise.
 Matrix6 PhotometricFit::Impl::ModelCovariance(const Pose& T_RE) const {
   Matrix6 information = Matrix6::Zero();
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -211,7 +214,7 @@ Matrix6 PhotometricFit::Impl::ModelCovariance(const Pose& T_RE) const {
     }
   }
   if (information.isZero()) return Matrix6::Zero();
-  return information.ldlt().solve(Matrix6::Identity());
+  return Ldlt(information).Inverse();
 }
 
 PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sums,
@@ -221,8 +224,7 @@ PhotometricResult PhotometricFit::Impl::Report(const Pose& T_RE, const Sums& sum
   result.pixels = sums.pixels;
   result.faces = Faces();
   result.one_plane = OnePlane();
-  const Eigen::LDLT<Matrix6> solver(sums.JtJ);
-  const bool solvable = solver.info() == Eigen::Success && solver.isPositive();
+  const bool solvable = Ldlt(sums.JtJ).IsPositive();
   const Matrix6 covariance = solvable ? ResidualCovariance(sums.JtJ) : Matrix6::Zero();
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (present[i]) result.faces_in_view += views[i].FacesInView(cameras[i]->T_CR * T_RE);

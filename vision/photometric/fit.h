@@ -33,7 +33,7 @@ struct PhotometricOptions {
                                    ///< lens, film; per axis
 };
 
-/// What one camera's picture said.
+/// The result of one camera's picture.
 struct ViewFit {
   OpticsPrior learned;  ///< its mean is what was fitted
   double noise_grey = 0;
@@ -43,7 +43,8 @@ struct ViewFit {
 struct PhotometricResult {
   PhotometricStatus status = PhotometricStatus::kNoFaces;
   Pose T_RE;
-  /// Of (dw, dp), T_RE = (exp([dw]x) R, p + dp), both in R (rad, m).
+  /// Covariance of (dw, dp), where the true pose is (exp([dw]x) R, p + dp) of T_RE; both in R (rad,
+  /// m).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int pixels = 0, faces = 0;
   int faces_in_view = 0;   ///< that should be seen well; more than `faces` where some are covered
@@ -53,21 +54,23 @@ struct PhotometricResult {
   bool IsUsable() const { return status == PhotometricStatus::kOk; }
 };
 
-/// Twice the log of how much likelier the pixels are under `a` than under `b`, from the noise that
-/// each fit leaves.
+/// Returns twice the log likelihood ratio of the pixels under `a` and under `b`, by the noise that
+/// each fit leaves. Positive: `a` is likelier.
 double LogLikelihoodRatio2(const PhotometricResult& a, const PhotometricResult& b);
 
 class PhotometricFit {
  public:
-  /// Throws InputError for a tag that does not exist or a lens model that cannot be used.
+  /// Reads the tags' cells and maps the lenses. Throws InputError for a tag that does not exist or
+  /// a lens model that cannot be used.
   PhotometricFit(const std::vector<CameraCalibration>& cameras, const TagCollar& collar,
                  const PhotometricOptions& options = {});
   ~PhotometricFit();
   PhotometricFit(PhotometricFit&&) noexcept;
   PhotometricFit& operator=(PhotometricFit&&) noexcept;
 
-  /// Gauss-Newton from `start_T_RE`, which must be right to about a cell of the tag. One image
-  /// (null: no picture) and one prior a camera. `coarse`: begin with a widened blur.
+  /// Fits the pose by Gauss-Newton from `start_T_RE`, which must be right to about a cell of the
+  /// tag. Takes one image (null: no picture) and one prior a camera. `coarse`: begins with a
+  /// widened blur. Failures are a status in the result.
   PhotometricResult Fit(const std::vector<const Image*>& images, const Pose& start_T_RE,
                         const std::vector<OpticsPrior>& priors, bool coarse = true);
 

@@ -8,13 +8,13 @@ namespace {
 
 constexpr int kNodeStep_px = 6;
 
-// Cubic interpolation through four nodes at -1, 0, 1, 2 (Lagrange).
+// Interpolates by a cubic through four nodes at -1, 0, 1, 2 (Lagrange).
 std::array<double, 4> Weights(double t) {
   return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
           (t + 1) * t * (t - 1) / 6};
 }
 
-// Rays at nodes from one step left of and above the image to two beyond it.
+// Makes the rays at nodes from one step left of and above the image to two steps beyond it.
 struct Nodes {
   int across, down;
   std::vector<Eigen::Vector2d> rays;

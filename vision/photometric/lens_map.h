@@ -7,8 +7,8 @@
 
 namespace flextip {
 
-/// Rays as (x/z, y/z), interpolated from nodes some pixels apart: right to 1e-4 px where the lens
-/// model is one-to-one.
+/// Rays (x/z, y/z) of all pixels, interpolated from nodes some pixels apart. Right to 1e-4 px where
+/// the lens model is one-to-one.
 class LensMap {
  public:
   struct Ray {

@@ -5,8 +5,9 @@
 
 namespace flextip {
 
-/// Cumulative distribution and density, right to 1e-5, of the distribution cut at +-kReach (2.3e-4
-/// of the whole one lie beyond at either end): there it is 0 or 1 and the density 0.
+/// Cumulative distribution and density of the normal distribution cut at +-kReach, right to 1e-5.
+/// Beyond, the distribution is 0 or 1 and the density 0; 2.3e-4 of the whole one lie there at
+/// either end.
 class NormalTable {
  public:
   static constexpr float kReach = 3.5f;

@@ -1,4 +1,4 @@
-// Sums over the pixels of a face: robust weights, normal equations, noise.
+// Returns the sum over the pixels of (weight residual)^2; Curvature() that of the curvatures.
 #pragma once
 
 #include <Eigen/Dense>
@@ -10,7 +10,7 @@
 
 namespace flextip {
 
-/// How residuals are weighted.
+/// The weight of a residual.
 enum class Robustness {
   kHuber,        ///< ever less beyond the scale
   kTukey,        ///< the biweight: nothing beyond 4.7 times the scale
@@ -34,7 +34,8 @@ class RobustRule {
     return size < scale_ ? 1.0f : scale_ / size;
   }
 
-  /// Of a pixel with that weight in the normal matrix; positive where the weight is.
+  /// Returns the factor of a pixel with that weight in the normal matrix; positive where the weight
+  /// is.
   float Curvature(float weight) const {
     if (kind_ != Robustness::kTukeyNewton) return weight;
     const float t = std::sqrt(weight);
@@ -47,14 +48,14 @@ class RobustRule {
   Robustness kind_;
 };
 
-/// Parameters of a face's pixels: pose (dw, dc) about a pivot in C, blur, gamma, print offset, the
-/// face's light; the last entry of a row is the residual.
+/// Columns of a face's row: pose (dw, dc) about a pivot in C, blur, gamma, print offset, the face's
+/// light. The last entry is the residual.
 struct FaceColumns {
   static constexpr int kBlur = 6, kGamma = 9, kOffset = 10, kLevels = 11, kResidual = 17;
   static constexpr int kSize = 18;
 };
 
-/// In grey values.
+/// Sums over a face's pixels, in grey values.
 class FaceSums {
  public:
   using Row = Eigen::Matrix<float, FaceColumns::kSize, 1>;
@@ -65,7 +66,8 @@ class FaceSums {
     float fu, fv;  ///< the place on the tag, -1 to 1
   };
 
-  /// `row` is multiplied by the root of `curvature` already, its residual by weight over that root.
+  /// Adds a pixel. `row` is multiplied by the root of `curvature` already, its residual by the
+  /// weight over that root.
   void Add(const Row& row, const Pixel& pixel) {
     rows_.col(filled_++) = row;
     if (filled_ == kBlock) Flush();
@@ -81,7 +83,7 @@ class FaceSums {
     moments_[4] += weight * measured * measured;
     moments_[5] += weight * predicted * measured;
   }
-  /// `half_contrast`: of the face (grey values).
+  /// Counts a pixel's residual. `half_contrast` is that of the face (grey values).
   void CountError(float residual, float half_contrast) {
     brighter_ += residual > half_contrast;
     darker_ += residual < -half_contrast;
@@ -90,22 +92,23 @@ class FaceSums {
     ++errors_[static_cast<int>(std::min(last, std::abs(residual) * kBinsPerGrey))];
     ++pixels_;
   }
-  /// After the last pixel. `spread`: what belongs to the rows of pose and print offset besides.
+  /// Ends the sums after the last pixel. `spread` is the further part of the rows of pose and print
+  /// offset (tag_blur.h).
   void Finish(const SpreadByMotion& spread);
 
   const Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize>& A() const { return A_; }
   int Pixels() const { return pixels_; }
   double Weight() const { return moments_[0]; }
-  /// The part of the pixels that are white for black, or black for white if those are fewer. What
-  /// covers a tag does one or the other; another tag does both.
+  /// Returns the share of the pixels that are white for black, or black for white if those are
+  /// fewer. A body over the tag does one or the other; another tag does both.
   double Contradicted() const {
     return static_cast<double>(std::min(brighter_, darker_)) / std::max(1, pixels_);
   }
-  /// Of measured and predicted grey values, weighted.
+  /// Returns the weighted correlation of measured and predicted grey values.
   double Correlation() const;
 
-  /// The gradient of each patch of the tag. Their scatter tells what the pixels' number does not:
-  /// residuals that go together.
+  /// The gradient of each patch of the tag. Their scatter shows residuals that go together, which
+  /// the number of pixels does not.
   static constexpr int kPatchesAcross = 4, kPatches = kPatchesAcross * kPatchesAcross;
   using Scores = Eigen::Matrix<float, FaceColumns::kResidual, kPatches>;
   const Scores& PatchScores() const { return scores_; }
@@ -113,7 +116,7 @@ class FaceSums {
   double WeightedSquares() const { return squares_; }
   double Curvature() const { return curvature_; }
 
-  /// Adds how many |residuals| fall into each bin of 1/8 grey level.
+  /// Adds the number of |residuals| in each bin of 1/8 grey level.
   static constexpr int kBinsPerGrey = 8, kBins = 256;
   using Histogram = std::array<int, kBins>;
   void AddErrorsTo(Histogram& histogram) const;

@@ -16,7 +16,8 @@ class ToneCurve {
   struct Value {
     float grey, by_light, by_gamma;  ///< the grey value and its derivatives
   };
-  /// Derivatives are zero where clipped above; below a grey value of 3 the curve goes on straight.
+  /// Returns the grey value of `light`. Derivatives are zero where the curve is clipped above.
+  /// Below a grey value of 3 the curve goes on straight.
   Value At(float light) const {
     if (light >= 1) return {255, 0, 0};
     if (light <= dark_light_) {
@@ -30,7 +31,7 @@ class ToneCurve {
             a.by_gamma + t * (b.by_gamma - a.by_gamma)};
   }
 
-  /// The light that gives `grey`, 0 to 255.
+  /// Returns the light that gives `grey` (0 to 255).
   double Light(double grey) const;
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "vision/tags/collar_pose.h"
 
@@ -39,7 +40,7 @@ void PhotometricView::Begin(const Image& image, const Pose& T_CE, const OpticsPr
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     if (faces_[i].IsSeen(camera_, T_CE)) seen_.push_back({i, true, false, {}, {}});
   }
-  // A face seen much aslant says little, and that little is the least certain.
+  // A face seen much aslant tells little, and tells it unsurely.
   const bool any = std::any_of(seen_.begin(), seen_.end(), [&](const SeenFace& s) {
     return faces_[s.face].Cosine(T_CE) > kAslant;
   });
@@ -143,7 +144,7 @@ std::vector<Eigen::Vector3d> PhotometricView::Normals() const {
   return normals;
 }
 
-// From the median size of the residuals.
+// Learns the noise from the median size of the residuals.
 void PhotometricView::LearnNoise() {
   FaceSums::Histogram errors{};
   int count = 0, below = 0;
@@ -227,9 +228,9 @@ void PhotometricView::EliminateLevels(SeenFace& s, Matrix11& A, Vector11& b) con
   }
   for (const int i : {0, 3}) H(i, i) += 1e-3 * noise2;
   const Eigen::Matrix<double, 6, 11> C = s.sums.A().block<6, 11>(kL, 0);
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(H);
-  s.levels.constant = solver.solve(r);
-  s.levels.by_rest = solver.solve(C);
+  const Ldlt solver(H);
+  s.levels.constant = solver.Solve(r);
+  s.levels.by_rest = solver.Solve(C);
   A += s.sums.A().topLeftCorner<11, 11>() - C.transpose() * s.levels.by_rest;
   b += s.sums.A().block<11, 1>(0, kR) - C.transpose() * s.levels.constant;
 }
@@ -246,11 +247,11 @@ PoseTerm PhotometricView::EliminateOptics(Matrix11 A, Vector11 b) {
     A(6 + i, 6 + i) += noise2 / (sd[i] * sd[i]);
     b[6 + i] -= noise2 / (sd[i] * sd[i]) * off[i];
   }
-  const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(A.bottomRightCorner<5, 5>());
+  const Ldlt solver(A.bottomRightCorner<5, 5>());
   const Eigen::Matrix<double, 5, 6> C = A.bottomLeftCorner<5, 6>();
-  optics_elimination_.constant = solver.solve(b.tail<5>());
-  optics_elimination_.by_rest = solver.solve(C);
-  optics_variance_ = noise2 * solver.solve(Eigen::Matrix<double, 5, 5>::Identity()).diagonal();
+  optics_elimination_.constant = solver.Solve(b.tail<5>());
+  optics_elimination_.by_rest = solver.Solve(C);
+  optics_variance_ = noise2 * solver.Inverse().diagonal();
   const Eigen::Matrix<double, 6, 6> JtJ =
       A.topLeftCorner<6, 6>() - C.transpose() * optics_elimination_.by_rest;
   const Eigen::Matrix<double, 6, 1> Jtr =
@@ -291,7 +292,7 @@ OpticsPrior PhotometricView::Learned(const Eigen::Matrix<double, 6, 6>& covarian
       (optics_variance_ + (by_pose * covariance * by_pose.transpose()).diagonal()).cwiseSqrt();
   OpticsPrior next = prior_;
   next.mean = optics_;
-  // The least seen so far, which may grow slowly.
+  // The least noise seen so far, which may grow slowly.
   next.noise_grey =
       prior_.noise_grey > 0 ? std::min(noise_grey_, kNoiseGrowth * prior_.noise_grey) : noise_grey_;
   next.blur_sd_px2 = kBlurChange * (optics_.blur_px2[0] + optics_.blur_px2[2]) + 0.1;

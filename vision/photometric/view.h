@@ -9,8 +9,8 @@
 
 namespace flextip {
 
-/// Normal equations of one Gauss-Newton step on (dw, dp) as in MovePose, in grey values squared:
-/// JtJ step = Jtr. What belongs to the picture alone (light, blur, gamma) is eliminated.
+/// Normal equations JtJ step = Jtr of one Gauss-Newton step on (dw, dp) as in MovePose, in grey
+/// values squared. The picture's own unknowns (light, blur, gamma) are eliminated.
 struct PoseTerm {
   Eigen::Matrix<double, 6, 6> JtJ = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> Jtr = Eigen::Matrix<double, 6, 1>::Zero();
@@ -18,7 +18,7 @@ struct PoseTerm {
   int pixels = 0;
 };
 
-/// How a face was seen.
+/// The agreement of a face with its pixels.
 struct FaceFit {
   int tag_id = 0;
   int pixels = 0;
@@ -28,7 +28,7 @@ struct FaceFit {
   double contradicted = 0;  ///< FaceSums::Contradicted
 };
 
-/// What is known of a picture's optics beforehand.
+/// Prior knowledge of a picture's optics.
 struct OpticsPrior {
   Optics mean;
   double blur_sd_px2 = 1.0;  ///< in either direction; of one direction against the other, half
@@ -39,48 +39,52 @@ struct OpticsPrior {
 
 class PhotometricView {
  public:
-  /// The camera and its map must outlive the view.
+  /// Takes the faces of a collar. The camera and its map must outlive the view.
   PhotometricView(const CameraModel& camera, const LensMap& lens,
                   std::vector<PhotometricFace> faces);
 
-  /// Starts with a picture: the faces seen from T_CE take part.
+  /// Starts a picture (grey or colour): the faces seen from T_CE take part.
   void Begin(const Image& image, const Pose& T_CE, const OpticsPrior& prior);
 
-  /// Chooses the pixels anew, about `pixels` of them (0: all). `extra_blur_px2` widens the model's
-  /// blur and with it the reach of a step. At the first time, faces whose light correlates less
-  /// than `least_likeness` with their pattern at T_CE are left out.
+  /// Chooses about `pixels` pixels anew (0: all). `extra_blur_px2` widens the model's blur, and
+  /// with that the reach of a step. The first time, faces whose light correlates less than
+  /// `least_likeness` with their pattern at T_CE are left out.
   void Select(const Pose& T_CE, int pixels, double extra_blur_px2, double least_likeness = 0);
 
-  /// The scatter of the pose's gradient over the patches of the faces, in the last Linearise: on
-  /// (dw, dp), in grey values to the fourth. `white`: what it would be, over JtJ and the noise
-  /// squared, if the residuals of different pixels had nothing to do with each other.
+  /// Returns the scatter of the pose's gradient over the patches of the faces in the last
+  /// Linearise, on (dw, dp), in grey values to the fourth. `white` gets its size for independent
+  /// pixels, over JtJ and the noise squared.
   Eigen::Matrix<double, 6, 6> ScoreScatter(double& white) const;
 
-  /// Leaves faces out that do not look like their tags; returns how many are left.
+  /// Leaves out faces that do not look like their tags; returns the number of the others.
   int DropFaces(double min_correlation, double min_contrast, double max_contradicted);
   int Faces() const;
-  /// Of the faces that look well enough toward the camera at T_CE and lie wholly in the picture.
+  /// Returns the number of faces that look well enough toward the camera at T_CE and lie wholly in
+  /// the picture.
   int FacesInView(const Pose& T_CE) const;
   std::vector<FaceFit> FaceFits() const;
-  /// The normals (toward the camera) of the faces that take part, in E.
+  /// Returns the normals (toward the camera) of the faces that take part, in E.
   std::vector<Eigen::Vector3d> Normals() const;
 
-  /// The sums at T_CE under the scale of residuals known so far.
+  /// Returns the sums at T_CE, by the scale of residuals known so far.
   PoseTerm Linearise(const Pose& T_CE, Robustness kind);
-  /// Moves light, blur and gamma with the pose's step (the last Linearise's). False where the blur
-  /// still changed by more than a tenth.
+  /// Moves light, blur and gamma with the pose's step, that of the last Linearise. Returns false
+  /// where the blur still changed by more than a tenth.
   bool Step(const Eigen::Matrix<double, 6, 1>& step);
 
-  /// The optics as fitted, as a prior for the next picture: what stays from picture to picture with
-  /// the standard deviation it is known to now. `covariance`: of the pose (dw, dp) in C.
+  /// Returns the optics as fitted, as a prior for the next picture. Lasting properties have the
+  /// standard deviation that they are known to by now. `covariance` is that of the pose (dw, dp) in
+  /// C.
   OpticsPrior Learned(const Eigen::Matrix<double, 6, 6>& covariance) const;
-  /// The corners of the faces that take part, in E.
+  /// Returns the corners of the faces that take part, in E (m).
   std::vector<Eigen::Vector3d> Corners() const;
 
-  /// What residuals beyond the film's noise may move an edge by: light that the model lacks.
+  /// Returns the shift of an edge (px) by residuals beyond the film's noise: light that the model
+  /// lacks.
   double ExcessNoisePx() const;
 
-  /// Robust standard deviation of a pixel's residual (grey values) in the last Linearise.
+  /// Returns the robust standard deviation of a pixel's residual (grey values) in the last
+  /// Linearise.
   double NoiseGrey() const { return noise_grey_; }
 
  private:

@@ -1,4 +1,4 @@
-// Full tag detection beside the tracking, so that a lost tip stalls nothing.
+// Full tag detection on a thread of its own, so that a lost tip does not stall the tracking.
 #pragma once
 
 #include <memory>
@@ -18,14 +18,15 @@ class BackgroundDetector {
   BackgroundDetector(BackgroundDetector&&) noexcept;
   BackgroundDetector& operator=(BackgroundDetector&&) noexcept;
 
-  /// False, and nothing done, while an earlier picture is still searched. The picture is copied.
+  /// Copies the picture and starts the search in it. Returns false, and does nothing, while an
+  /// earlier picture is still searched.
   bool Submit(const Image& image, TimeNs t_ns);
 
   struct Found {
     TimeNs t_ns = 0;  ///< of the picture
     std::vector<TagDetection> tags;
   };
-  /// What was found since, once.
+  /// Returns the tags of the last picture that was searched, once; empty where there is none since.
   std::optional<Found> Take();
 
  private:

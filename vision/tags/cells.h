@@ -7,8 +7,8 @@
 
 namespace flextip {
 
-/// A square of `cells` x `cells`, the tag as it is read (x right, y down). The side between the
-/// detected corners spans `border_cells` of them, centred.
+/// The cells of a tag: a square of `cells` x `cells`, the tag as it is read (x right, y down). The
+/// side between the detected corners spans `border_cells` of them, centred.
 struct TagCells {
   enum Colour : std::uint8_t { kBlack, kWhite, kUnknown };  ///< unknown: not part of the tag
 
@@ -22,8 +22,8 @@ struct TagCells {
   }
 };
 
-/// From the AprilTag library, with the white ring that the detector needs. Throws InputError where
-/// the family is not known or has no tag of that id.
+/// Returns the cells of a tag from the AprilTag library, with the white ring that the detector
+/// needs. Throws InputError where the family is not known or has no tag of that id.
 TagCells ReadTagCells(const std::string& family, int id);
 
 }  // namespace flextip

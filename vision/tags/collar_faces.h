@@ -8,8 +8,8 @@
 
 namespace flextip {
 
-/// The faces of a collar; how far each side's white reaches follows from its neighbours' planes.
-/// Throws InputError where a tag does not exist.
+/// Returns the faces of a collar, in the order of its tags. Each side's white reaches as far as the
+/// planes of its neighbours allow. Throws InputError where a tag does not exist.
 std::vector<PhotometricFace> MakeFaces(const TagCollar& collar);
 
 }  // namespace flextip

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "vision/tags/planar_pose.h"
 #include "vision/tags/reprojection.h"
 
@@ -15,12 +16,13 @@ struct SeenTag {
   const TagDetection* detection;
 };
 
-// Two minima nearer than this are one.
+// Two minima nearer than this count as one.
 constexpr double kSamePose_rad = 0.02;
 // Twice the log of the odds below which the second minimum is still believed possible: 100 to 1.
 constexpr double kAmbiguousChi2 = 9.2;
 
-// Of several detections of one id (a reflection, say) only the most contrasted can be trusted.
+// Keeps one detection an id. Of several (a reflection, say) only the most contrasted can be
+// trusted.
 std::vector<SeenTag> MatchTags(const TagCollar& collar, const std::vector<TagDetection>& tags) {
   std::vector<SeenTag> seen;
   for (const CollarTag& tag : collar.tags) {
@@ -57,7 +59,7 @@ std::vector<Pose> Starts(const CameraModel& camera, const std::vector<SeenTag>& 
 
 double AngleBetween(const Pose& a, const Pose& b) { return PoseDifference(a, b).head<3>().norm(); }
 
-// A pose from which one of the seen tags would show its back is none.
+// Returns whether all seen tags show their faces under a pose.
 bool AllTagsFaceTheCamera(const Pose& T_CE, const std::vector<SeenTag>& seen) {
   return std::all_of(seen.begin(), seen.end(), [&](const SeenTag& s) {
     const Pose T_CG = T_CE * s.tag->T_EG;
@@ -65,7 +67,7 @@ bool AllTagsFaceTheCamera(const Pose& T_CE, const std::vector<SeenTag>& seen) {
   });
 }
 
-// The distinct minima that the starts lead to, the best first.
+// Returns the distinct minima that the starts lead to, the best first.
 std::vector<PoseMinimum> Minima(const CameraModel& camera, const std::vector<SeenTag>& seen,
                                 const std::vector<Pose>& starts, int max_iterations) {
   const std::vector<Correspondence> points = Correspondences(seen);
@@ -97,7 +99,7 @@ std::vector<PoseMinimum> FitAll(const CameraModel& camera, const std::vector<See
   return Minima(camera, seen, Starts(camera, seen, near_T_CE), options.max_iterations);
 }
 
-// Fits all tags; as long as that is poor and two would stay, leaves out the tag without which the
+// Fits all tags. While that is poor and two tags would stay, leaves out the tag without which the
 // rest fits best.
 std::vector<PoseMinimum> FitWithoutOutliers(const CameraModel& camera, std::vector<SeenTag>& seen,
                                             const CollarPoseOptions& options,
@@ -123,7 +125,7 @@ std::vector<PoseMinimum> FitWithoutOutliers(const CameraModel& camera, std::vect
   return minima;
 }
 
-// The corners' noise from this fit and earlier ones, never below the floor.
+// Returns the corners' noise from this fit and earlier ones, never below the floor.
 double CornerNoise(const PoseMinimum& m, int dof, const CollarPoseOptions& o) {
   const double variance =
       (o.prior_variance_px2 * o.prior_dof + m.error.squared_px2) / std::max(1.0, o.prior_dof + dof);
@@ -176,10 +178,9 @@ CollarPose EstimateCollarPose(const CameraModel& camera, const TagCollar& collar
   pose.dof = 8 * pose.tags_used - 6;
   pose.corner_noise_px = CornerNoise(*chosen, pose.dof, options);
   ResolveAmbiguity(minima, near_T_CE, pose, chosen);
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> information(chosen->error.JtJ);
-  if (information.info() != Eigen::Success || information.rcond() < 1e-18) return pose;
-  pose.covariance += pose.corner_noise_px * pose.corner_noise_px *
-                     information.solve(Eigen::Matrix<double, 6, 6>::Identity());
+  const Ldlt information(chosen->error.JtJ);
+  if (!information.Succeeded() || information.ReciprocalCondition() < 1e-18) return pose;
+  pose.covariance += pose.corner_noise_px * pose.corner_noise_px * information.Inverse();
   pose.T_CE = chosen->T_CE;
   pose.squared_error_px2 = chosen->error.squared_px2;
   pose.rms_px = Rms(*chosen, seen.size());

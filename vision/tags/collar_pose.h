@@ -22,7 +22,8 @@ enum class CollarPoseStatus {
 
 struct CollarPoseOptions {
   double corner_noise_floor_px = 0.05;  ///< standard deviation per axis that is never undercut
-  /// Corner variance known from earlier frames and its degrees of freedom; pooled with this one's.
+  /// Corner variance known from earlier frames, and its degrees of freedom. Both are pooled with
+  /// those of this frame.
   double prior_variance_px2 = 0.01;
   double prior_dof = 4.0;
   double max_rms_px = 2.0;
@@ -32,7 +33,8 @@ struct CollarPoseOptions {
 struct CollarPose {
   CollarPoseStatus status = CollarPoseStatus::kNoTags;
   Pose T_CE;
-  /// Of (dw, dp), T_CE = (exp([dw]x) R, p + dp), both in C (rad, m).
+  /// Covariance of (dw, dp), where the true pose is (exp([dw]x) R, p + dp) of T_CE; both in C (rad,
+  /// m).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   double rms_px = 0.0;  ///< per corner: sqrt(mean squared distance)
   double squared_error_px2 = 0.0;
@@ -45,14 +47,15 @@ struct CollarPose {
   bool IsUsable() const { return status == CollarPoseStatus::kOk; }
 };
 
-/// Least squares on the reprojection error of all corners, started from both planar poses of each
-/// tag; `near_T_CE`, where given, is one more start and decides between ambiguous minima.
+/// Estimates the pose of the tip frame E in C by least squares on the reprojection error of all
+/// corners. Starts from both planar poses of each tag. `near_T_CE`, if given, is one more start,
+/// and decides between ambiguous minima. Failures are a status in the result.
 CollarPose EstimateCollarPose(const CameraModel& camera, const TagCollar& collar,
                               const std::vector<TagDetection>& tags,
                               const CollarPoseOptions& options = {},
                               const std::optional<Pose>& near_T_CE = {});
 
-/// The four corners of a tag in E (m), in the order of TagDetection.
+/// Returns the four corners of a tag in E (m), in the order of TagDetection.
 std::array<Eigen::Vector3d, 4> CornersInE(const CollarTag& tag);
 
 }  // namespace flextip

@@ -21,7 +21,7 @@ struct Reduced {
   std::vector<float> grey;
 };
 
-// Means over squares, of at most 2 x 2 pixels each; outside the picture its border goes on.
+// Takes means over squares, of at most 2 x 2 pixels each. Outside the picture its border goes on.
 Reduced Reduce(const Image& image, Eigen::Vector2i low, Eigen::Vector2i high, int step) {
   Reduced r{
       low.x(), low.y(), step, (high.x() - low.x()) / step + 1, (high.y() - low.y()) / step + 1, {}};
@@ -41,7 +41,7 @@ Reduced Reduce(const Image& image, Eigen::Vector2i low, Eigen::Vector2i high, in
   return r;
 }
 
-// A cell's whiteness mixed with its neighbours'.
+// Returns a cell's whiteness mixed with that of its neighbours.
 float Smoothed(const TagCells& tag, int column, int row) {
   float sum = 0, weight = 0;
   for (int dy = -1; dy <= 1; ++dy) {
@@ -95,7 +95,7 @@ float Correlation(const Template& t, const float* at) {
   return product / std::sqrt(std::max(squares - sum * sum / n, kMinVariance_grey2 * n));
 }
 
-// Mean correlation of the faces at all shifts, rows from the top.
+// Returns the mean correlation of the faces at all shifts, rows from the top.
 std::vector<double> Correlate(const std::vector<Template>& templates, const Reduced& reduced,
                               int steps) {
   std::vector<double> scores;
@@ -111,7 +111,7 @@ std::vector<double> Correlate(const std::vector<Template>& templates, const Redu
   return scores;
 }
 
-// The offset of a parabola's top through values at -1, 0, 1.
+// Returns the offset of the top of a parabola through values at -1, 0, 1.
 double Peak(double before, double at, double after) {
   const double bend = before - 2 * at + after;
   return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
@@ -151,7 +151,7 @@ CollarSearch::CollarSearch(const CameraModel& camera, const TagCollar& collar) :
   }
 }
 
-// The places of the faces that are seen from T_CE.
+// Returns the places of the faces that are seen from T_CE.
 CollarSearch::Seen CollarSearch::Look(const Pose& T_CE) const {
   Seen seen;
   for (const Face& face : faces_) {

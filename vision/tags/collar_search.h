@@ -1,4 +1,4 @@
-// Where the collar is in a picture when it is some pixels off the place it is thought to be at.
+// Finds the collar in a picture where it is some pixels away from its expected place.
 #pragma once
 
 #include <Eigen/Dense>
@@ -13,21 +13,23 @@ namespace flextip {
 
 class CollarSearch {
  public:
-  /// Throws InputError for a tag that does not exist. The camera must outlive the search.
+  /// Reads the tags' cells. Throws InputError for a tag that does not exist. The camera must
+  /// outlive the search.
   CollarSearch(const CameraModel& camera, const TagCollar& collar);
 
   struct Match {
     Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();
     double correlation = 0;  ///< of the tags' cells and the picture, mean of the faces; -1 to 1
   };
-  /// Moves the tags as they would be seen from T_CE over the picture, up to `radius_px` either way,
-  /// in steps of about half a cell, and finds where they correlate best.
+  /// Moves the tags as seen from `T_CE` over the picture, up to `radius_px` in each direction, in
+  /// steps of about half a cell. Returns the shift at which they correlate best with the picture.
   Match Find(const Image& image, const Pose& T_CE, double radius_px) const;
 
-  /// T_CE moved across the line of sight so that the tags in view are seen `shift_px` away.
+  /// Returns T_CE moved across the line of sight, so that the tags in view are seen `shift_px`
+  /// away.
   Pose Shifted(const Pose& T_CE, const Eigen::Vector2d& shift_px) const;
 
-  /// A place on a tag where it would be seen, and how white it is, smoothed over about a cell.
+  /// A place on a tag: where it would be seen (px), and its whiteness, smoothed over about a cell.
   struct Place {
     Eigen::Vector2d px;
     float white;

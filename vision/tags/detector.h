@@ -15,10 +15,10 @@ namespace flextip {
 using TagCorners = std::array<Eigen::Vector2d, 4>;
 
 /// A tag seen in an image. The corners are those of the edge that the library finds: the black
-/// border's outer edge (tag36h11, 25h9, 16h5), or its inner one where cells lie outside the border
-/// too (tagStandard, tagCircle: white within, black without). They are in the order (-,+), (+,+),
-/// (+,-), (-,-) of the tag frame G (x right, y down as it is read): bottom left, bottom right, top
-/// right, top left of the upright tag.
+/// border's outer edge (tag36h11, 25h9, 16h5), or its inner edge where cells lie outside the border
+/// too (tagStandard, tagCircle: white within, black without). Their order is (-,+), (+,+), (+,-),
+/// (-,-) in the tag frame G (x right, y down as it is read): bottom left, bottom right, top right,
+/// top left of the upright tag.
 struct TagDetection {
   int id = 0;
   int hamming = 0;                      ///< corrected bits
@@ -35,7 +35,7 @@ struct TagDetection {
 };
 
 struct TagDetectorOptions {
-  /// Or tag36h10, tag25h9, tag16h5, tagCircle21h7, tagStandard41h12, tagStandard52h13.
+  /// tag36h11, tag36h10, tag25h9, tag16h5, tagCircle21h7, tagStandard41h12 or tagStandard52h13.
   std::string family = "tag36h11";
   double quad_decimate = 1.0;  ///< quads are searched at 1/this of the resolution; >= 1
   double quad_sigma_px = 0.0;  ///< Gaussian blur before the search
@@ -47,18 +47,18 @@ struct TagDetectorOptions {
   bool refine_corners = true;         ///< fit the four edges to the image again (edge_refiner.h)
 };
 
-/// Not for use by two threads at once.
+/// Finds tags in pictures. One detector must not be used by two threads at once.
 class TagDetector {
  public:
-  /// Throws InputError where an option is out of range or the family unknown.
+  /// Makes a detector. Throws InputError where an option is out of range or the family is unknown.
   explicit TagDetector(const TagDetectorOptions& options = {});
   ~TagDetector();
   TagDetector(TagDetector&&) noexcept;
   TagDetector& operator=(TagDetector&&) noexcept;
 
-  /// `min_decimate`: the options' quad_decimate is not less than this.
-  /// Tags in a grey or colour image, sorted by id; none is an ordinary result. Throws InputError
-  /// for an empty image or one that has neither 1 nor 3 channels.
+  /// Returns the tags in a grey or colour image, sorted by id; an empty list is an ordinary result.
+  /// Quads are searched at 1 / max(quad_decimate, `min_decimate`) of the resolution. Throws
+  /// InputError for an empty image and for one with neither 1 nor 3 channels.
   std::vector<TagDetection> Detect(const Image& image, double min_decimate = 1.0);
 
  private:
@@ -66,8 +66,8 @@ class TagDetector {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Grey values of an image with 1 or 3 channels (blue, green, red; Rec. 601 weights). Throws
-/// InputError for anything else or an empty image.
+/// Returns the grey values of an image with 1 or 3 channels (blue, green, red; weights of Rec.
+/// 601). Throws InputError for an empty image and for other numbers of channels.
 Image ToGrey(const Image& image);
 
 }  // namespace flextip

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/linear_algebra.h"
 #include "core/median.h"
 
 namespace flextip {
@@ -192,7 +193,7 @@ Vector9 Minimise(const std::vector<EdgePixel>& pixels, Vector9 q) {
     }
     A.diagonal() *= 1 + damping;
     if (!rim) A(7, 7) = A(8, 8) = 1;
-    const Vector9 step = A.ldlt().solve(b);
+    const Vector9 step = Ldlt(A).Solve(b);
     Vector9 next = q - step;
     next[2] = std::clamp(next[2], kMinBlur_px, kMaxBlur_px);
     if (rim) next[7] = std::clamp(next[7], 0.3, 2 * kMaxRimBand_px);

@@ -10,7 +10,7 @@ namespace flextip {
 
 using TagFamily = std::unique_ptr<apriltag_family, void (*)(apriltag_family*)>;
 
-/// Throws InputError where there is no family of that name.
+/// Returns the AprilTag library's family of that name. Throws InputError where there is none.
 TagFamily MakeTagFamily(const std::string& name);
 
 }  // namespace flextip

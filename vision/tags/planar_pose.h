@@ -10,8 +10,9 @@
 
 namespace flextip {
 
-/// T_CG of a square of side `size_m` from its corners (order of TagDetection) by infinitesimal
-/// plane-based pose estimation: two, one or no solutions, the better first.
+/// Returns the poses T_CG of a square of side `size_m` (m) that explain its corners (order of
+/// TagDetection): two, one or none, the better first. Method: infinitesimal plane-based pose
+/// estimation (Collins and Bartoli 2014).
 std::vector<Pose> PlanarPoses(const CameraModel& camera, double size_m,
                               const std::array<Eigen::Vector2d, 4>& corners_px);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -59,7 +60,7 @@ std::optional<PoseMinimum> MinimiseReprojection(const CameraModel& camera,
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     Eigen::Matrix<double, 6, 6> A = at.error.JtJ;
     A.diagonal() *= 1 + damping;
-    const Eigen::Matrix<double, 6, 1> step = -A.ldlt().solve(at.error.Jtr);
+    const Eigen::Matrix<double, 6, 1> step = -Ldlt(A).Solve(at.error.Jtr);
     if (!step.allFinite()) return {};
     // The decrease that the quadratic model promises; below it there is only rounding left.
     const double promised = -step.dot(2 * at.error.Jtr + at.error.JtJ * step);

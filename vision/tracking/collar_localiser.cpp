@@ -51,8 +51,8 @@ Pose OtherPlanarPose(const Pose& T_CE, const Pose& T_EG) {
 
 }  // namespace
 
-TipFinder::TipFinder(const std::vector<CameraCalibration>& cameras, const TagCollar& collar,
-                     const TrackerOptions& options)
+CollarLocaliser::CollarLocaliser(const std::vector<CameraCalibration>& cameras,
+                                 const TagCollar& collar, const TrackerOptions& options)
     : collar_(collar),
       options_(options),
       detector_(DetectorFor(collar, options.detector)),
@@ -69,7 +69,7 @@ TipFinder::TipFinder(const std::vector<CameraCalibration>& cameras, const TagCol
   }
 }
 
-void TipFinder::Forget() {
+void CollarLocaliser::Forget() {
   noise_grey_ = 0;
   planar_checks_spared_ = 0;
   for (OpticsPrior& prior : priors_) {
@@ -78,7 +78,7 @@ void TipFinder::Forget() {
   }
 }
 
-void TipFinder::Learn(const Sight& sight) {
+void CollarLocaliser::Learn(const Sight& sight) {
   if (sight.source != TrackSource::kPixels) return;
   noise_grey_ = noise_grey_ > 0 ? 0.8 * noise_grey_ + 0.2 * sight.noise_grey : sight.noise_grey;
   for (std::size_t i = 0; i < priors_.size(); ++i) {
@@ -86,7 +86,7 @@ void TipFinder::Learn(const Sight& sight) {
   }
 }
 
-void TipFinder::VisitState(StateText& state) {
+void CollarLocaliser::VisitState(StateText& state) {
   state(noise_grey_);
   state(planar_checks_spared_);
   for (OpticsPrior& prior : priors_) {
@@ -98,7 +98,7 @@ void TipFinder::VisitState(StateText& state) {
   }
 }
 
-bool TipFinder::MightSee(const Pose& T_RE) const {
+bool CollarLocaliser::MightSee(const Pose& T_RE) const {
   for (const auto& model : models_) {
     const CameraCalibration& c = model->Calibration();
     for (const CollarTag& tag : collar_.tags) {
@@ -111,7 +111,7 @@ bool TipFinder::MightSee(const Pose& T_RE) const {
   return false;
 }
 
-Sight TipFinder::FitPixels(const Images& images, const Pose& T_RE, bool coarse) {
+Sight CollarLocaliser::FitPixels(const Images& images, const Pose& T_RE, bool coarse) {
   Sight sight;
   sight.pixels = fit_.Fit(images, T_RE, priors_, coarse);
   if (!sight.pixels.IsUsable()) return sight;
@@ -127,13 +127,13 @@ Sight TipFinder::FitPixels(const Images& images, const Pose& T_RE, bool coarse) 
 }
 
 // Whether the tags that should be in view are.
-bool TipFinder::IsComplete(const Sight& sight) const {
+bool CollarLocaliser::IsComplete(const Sight& sight) const {
   return sight.pixels.faces >= sight.pixels.faces_in_view;
 }
 
 // Another minimum leaves more than the noise of the pictures before, turns far from what was
 // expected, or would show tags that are not there.
-bool TipFinder::IsTrusted(const Sight& sight, const Pose& expected_T_RE) const {
+bool CollarLocaliser::IsTrusted(const Sight& sight, const Pose& expected_T_RE) const {
   if (!sight.Found()) return false;
   const double turn = PoseDifference(expected_T_RE, sight.T_RE).head<3>().norm();
   const bool sure = IsComplete(sight) && !sight.pixels.one_plane;
@@ -141,7 +141,7 @@ bool TipFinder::IsTrusted(const Sight& sight, const Pose& expected_T_RE) const {
   return noise_grey_ <= 0 || sight.noise_grey < 1.6 * noise_grey_ + 0.5;
 }
 
-std::vector<TagDetection> TipFinder::PredictedTags(const PhotometricResult& fit) const {
+std::vector<TagDetection> CollarLocaliser::PredictedTags(const PhotometricResult& fit) const {
   std::vector<TagDetection> tags;
   const Pose T_CE = models_[0]->Calibration().T_RC.Inverse() * fit.T_RE;
   for (const FaceFit& face : fit.views[0].faces) {
@@ -162,7 +162,7 @@ std::vector<TagDetection> TipFinder::PredictedTags(const PhotometricResult& fit)
   return tags;
 }
 
-Sight TipFinder::FindNear(const Images& images, const Pose& T_RE, double radius_px) {
+Sight CollarLocaliser::FindNear(const Images& images, const Pose& T_RE, double radius_px) {
   if (options_.photometric_fit) {
     Sight sight = FitPixels(images, T_RE, false);
     for (std::size_t i = 0; i < images.size() && !IsTrusted(sight, T_RE); ++i) {
@@ -185,8 +185,8 @@ Sight TipFinder::FindNear(const Images& images, const Pose& T_RE, double radius_
   return Acquired(images, BestOf(tags, T_RE), T_RE);
 }
 
-std::vector<TagDetection> TipFinder::DetectNear(const Image& image, std::size_t camera,
-                                                const Pose& T_RE, double radius_px) {
+std::vector<TagDetection> CollarLocaliser::DetectNear(const Image& image, std::size_t camera,
+                                                      const Pose& T_RE, double radius_px) {
   const Pose T_CE = models_[camera]->Calibration().T_RC.Inverse() * T_RE;
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
   for (const CollarTag& tag : collar_.tags) {
@@ -212,8 +212,8 @@ std::vector<TagDetection> TipFinder::DetectNear(const Image& image, std::size_t 
   return tags;
 }
 
-Sight TipFinder::FindAnywhere(const Images& images, const std::optional<Pose>& near_T_RE,
-                              bool thorough) {
+Sight CollarLocaliser::FindAnywhere(const Images& images, const std::optional<Pose>& near_T_RE,
+                                    bool thorough) {
   std::vector<std::vector<TagDetection>> tags(images.size());
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (images[i] != nullptr) tags[i] = detector_.Detect(*images[i], thorough ? 1.0 : 2.0);
@@ -222,8 +222,8 @@ Sight TipFinder::FindAnywhere(const Images& images, const std::optional<Pose>& n
 }
 
 // The camera that knows best decides.
-Sight TipFinder::BestOf(const std::vector<std::vector<TagDetection>>& tags,
-                        const std::optional<Pose>& near_T_RE) const {
+Sight CollarLocaliser::BestOf(const std::vector<std::vector<TagDetection>>& tags,
+                              const std::optional<Pose>& near_T_RE) const {
   CollarPoseOptions options = options_.pose;
   if (options_.photometric_fit) options.corner_noise_floor_px = kCornerFallback_px;
   const auto spread = [](const Sight& s) { return s.covariance.bottomRightCorner<3, 3>().trace(); };
@@ -236,9 +236,9 @@ Sight TipFinder::BestOf(const std::vector<std::vector<TagDetection>>& tags,
   return best;
 }
 
-Sight TipFinder::FromTags(std::size_t camera, const std::vector<TagDetection>& tags,
-                          const std::optional<Pose>& near_T_RE,
-                          const CollarPoseOptions& options) const {
+Sight CollarLocaliser::FromTags(std::size_t camera, const std::vector<TagDetection>& tags,
+                                const std::optional<Pose>& near_T_RE,
+                                const CollarPoseOptions& options) const {
   const Pose& T_RC = models_[camera]->Calibration().T_RC;
   std::optional<Pose> near_T_CE;
   if (near_T_RE) near_T_CE = T_RC.Inverse() * *near_T_RE;
@@ -260,8 +260,8 @@ Sight TipFinder::FromTags(std::size_t camera, const std::vector<TagDetection>& t
 
 // A pose from corners as its pixels confirm it. One plane alone may be the other planar pose: it
 // counts where it was expected, or where nothing was and no tag is missing.
-Sight TipFinder::Acquired(const Images& images, const Sight& corners,
-                          const std::optional<Pose>& near_T_RE) {
+Sight CollarLocaliser::Acquired(const Images& images, const Sight& corners,
+                                const std::optional<Pose>& near_T_RE) {
   if (!corners.Found() || !options_.photometric_fit) return corners;
   Sight sight = Refined(images, corners);
   CheckOtherPlanarPose(images, near_T_RE, sight);
@@ -274,7 +274,7 @@ Sight TipFinder::Acquired(const Images& images, const Sight& corners,
 }
 
 // What the corners say, made better by the pixels where those agree.
-Sight TipFinder::Refined(const Images& images, const Sight& corners) {
+Sight CollarLocaliser::Refined(const Images& images, const Sight& corners) {
   Sight sight = FitCandidates(images, corners);
   if (!sight.Found() && noise_grey_ == 0) {  // nothing fitted yet: the gamma's guess may be wrong
     const std::vector<OpticsPrior> guessed = priors_;
@@ -298,7 +298,7 @@ Sight TipFinder::Refined(const Images& images, const Sight& corners) {
 }
 
 // The likelier of the fits from the corners' two poses.
-Sight TipFinder::FitCandidates(const Images& images, const Sight& corners) {
+Sight CollarLocaliser::FitCandidates(const Images& images, const Sight& corners) {
   Sight sight = FitPixels(images, corners.T_RE);
   if (!corners.alternative_T_RE) return sight;
   const Sight other = FitPixels(images, *corners.alternative_T_RE);
@@ -308,7 +308,7 @@ Sight TipFinder::FitCandidates(const Images& images, const Sight& corners) {
 }
 
 // Where the other planar pose was clearly worse, it is for some frames: a tip does not jump to it.
-bool TipFinder::MaySkipPlanarCheck(const Sight& sight, const Pose& expected_T_RE) {
+bool CollarLocaliser::MaySkipPlanarCheck(const Sight& sight, const Pose& expected_T_RE) {
   const double turn = PoseDifference(expected_T_RE, sight.T_RE).head<3>().norm();
   if (planar_checks_spared_ == 0 || turn > kSmallTurn_rad) return false;
   --planar_checks_spared_;
@@ -317,8 +317,8 @@ bool TipFinder::MaySkipPlanarCheck(const Sight& sight, const Pose& expected_T_RE
 
 // With one plane in view two poses may fit: tries the other, keeps the likelier, and where both
 // are nearly as likely takes the one that is expected.
-void TipFinder::CheckOtherPlanarPose(const Images& images, const std::optional<Pose>& near_T_RE,
-                                     Sight& sight) {
+void CollarLocaliser::CheckOtherPlanarPose(const Images& images,
+                                           const std::optional<Pose>& near_T_RE, Sight& sight) {
   planar_checks_spared_ = 0;
   if (sight.source != TrackSource::kPixels || !sight.pixels.one_plane) return;
   planar_checks_spared_ = kPlanarChecksSpared;

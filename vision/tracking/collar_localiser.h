@@ -30,10 +30,10 @@ struct Sight {
 /// One picture a camera; null: none.
 using Images = std::vector<const Image*>;
 
-class TipFinder {
+class CollarLocaliser {
  public:
-  TipFinder(const std::vector<CameraCalibration>& cameras, const TagCollar& collar,
-            const TrackerOptions& options);
+  CollarLocaliser(const std::vector<CameraCalibration>& cameras, const TagCollar& collar,
+                  const TrackerOptions& options);
 
   /// By the pixels, from an expected pose; where that fails, after a search `radius_px` around it,
   /// and where that fails, by detection in that region.

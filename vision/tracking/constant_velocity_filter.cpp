@@ -1,5 +1,7 @@
 #include "vision/tracking/constant_velocity_filter.h"
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 
 // An instrument's tip seldom moves faster than this: the spread of the unknown first velocity.
@@ -13,7 +15,7 @@ constexpr double kJump = 100.0;
 
 // x' = F x, P' = F P F^T + Q with white acceleration. (A constant acceleration between two frames
 // would double every velocity error once positions are exact.)
-void TipFilter::Advance(TimeNs t_ns, Vector6& x, Matrix6& P) const {
+void ConstantVelocityFilter::Advance(TimeNs t_ns, Vector6& x, Matrix6& P) const {
   const double dt = 1e-9 * static_cast<double>(t_ns - t_ns_);
   const double q = acceleration_noise_m_s2_ * acceleration_noise_m_s2_ * kAccelerationTime_s;
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
@@ -24,8 +26,8 @@ void TipFilter::Advance(TimeNs t_ns, Vector6& x, Matrix6& P) const {
   P = F * P * F.transpose() + q * Q;
 }
 
-void TipFilter::Measure(TimeNs t_ns, const Eigen::Vector3d& p,
-                        const Eigen::Matrix3d& covariance_m2) {
+void ConstantVelocityFilter::Measure(TimeNs t_ns, const Eigen::Vector3d& p,
+                                     const Eigen::Matrix3d& covariance_m2) {
   if (!started_) {
     x_ << p, Eigen::Vector3d::Zero();
     P_.setZero();
@@ -39,24 +41,24 @@ void TipFilter::Measure(TimeNs t_ns, const Eigen::Vector3d& p,
   t_ns_ = t_ns;
   const Eigen::Matrix3d S = P_.topLeftCorner<3, 3>() + covariance_m2;
   const Eigen::Vector3d innovation = p - x_.head<3>();
-  if (innovation.dot(S.ldlt().solve(innovation)) > kJump) {
+  if (MahalanobisSquared(innovation, S) > kJump) {
     started_ = false;
     return Measure(t_ns, p, covariance_m2);
   }
-  const Eigen::Matrix<double, 6, 3> K = S.ldlt().solve(P_.topRows<3>()).transpose();
+  const Eigen::Matrix<double, 6, 3> K = Ldlt(S).Solve(P_.topRows<3>()).transpose();
   x_ += K * innovation;
   const Matrix6 updated = P_ - K * P_.topRows<3>();
   P_ = 0.5 * (updated + updated.transpose());
 }
 
 // The velocity given the position stays as it is; the position's distribution is another.
-void TipFilter::Replace(TimeNs t_ns, const Eigen::Vector3d& p,
-                        const Eigen::Matrix3d& covariance_m2) {
+void ConstantVelocityFilter::Replace(TimeNs t_ns, const Eigen::Vector3d& p,
+                                     const Eigen::Matrix3d& covariance_m2) {
   if (!started_) return Measure(t_ns, p, covariance_m2);
   Advance(t_ns, x_, P_);
   t_ns_ = t_ns;
   const Eigen::Matrix3d before = P_.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d gain = before.ldlt().solve(P_.topRightCorner<3, 3>()).transpose();
+  const Eigen::Matrix3d gain = Ldlt(before).Solve(P_.topRightCorner<3, 3>()).transpose();
   const Eigen::Matrix3d velocity =
       P_.bottomRightCorner<3, 3>() + gain * (covariance_m2 - before) * gain.transpose();
   x_.tail<3>() += gain * (p - x_.head<3>());
@@ -65,7 +67,7 @@ void TipFilter::Replace(TimeNs t_ns, const Eigen::Vector3d& p,
       0.5 * (velocity + velocity.transpose());
 }
 
-TipFilter::Prediction TipFilter::At(TimeNs t_ns) const {
+ConstantVelocityFilter::Prediction ConstantVelocityFilter::At(TimeNs t_ns) const {
   Vector6 x = x_;
   Matrix6 P = P_;
   Advance(t_ns, x, P);

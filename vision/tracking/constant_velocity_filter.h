@@ -10,9 +10,9 @@ namespace flextip {
 
 /// A Kalman filter of constant velocity. Only predictions are taken from it: what is measured is
 /// passed on as measured.
-class TipFilter {
+class ConstantVelocityFilter {
  public:
-  explicit TipFilter(double acceleration_noise_m_s2)
+  explicit ConstantVelocityFilter(double acceleration_noise_m_s2)
       : acceleration_noise_m_s2_(acceleration_noise_m_s2) {}
 
   bool Started() const { return started_; }

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "core/pose.h"
 #include "core/rotation.h"
 
@@ -19,7 +20,7 @@ struct TipPrediction {
 
 /// The standard deviation along the least certain direction.
 inline double MaxSd(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
+  return std::sqrt(SymmetricEigenvalues(covariance)[2]);
 }
 inline double PositionSd(const TipPrediction& prediction) {
   return MaxSd(prediction.covariance.bottomRightCorner<3, 3>());

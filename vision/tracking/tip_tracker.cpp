@@ -49,9 +49,9 @@ void CheckImage(const Image& image, const CameraCalibration& c) {
 
 struct TipTracker::Impl {
   TrackerOptions options;
-  TipFinder finder;
+  CollarLocaliser localiser;
   std::vector<CameraCalibration> cameras;
-  TipFilter filter;
+  ConstantVelocityFilter filter;
   std::optional<BackgroundDetector> background;
   std::optional<OutlineFollower> outline;
 
@@ -63,7 +63,7 @@ struct TipTracker::Impl {
 
   Impl(const std::vector<CameraCalibration>& c, const TagCollar& collar, const TrackerOptions& o)
       : options(o),
-        finder(c, Checked(collar), o),
+        localiser(c, Checked(collar), o),
         cameras(c),
         filter(o.acceleration_noise_m_s2),
         noise_sum_px2(o.pose.prior_variance_px2 * o.pose.prior_dof),
@@ -99,7 +99,7 @@ struct TipTracker::Impl {
 };
 
 void TipTracker::Impl::VisitState(StateText& state) {
-  state(finder);
+  state(localiser);
   state(filter);
   state(last_T_RE);
   state(last_ns);
@@ -121,14 +121,14 @@ void TipTracker::Impl::ForgetIfStale(TimeNs t_ns) {
   if (outline) outline->Forget();
   last_T_RE.reset();
   turn_rate.setZero();
-  finder.Forget();
+  localiser.Forget();
 }
 
 // The better of what the model and the motion so far say.
 std::optional<TipPrediction> TipTracker::Impl::Expect(
     TimeNs t_ns, const std::optional<TipPrediction>& model) const {
   if (!filter.Started() || !last_T_RE) return model;
-  const TipFilter::Prediction moved = filter.At(t_ns);
+  const ConstantVelocityFilter::Prediction moved = filter.At(t_ns);
   const double dt_s = 1e-9 * static_cast<double>(t_ns - last_ns);
   TipPrediction motion;
   motion.T_RE = {ExpRotation(dt_s * turn_rate) * last_T_RE->R, moved.p};
@@ -152,8 +152,8 @@ double TipTracker::Impl::SearchRadius(const TipPrediction& expected) const {
 Sight TipTracker::Impl::Find(const Images& images, TimeNs t_ns,
                              const std::optional<TipPrediction>& expected) {
   Sight sight;
-  if (expected && finder.MightSee(expected->T_RE)) {
-    sight = finder.FindNear(images, expected->T_RE, SearchRadius(*expected));
+  if (expected && localiser.MightSee(expected->T_RE)) {
+    sight = localiser.FindNear(images, expected->T_RE, SearchRadius(*expected));
   }
   if (sight.Found()) return sight;
   // The outline knows no roll: after a while it does not tell one planar pose from the other.
@@ -169,12 +169,12 @@ Sight TipTracker::Impl::FindLost(const Images& images, TimeNs t_ns,
                                  const std::optional<Pose>& near_T_RE) {
   if (!background) {
     const bool thorough = lost_frames++ % kThoroughEvery == 0;
-    return finder.FindAnywhere(images, near_T_RE, thorough);
+    return localiser.FindAnywhere(images, near_T_RE, thorough);
   }
   Sight sight;
   if (const auto found = background->Take()) {
-    const Sight then = finder.FromTags(0, found->tags, near_T_RE, options.pose);
-    if (then.Found()) sight = finder.FindNear(images, then.T_RE, kMaxSearch_px);
+    const Sight then = localiser.FromTags(0, found->tags, near_T_RE, options.pose);
+    if (then.Found()) sight = localiser.FindNear(images, then.T_RE, kMaxSearch_px);
   }
   if (!sight.Found() && images[0] != nullptr) background->Submit(*images[0], t_ns);
   return sight;
@@ -197,7 +197,7 @@ Sight TipTracker::Impl::FindFromTags(const std::vector<TagDetection>& tags) {
   CollarPoseOptions pose = options.pose;
   pose.prior_variance_px2 = noise_dof > 0 ? noise_sum_px2 / noise_dof : 0.0;
   pose.prior_dof = noise_dof;
-  const Sight sight = finder.FromTags(0, tags, last_T_RE, pose);
+  const Sight sight = localiser.FromTags(0, tags, last_T_RE, pose);
   if (sight.Found()) {
     noise_sum_px2 = kNoiseMemory * noise_sum_px2 + sight.squared_error_px2;
     noise_dof = kNoiseMemory * noise_dof + sight.dof;
@@ -215,7 +215,7 @@ void TipTracker::Impl::Remember(const Sight& sight, TimeNs t_ns) {
   last_T_RE = sight.T_RE;
   last_ns = last_seen_ns = t_ns;
   predicted_frames = lost_frames = 0;
-  finder.Learn(sight);
+  localiser.Learn(sight);
   if (outline) outline->LeaveFrom(filter, t_ns);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -28,58 +29,33 @@ struct CalibrateBudgetOptions {
   bool force = false;
 };
 
-// The covariance of several entries of one calibration, in this order; empty where one is missing.
-Eigen::MatrixXd JointCovariance(const Calibration& calibration,
-                                const std::vector<std::string>& names) {
-  if (calibration.covariance.size() == 0) return {};
-  std::vector<int> places;
-  for (const std::string& name : names) {
-    if (!calibration.poses.count(name) && !calibration.numbers.count(name)) return {};
-    const Calibration::Range range = calibration.RangeOf(name);
-    for (int i = 0; i < range.count; ++i) places.push_back(range.first + i);
-  }
-  return calibration.covariance(places, places);
+// The command that makes the calibration of a part.
+const char* CommandFor(const std::string& part) {
+  static const std::map<std::string, const char*> commands = {{"lens", "camera"},
+                                                              {"hand-eye", "hand-eye"},
+                                                              {"tip offset", "tip"},
+                                                              {"stiffness", "stiffness"}};
+  return commands.at(part);
 }
 
-struct Chain {
-  ChainCovariance covariance;
-  double stiffness_sd_Nm2 = 0.0;
-  std::vector<NotKnown> not_known;
-};
-
-// The last file that has an entry counts, as it does for the values.
-Chain ChainOf(const std::vector<UsedCalibration>& used) {
-  Chain chain;
-  Eigen::MatrixXd stiffness;
-  const auto take = [](Eigen::MatrixXd& into, const Eigen::MatrixXd& from) {
-    if (from.size() > 0) into = from;
-  };
-  for (const UsedCalibration& one : used) {
-    const Calibration& c = one.calibration;
-    take(chain.covariance.lens,
-         JointCovariance(c, {"cam0.intrinsics", "cam0.distortion_coefficients"}));
-    take(chain.covariance.hand_eye, JointCovariance(c, {"cam0.T_RC"}));
-    take(chain.covariance.tip_offset, JointCovariance(c, {"tags0.p_E"}));
-    take(stiffness, JointCovariance(c, {"instrument.bending_stiffness_Nm2"}));
-  }
-  if (stiffness.size() > 0) chain.stiffness_sd_Nm2 = std::sqrt(stiffness(0, 0));
-  const auto need = [&](const Eigen::MatrixXd& m, const char* part, const char* name,
-                        const char* by) {
-    if (m.size() > 0) return;
-    chain.not_known.push_back(
+std::vector<UnknownPart> UnknownParts(const CalibrateBudgetOptions& options,
+                                      const Recording& recording, const StatedChain& chain) {
+  std::vector<UnknownPart> unknown;
+  for (const auto& [part, parameter] : chain.missing) {
+    unknown.push_back(
         {part,
          fmt::format("no calibration with a covariance of {} was given (flextip calibrate {})",
-                     name, by)});
-  };
-  need(chain.covariance.lens, "lens", "cam0.intrinsics", "camera");
-  need(chain.covariance.hand_eye, "hand-eye", "cam0.T_RC", "hand-eye");
-  need(chain.covariance.tip_offset, "tip offset", "tags0.p_E", "tip");
-  need(stiffness, "stiffness", "instrument.bending_stiffness_Nm2", "stiffness");
-  return chain;
+                     parameter, CommandFor(part))});
+  }
+  if (!options.force_given && !recording.load0) {
+    unknown.push_back({"bending", "no force on the tip is known: load0 or --tip-force"});
+  }
+  return unknown;
 }
 
 std::optional<TipBending> BendingAt(const CalibrateBudgetOptions& options,
-                                    const Recording& recording, const Chain& chain, TimeNs t_ns) {
+                                    const Recording& recording, const StatedChain& chain,
+                                    TimeNs t_ns) {
   const FreeEnd end = FreeEndOf(recording.instrument, *recording.tags0, recording.gravity_m_s2);
   TipBending bending{.f_R = options.force_N,
                      .weight_N_m = end.weight_N_m,
@@ -107,7 +83,7 @@ void UseTrackedCovariance(const Recording& recording, TimeNs t_ns, TipBudget& bu
 
 // `options.frames` frames, spread over the recording.
 std::vector<TimedBudget> Budgets(const CalibrateBudgetOptions& options, const Recording& recording,
-                                 const Chain& chain, bool quiet) {
+                                 const StatedChain& chain, bool quiet) {
   TagDetectorOptions detector_options;
   detector_options.family = recording.tags0->family;
   TagDetector detector(detector_options);
@@ -141,13 +117,13 @@ void RunCalibrateBudget(const CalibrateBudgetOptions& options, bool quiet) {
                          "has no cam0 or no tags0: the tip is seen by neither");
   }
   output.Warn(read.warnings);
-  Chain chain = ChainOf(read.calibrations);
+  std::vector<const Calibration*> calibrations;
+  for (const UsedCalibration& used : read.calibrations) calibrations.push_back(&used.calibration);
+  const StatedChain chain = GatherChain(calibrations);
   const auto budgets = Budgets(options, read.recording, chain, quiet);
   if (budgets.empty()) throw WorkError("calibrate budget: the collar is seen in no frame");
-  if (!options.force_given && !read.recording.load0) {
-    chain.not_known.push_back({"bending", "no force on the tip is known: load0 or --tip-force"});
-  }
-  WriteBudgetResults(output, budgets, chain.not_known, CalibrationsJson(read.calibrations));
+  WriteBudgetResults(output, budgets, UnknownParts(options, read.recording, chain),
+                     CalibrationsJson(read.calibrations));
   if (quiet) return;
   fmt::print("{}", BudgetText(budgets));
 }

@@ -57,15 +57,6 @@ nlohmann::json BoardShapeJson(const BoardShape& shape, const std::string& reason
   return json;
 }
 
-std::string BoardShapeText(const BoardShape& shape) {
-  if (!(shape.sd_m > 0)) return {};
-  const auto [rms_m, longest_m] = SizeOf(shape);
-  return fmt::format(
-      "the board is not as described: its corners are {:.3f} mm RMS off, {:.3f} mm at most, which "
-      "was estimated with the rest",
-      1e3 * rms_m, 1e3 * longest_m);
-}
-
 void AddBoardFigure(const std::vector<Eigen::Vector3d>& x_B, const BoardWarp& warp,
                     const BoardShape& shape, std::vector<report::Figure>& figures) {
   if (!(shape.sd_m > 0) || x_B.size() < 2) return;

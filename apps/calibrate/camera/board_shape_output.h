@@ -14,9 +14,6 @@ namespace flextip {
 /// `offsets_m` (id, x, y, z of each corner).
 nlohmann::json BoardShapeJson(const BoardShape& shape, const std::string& reason);
 
-/// Its sentence for a verdict; empty where the board is as described.
-std::string BoardShapeText(const BoardShape& shape);
-
 /// Adds a picture of the board seen from the front: in colours how far behind its plane it is, in
 /// lines where each corner is, exaggerated. `x_B` by id. Nothing where the board is as described.
 void AddBoardFigure(const std::vector<Eigen::Vector3d>& x_B, const BoardWarp& warp,

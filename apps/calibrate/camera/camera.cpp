@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "apps/calibrate/calibrate.h"
-#include "apps/calibrate/camera/board_pictures.h"
 #include "apps/calibrate/camera/lens_options.h"
 #include "apps/calibrate/camera/output.h"
 #include "apps/common/output.h"
+#include "apps/common/progress.h"
+#include "calibration/boards/board_pictures.h"
 #include "core/error.h"
 
 namespace flextip {
@@ -38,13 +39,12 @@ std::string WhyNot(const CameraCalibrationResult& result) {
 void RunCalibrateCamera(const CalibrateCameraOptions& options, bool quiet) {
   OutputFolder output(options.out, "calibrate camera",
                       {.force = options.force, .inputs = options.images});
-  const CornersFile corners =
-      CornersOf({options.images, options.lens.board, options.corners}, quiet);
-  const CameraCalibrationResult result =
-      CalibrateCamera(corners.views, corners.width_px, corners.height_px,
-                      ParseBoardSpec(options.lens.board), options.lens.Calibration());
+  const CornersFile corners = CornersOf({options.images, options.lens.board, options.corners},
+                                        ProgressFunction("images", quiet));
+  const JudgedCamera judged = CalibrateAndJudge(corners, options.lens.Calibration());
+  const CameraCalibrationResult& result = judged.result;
   if (!result.IsUsable()) throw WorkError(WhyNot(result));
-  WriteCameraResults(output, corners, result);
+  WriteCameraResults(output, corners, judged);
   if (quiet) return;
   fmt::print("{} views used, {} rejected, {} outliers among {} corners\n", result.views_used,
              result.views_rejected, result.solution.Outliers(),

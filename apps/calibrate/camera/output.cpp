@@ -4,20 +4,18 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "apps/calibrate/budget/uncertainty.h"
 #include "apps/calibrate/camera/board_shape_output.h"
 #include "apps/calibrate/camera/pictures.h"
-#include "apps/calibrate/camera/verdict.h"
+#include "apps/calibrate/camera/uncertainty_output.h"
+#include "apps/calibrate/verdict_json.h"
 #include "calibration/camera/choice.h"
-#include "calibration/camera/split.h"
-#include "core/error.h"
-#include "recording/calibrations/file.h"
+#include "calibration/entries.h"
 #include "recording/cameras/camera_file.h"
+#include "recording/text/text.h"
 #include "report/pages.h"
 
 namespace flextip {
@@ -92,48 +90,30 @@ json WarpJson(const CameraCalibrationResult& r) {
   return warp;
 }
 
-json Summary(const CameraCalibrationResult& r) {
+json Summary(const JudgedCamera& judged) {
+  const CameraCalibrationResult& r = judged.result;
   const CameraCalibration& c = r.solution.camera;
-  json summary = {
-      {"rms_reprojection_error_px", r.solution.RmsPx()},
-      {"heldout_error_px", r.heldout_rms_px},
-      {"views_used", r.views_used},
-      {"views_rejected", r.views_rejected},
-      {"corners_used", r.solution.CornersUsed()},
-      {"outliers", r.solution.Outliers()},
-      {"rms_with_outliers_px", r.solution.RmsPx(true)},
-      {"noise_px", r.solution.noise_px},
-      {"lens", LensModel{c.distortion, static_cast<int>(c.distortion_coefficients.size())}.Name()},
-      {"parameters", ParametersJson(r)},
-      {"lens_candidates", CandidatesJson(r)},
-      {"board_warp", WarpJson(r)},
-      {"views", ViewsJson(r)}};
+  json summary = {{"rms_reprojection_error_px", r.solution.RmsPx()},
+                  {"heldout_error_px", r.heldout_rms_px},
+                  {"views_used", r.views_used},
+                  {"views_rejected", r.views_rejected},
+                  {"corners_used", r.solution.CornersUsed()},
+                  {"outliers", r.solution.Outliers()},
+                  {"rms_with_outliers_px", r.solution.RmsPx(true)},
+                  {"noise_px", r.solution.noise_px},
+                  {"lens", LensModelOf(c).Name()},
+                  {"parameters", ParametersJson(r)},
+                  {"lens_candidates", CandidatesJson(r)},
+                  {"board_warp", WarpJson(r)},
+                  {"views", ViewsJson(r)}};
   summary["board_shape"] = BoardShapeJson(r.solution.shape, r.shape_reason);
-  if (const auto split = SplitViews(r.solution)) {
-    summary["split_views_rms_px"] = split->rms_px;
-    summary["split_views_max_px"] = split->max_px;
+  if (judged.split) {
+    summary["split_views_rms_px"] = judged.split->rms_px;
+    summary["split_views_max_px"] = judged.split->max_px;
   }
+  if (judged.uncertainty) summary["projection_uncertainty"] = UncertaintyJson(*judged.uncertainty);
+  summary["verdict"] = VerdictJson(judged.verdict);
   return summary;
-}
-
-// Intrinsics and coefficients with their covariance, in the order of Calibration::CoordinateNames.
-Calibration ToCalibration(const CameraCalibrationResult& r) {
-  Calibration calibration;
-  calibration.kind = "camera";
-  AddLens("cam0", r.solution.camera, calibration);
-  const int n = r.solution.IntrinsicsCount(), terms = n - 4;
-  calibration.covariance.resize(n, n);
-  calibration.covariance << r.covariance.block(4, 4, terms, terms),
-      r.covariance.block(4, 0, terms, 4), r.covariance.block(0, 4, 4, terms),
-      r.covariance.topLeftCorner(4, 4);
-  return calibration;
-}
-
-void WriteText(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw WorkError(fmt::format("{}: cannot be written", file.string()));
 }
 
 std::string ResidualTable(const CameraSolution& s) {
@@ -151,27 +131,29 @@ std::string ResidualTable(const CameraSolution& s) {
 }  // namespace
 
 void WriteCameraResults(OutputFolder& output, const CornersFile& corners,
-                        const CameraCalibrationResult& result) {
+                        const JudgedCamera& judged) {
   const fs::path& folder = output.folder();
+  const CameraCalibrationResult& result = judged.result;
   WriteCameraCalibration(folder / "cam0" / "sensor.yaml", result.solution.camera,
                          fmt::format("calibrated from {}", corners.board));
-  WriteCalibration(folder / "calibration.yaml", ToCalibration(result));
-  WriteText(folder / "residuals.csv", ResidualTable(result.solution));
+  WriteCalibration(folder / "calibration.yaml", CameraEntries(result));
+  WriteTextFile(folder / "residuals.csv", ResidualTable(result.solution));
   for (const CalibrationView& view : result.views) {
     if (!view.used) output.Warn(fmt::format("{}: {}", view.name, view.reason));
   }
   const std::string folds = FoldsInPicture(result.solution.camera);
-  if (!folds.empty())
+  if (!folds.empty()) {
     output.Warn(fmt::format("the lens holds only where boards were seen: {}", folds));
+  }
   DrawCameraPictures(folder, corners, result);
-  json summary = Summary(result);
-  const auto x_B = BoardCorners(ParseBoardSpec(corners.board));
   std::vector<report::Figure> figures;
-  AddUncertainty(folder, result.solution, x_B, summary, figures);
-  AddBoardFigure(x_B, result.solution.warp, result.solution.shape, figures);
+  if (judged.uncertainty) {
+    WriteUncertainty(folder, "cam0", *judged.uncertainty, result.solution.views, figures);
+  }
+  AddBoardFigure(BoardCorners(ParseBoardSpec(corners.board)), result.solution.warp,
+                 result.solution.shape, figures);
   report::WriteFigures(folder / "figures.json", figures);
-  summary["verdict"] = VerdictJson(CameraVerdict(result, summary));
-  output.WriteSummary(summary);
+  output.WriteSummary(Summary(judged));
   report::WriteCalibrateReport(folder);
   output.Commit();
 }

@@ -8,9 +8,13 @@
 
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/em/output.h"
+#include "apps/calibrate/verdict_json.h"
 #include "apps/common/output.h"
 #include "apps/common/recording_input.h"
 #include "calibration/em/em_calibration.h"
+#include "calibration/em/pairs.h"
+#include "calibration/entries.h"
+#include "calibration/verdict/em.h"
 #include "core/error.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
@@ -65,13 +69,13 @@ void RunCalibrateEm(const CalibrateEmOptions& options, bool quiet) {
     output.Warn(fmt::format("{} cannot be named: {}", parameter, reason));
   }
   if (const std::string lag = LagText(result); !lag.empty()) output.Warn(lag);
-  WriteCalibration(output.folder() / "calibration.yaml", EmFileOf(result));
+  WriteCalibration(output.folder() / "calibration.yaml", EmEntries(result));
   if (!result.residuals.empty()) {
     WriteTextFile(output.folder() / "residuals.csv", EmResidualTable(found.pairs, result));
     report::WriteFigures(output.folder() / "figures.json", EmFigures(found.pairs, result));
   }
   auto summary = EmSummary(found.pairs, result);
-  summary["verdict"] = VerdictJson(EmVerdict(result));
+  summary["verdict"] = VerdictJson(JudgeEm(result));
   summary["reference"] = options.reference;
   summary["samples_without_reference"] = found.left_out;
   output.WriteSummary(summary);

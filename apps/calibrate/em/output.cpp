@@ -11,10 +11,6 @@
 namespace flextip {
 namespace {
 
-constexpr const char* kRegistration = "em0.T_RF";
-constexpr const char* kDistance = "em0.distance_from_tip_m";
-constexpr const char* kField = "em0.field";
-
 std::vector<double> Numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 double Seconds(const std::vector<EmPair>& pairs, std::size_t i) {
@@ -95,26 +91,6 @@ report::Figure TimeFigure(const std::vector<EmPair>& pairs, const EmResult& resu
 }
 
 }  // namespace
-
-Calibration EmFileOf(const EmResult& result) {
-  Calibration calibration;
-  calibration.kind = "em";
-  calibration.unobservable = result.unobservable;
-  if (!result.IsUsable()) return calibration;
-  const EmSolution& s = result.solution;
-  calibration.poses[kRegistration] = s.T_RF;
-  if (result.design.free_distance) calibration.numbers[kDistance] = {s.distance_m};
-  if (HasField(result)) {
-    calibration.numbers[kField] = s.field.coefficients;
-    calibration.numbers["em0.field_centre_m"] = Numbers(s.field.centre_m);
-    calibration.numbers["em0.field_scale_m"] = Numbers(s.field.scale_m);
-  }
-  // The order is that of the solution: registration, distance, field; the box is exact.
-  const auto n = static_cast<Eigen::Index>(calibration.CoordinateNames().size());
-  calibration.covariance.setZero(n, n);
-  calibration.covariance.topLeftCorner(s.covariance.rows(), s.covariance.cols()) = s.covariance;
-  return calibration;
-}
 
 nlohmann::json EmSummary(const std::vector<EmPair>& pairs, const EmResult& result) {
   nlohmann::json summary = {{"status", Name(result.status)}, {"samples", pairs.size()}};

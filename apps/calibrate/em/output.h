@@ -1,25 +1,16 @@
-// What `calibrate em` writes: calibration.yaml, the summary, residuals.csv and the figures.
+// The files of `calibrate em`: the summary, residuals.csv and the figures.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "apps/calibrate/verdict.h"
 #include "calibration/em/em_calibration.h"
-#include "recording/calibrations/file.h"
 #include "report/figure.h"
 
 namespace flextip {
 
-Calibration EmFileOf(const EmResult& result);
-
 nlohmann::json EmSummary(const std::vector<EmPair>& pairs, const EmResult& result);
-
-/// That sensor and reference are not of one time; empty where they may be.
-std::string LagText(const EmResult& result);
-
-CalibrationVerdict EmVerdict(const EmResult& result);
 
 /// A row a sample, in mm.
 std::string EmResidualTable(const std::vector<EmPair>& pairs, const EmResult& result);

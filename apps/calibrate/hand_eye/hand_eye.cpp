@@ -12,10 +12,12 @@
 
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/hand_eye/output.h"
-#include "apps/calibrate/hand_eye/views.h"
+#include "apps/calibrate/verdict_json.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "calibration/hand_eye/hand_eye.h"
+#include "calibration/hand_eye/recorded_views.h"
+#include "calibration/verdict/hand_eye.h"
 #include "core/error.h"
 #include "recording/cameras/camera_file.h"
 #include "recording/frames/frames.h"
@@ -91,7 +93,7 @@ void WriteResults(const HandEyeCommand& options, const Recording& recording,
   }
   nlohmann::json summary = HandEyeSummary(result, calibration);
   summary["target"] = target == "board" ? options.board : "tags0";
-  summary["verdict"] = VerdictJson(HandEyeVerdict(result, calibration));
+  summary["verdict"] = VerdictJson(JudgeHandEye(result, calibration));
   summary["mount"] = options.eye_in_hand ? "eye-in-hand" : "eye-to-hand";
   output.WriteSummary(summary);
   report::WriteCalibrateReport(output.folder());
@@ -115,22 +117,16 @@ void RunHandEye(const HandEyeCommand& options, bool quiet) {
       options.camera.empty() ? recording.cam0->calibration : ReadCameraCalibration(options.camera);
   input.wrist = *recording.wrist0;
   std::vector<std::size_t> frames;
-  {
-    std::unique_ptr<Progress> progress;
-    input.views = FindHandEyeViews(options.recording, recording, board, options.max_views, frames,
-                                   [&](std::size_t done, std::size_t all) {
-                                     if (!progress) {
-                                       progress =
-                                           std::make_unique<Progress>("pictures", all, quiet);
-                                     }
-                                     progress->Update(done);
-                                   });
-  }
+  input.views = FindHandEyeViews(options.recording, recording, board, options.max_views, frames,
+                                 ProgressFunction("pictures", quiet));
   const HandEyeResult result =
       CalibrateHandEye(input, {.estimate_time_offset = !options.no_time_offset,
                                .refine_intrinsics = options.refine_intrinsics});
   if (!result.IsUsable()) {
     std::string message = fmt::format("calibrate hand-eye: {}", result.message);
+    if (result.fits_other_mount) {
+      message += options.eye_in_hand ? " (without --eye-in-hand)" : " (--eye-in-hand)";
+    }
     for (const HandEyeViewResult& view : result.views) {
       if (view.reason.empty()) continue;
       message += fmt::format("; {}: {}", view.name, view.reason);

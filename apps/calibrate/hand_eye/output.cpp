@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "apps/calibrate/verdict_json.h"
 #include "apps/track/overlay.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
@@ -179,10 +180,6 @@ std::string Quoted(std::string text) {
 }  // namespace
 
 json HandEyeSummary(const HandEyeResult& r, const Calibration& calibration) {
-  json unknown = json::array();
-  for (const auto& u : calibration.unobservable) {
-    unknown.push_back({{"parameter", u.parameter}, {"reason", u.reason}});
-  }
   return {{"views_used", r.views_used},
           {"views_rejected", r.views_rejected},
           {"rms_reprojection_error_px", NumberOrNull(r.rms_px)},
@@ -193,7 +190,7 @@ json HandEyeSummary(const HandEyeResult& r, const Calibration& calibration) {
           {"wrist_orientation_noise_scale", r.orientation_noise_scale},
           {"wrist_position_noise_scale", r.position_noise_scale},
           {"found", Deviations(calibration)},
-          {"unobservable", unknown},
+          {"unobservable", UnobservableJson(calibration.unobservable)},
           {"helpful_motions", Motions(r)},
           {"views", Views(r)}};
 }

@@ -5,15 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/calibrate/verdict.h"
 #include "calibration/hand_eye/hand_eye.h"
 #include "core/image.h"
 
 namespace flextip {
 
 nlohmann::json HandEyeSummary(const HandEyeResult& result, const Calibration& calibration);
-
-CalibrationVerdict HandEyeVerdict(const HandEyeResult& result, const Calibration& calibration);
 
 /// residuals.csv, a row a view, and figures.json.
 void WriteHandEyeTables(const std::filesystem::path& folder, const HandEyeResult& result);

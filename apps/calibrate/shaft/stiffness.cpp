@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "apps/calibrate/calibrate.h"
-#include "apps/calibrate/shaft/verdict.h"
+#include "apps/calibrate/verdict_json.h"
 #include "apps/common/output.h"
 #include "apps/common/recording_input.h"
 #include "calibration/shaft/stiffness_calibration.h"
+#include "calibration/verdict/shaft.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "report/figure.h"
@@ -49,10 +50,6 @@ nlohmann::json Summary(const StiffnessCalibration& result) {
     used += h.used;
     if (!h.used) rejected.push_back({{"hold", SpanOf(h.hold, start_ns)}, {"reason", h.reason}});
   }
-  nlohmann::json unobservable = nlohmann::json::array();
-  for (const auto& u : result.found.unobservable) {
-    unobservable.push_back({{"parameter", u.parameter}, {"reason", u.reason}});
-  }
   nlohmann::json bins = nlohmann::json::array();
   for (const auto& bin : result.by_insertion) {
     bins.push_back({{"inserted_m", bin.inserted_m},
@@ -69,7 +66,7 @@ nlohmann::json Summary(const StiffnessCalibration& result) {
           {"models", models},
           {"holds_used", used},
           {"holds_rejected", rejected},
-          {"unobservable", unobservable},
+          {"unobservable", UnobservableJson(result.found.unobservable)},
           {"largest_bend_m", result.bend_m},
           {"port_shift_m", {port.x(), port.y(), port.z()}},
           {"by_insertion", bins},
@@ -168,7 +165,7 @@ void Run(Options options, bool quiet) {
   report::WriteFigures(output.folder() / "figures.json",
                        {InsertionFigure(result), LoadFigure(result)});
   nlohmann::json summary = Summary(result);
-  summary["verdict"] = VerdictJson(StiffnessVerdict(result));
+  summary["verdict"] = VerdictJson(JudgeStiffness(result));
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   output.WriteSummary(summary);
   report::WriteCalibrateReport(output.folder());

@@ -11,10 +11,11 @@
 #include <vector>
 
 #include "apps/calibrate/calibrate.h"
-#include "apps/calibrate/shaft/verdict.h"
+#include "apps/calibrate/verdict_json.h"
 #include "apps/common/output.h"
 #include "apps/common/recording_input.h"
 #include "calibration/shaft/strain_calibration.h"
+#include "calibration/verdict/shaft.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "report/figure.h"
@@ -65,15 +66,11 @@ nlohmann::json Summary(const StrainCalibration& result) {
     if (!h.used)
       rejected.push_back({{"hold", SpanOf(h.hold, StartOf(result))}, {"reason", h.reason}});
   }
-  nlohmann::json unobservable = nlohmann::json::array();
-  for (const auto& u : result.found.unobservable) {
-    unobservable.push_back({{"parameter", u.parameter}, {"reason", u.reason}});
-  }
   const auto& noise = result.reading_noise;
-  nlohmann::json summary = {{"status", unobservable.empty() ? "ok" : "unobservable"},
+  nlohmann::json summary = {{"status", result.found.unobservable.empty() ? "ok" : "unobservable"},
                             {"holds_used", used},
                             {"holds_rejected", rejected},
-                            {"unobservable", unobservable},
+                            {"unobservable", UnobservableJson(result.found.unobservable)},
                             {"chi2_per_dof", result.chi2_per_dof},
                             {"reading_noise", {noise[0], noise[1], noise[2], noise[3]}},
                             {"largest_moment_Nm", result.largest_moment_Nm},
@@ -178,7 +175,10 @@ void Warn(const StrainCalibration& result, OutputFolder& output) {
   for (const auto& h : result.holds) {
     if (!h.used) output.Warn(SpanOf(h.hold, StartOf(result)) + ": " + h.reason);
   }
-  for (const auto& u : result.found.unobservable) output.Warn(u.parameter + ": " + u.reason);
+  for (const auto& u : result.found.unobservable) {
+    const bool gages = u.parameter == "strain0.gage_matrix" && result.insertions_alike;
+    output.Warn(u.parameter + ": " + u.reason + (gages ? " (--stations-apart)" : ""));
+  }
   if (result.chi2_per_dof > 2) {
     output.Warn(
         fmt::format("the holds scatter more than noise and loads explain (chi2 {:.1f} a "
@@ -202,7 +202,7 @@ void Run(const Options& options, bool quiet) {
                          {MomentsFigure(result), ResidualFigure(result)});
   }
   nlohmann::json summary = Summary(result);
-  summary["verdict"] = VerdictJson(StrainVerdict(result));
+  summary["verdict"] = VerdictJson(JudgeStrain(result));
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   output.WriteSummary(summary);
   report::WriteCalibrateReport(output.folder());

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <filesystem>
 
-#include "apps/calibrate/budget/uncertainty.h"
 #include "apps/calibrate/camera/board_shape_output.h"
-#include "apps/calibrate/camera/verdict.h"
-#include "apps/calibrate/stereo/files.h"
+#include "apps/calibrate/camera/uncertainty_output.h"
+#include "apps/calibrate/verdict_json.h"
 #include "calibration/boards/board.h"
-#include "recording/calibrations/file.h"
+#include "calibration/entries.h"
+#include "calibration/stereo/rectification_text.h"
 #include "recording/cameras/camera_file.h"
 #include "recording/text/text.h"
 #include "report/figure.h"
@@ -21,34 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-// Places in the solution's covariance, in the order of Calibration::CoordinateNames: the pose, then
-// by name each camera's coefficients and intrinsics.
-std::vector<int> PlacesByName(const StereoSolution& s) {
-  std::vector<int> places;
-  const auto add = [&](int first, int count) {
-    for (int i = 0; i < count; ++i) places.push_back(first + i);
-  };
-  add(s.PairStart(), 6);
-  for (int eye = 0; eye < 2; ++eye) {
-    const int first = eye == 0 ? 0 : s.IntrinsicsCount(0);
-    add(first + 4, s.IntrinsicsCount(eye) - 4);
-    add(first, 4);
-  }
-  return places;
-}
-
-Calibration ToCalibration(const StereoResult& r) {
-  Calibration calibration;
-  calibration.kind = "stereo";
-  calibration.poses["cam1.T_C0C1"] = r.solution.T_C0C1;
-  for (int eye = 0; eye < 2; ++eye) {
-    AddLens(fmt::format("cam{}", eye), r.solution.cameras[eye], calibration);
-  }
-  const std::vector<int> places = PlacesByName(r.solution);
-  calibration.covariance = r.covariance(places, places);
-  return calibration;
-}
 
 json PoseJson(const StereoResult& r) {
   const Pose& T = r.solution.T_C0C1;
@@ -80,21 +52,26 @@ json PairsJson(const StereoResult& r) {
   return pairs;
 }
 
-json EyeJson(const StereoResult& r, int eye) {
+json EyeJson(const JudgedStereo& judged, int eye) {
+  const StereoResult& r = judged.result;
   const CameraCalibration& c = r.solution.cameras[eye];
   const int first = eye == 0 ? 0 : r.solution.IntrinsicsCount(0);
   std::vector<double> sd(4);
   for (int i = 0; i < 4; ++i) sd[i] = std::sqrt(r.covariance(first + i, first + i));
-  return {
-      {"lens", LensModel{c.distortion, static_cast<int>(c.distortion_coefficients.size())}.Name()},
-      {"rms_reprojection_error_px", r.solution.RmsPx(eye)},
-      {"rms_alone_px", r.alone[eye].solution.RmsPx()},
-      {"heldout_alone_px", r.alone[eye].heldout_rms_px},
-      {"intrinsics_px", {c.fu_px, c.fv_px, c.cu_px, c.cv_px}},
-      {"intrinsics_sd_px", sd}};
+  json json_of_eye = {{"lens", LensModelOf(c).Name()},
+                      {"rms_reprojection_error_px", r.solution.RmsPx(eye)},
+                      {"rms_alone_px", r.alone[eye].solution.RmsPx()},
+                      {"heldout_alone_px", r.alone[eye].heldout_rms_px},
+                      {"intrinsics_px", {c.fu_px, c.fv_px, c.cu_px, c.cv_px}},
+                      {"intrinsics_sd_px", sd}};
+  if (judged.uncertainty[eye]) {
+    json_of_eye["projection_uncertainty"] = UncertaintyJson(*judged.uncertainty[eye]);
+  }
+  return json_of_eye;
 }
 
-json Summary(const StereoResult& r) {
+json Summary(const JudgedStereo& judged) {
+  const StereoResult& r = judged.result;
   json summary = {{"rms_reprojection_error_px", r.solution.RmsPx()},
                   {"noise_px", r.solution.noise_px},
                   {"pairs_used", r.pairs_used},
@@ -105,9 +82,10 @@ json Summary(const StereoResult& r) {
                   {"board_shape", BoardShapeJson(r.solution.shape, r.shape_reason)},
                   {"extrinsics", PoseJson(r)},
                   {"epipolar_rms_px", r.epipolar_rms_px},
-                  {"cam0", EyeJson(r, 0)},
-                  {"cam1", EyeJson(r, 1)},
-                  {"pairs", PairsJson(r)}};
+                  {"cam0", EyeJson(judged, 0)},
+                  {"cam1", EyeJson(judged, 1)},
+                  {"pairs", PairsJson(r)},
+                  {"verdict", VerdictJson(judged.verdict)}};
   if (r.heldout) {
     summary["heldout"] = {{"rms_px", r.heldout->rms_px},
                           {"epipolar_rms_px", r.heldout->epipolar_rms_px},
@@ -172,25 +150,19 @@ void WriteCameras(const fs::path& folder, const StereoResult& r, const std::stri
 
 }  // namespace
 
-void WriteStereoResults(OutputFolder& output, const StereoResult& result, const std::string& board,
+void WriteStereoResults(OutputFolder& output, const JudgedStereo& judged, const std::string& board,
                         const Pose& T_RC0) {
   const fs::path& folder = output.folder();
+  const StereoResult& result = judged.result;
   WriteCameras(folder, result, board, T_RC0);
-  WriteCalibration(folder / "calibration.yaml", ToCalibration(result));
+  WriteCalibration(folder / "calibration.yaml", StereoEntries(result));
   WriteTextFile(folder / "residuals.csv", ResidualTable(result.solution));
-  json summary = Summary(result);
   std::vector<report::Figure> figures = {PairFigure(result)};
   for (int eye = 0; eye < 2; ++eye) {
-    const auto uncertainty = FindUncertainty(result.solution, eye);
-    if (!uncertainty) continue;
-    const std::string name = fmt::format("cam{}", eye);
-    summary[name]["projection_uncertainty"] = UncertaintyJson(*uncertainty);
-    WriteTextFile(folder / (name + "_uncertainty.csv"), UncertaintyTable(*uncertainty));
+    if (!judged.uncertainty[eye]) continue;
     std::vector<SolvedView> views;
     for (const StereoView& view : result.solution.views) views.push_back(view.eyes[eye]);
-    for (report::Figure& figure : UncertaintyFigures(*uncertainty, views)) {
-      figures.push_back(std::move(figure));
-    }
+    WriteUncertainty(folder, fmt::format("cam{}", eye), *judged.uncertainty[eye], views, figures);
   }
   AddBoardFigure(BoardCorners(ParseBoardSpec(board)), result.solution.warp, result.solution.shape,
                  figures);
@@ -202,8 +174,7 @@ void WriteStereoResults(OutputFolder& output, const StereoResult& result, const 
     }
     if (!pair.apart.empty()) output.Warn(fmt::format("{}: {}", pair.names[0], pair.apart));
   }
-  summary["verdict"] = VerdictJson(StereoVerdict(result, summary));
-  output.WriteSummary(summary);
+  output.WriteSummary(Summary(judged));
   report::WriteCalibrateReport(folder);
   output.Commit();
 }

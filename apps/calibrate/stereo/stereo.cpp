@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "apps/calibrate/calibrate.h"
-#include "apps/calibrate/camera/board_pictures.h"
 #include "apps/calibrate/camera/lens_options.h"
 #include "apps/calibrate/stereo/output.h"
 #include "apps/common/output.h"
+#include "apps/common/progress.h"
+#include "calibration/boards/board_pictures.h"
 #include "core/error.h"
 #include "recording/cameras/camera_file.h"
 
@@ -37,16 +38,6 @@ void RequireAsMany(std::size_t left, std::size_t right) {
                   left, right));
 }
 
-// What both cameras saw, picture by picture in their order.
-std::vector<StereoPair> Pair(std::array<CornersFile, 2> eyes) {
-  RequireAsMany(eyes[0].views.size(), eyes[1].views.size());
-  std::vector<StereoPair> pairs;
-  for (std::size_t i = 0; i < eyes[0].views.size(); ++i) {
-    pairs.push_back({{std::move(eyes[0].views[i]), std::move(eyes[1].views[i])}});
-  }
-  return pairs;
-}
-
 void RunCalibrateStereo(const CalibrateStereoOptions& options, bool quiet) {
   // Named on neither side: all that the corners' files have.
   if (options.corners.empty()) RequireAsMany(options.left.size(), options.right.size());
@@ -56,19 +47,18 @@ void RunCalibrateStereo(const CalibrateStereoOptions& options, bool quiet) {
   inputs.insert(inputs.end(), options.right.begin(), options.right.end());
   OutputFolder output(options.out, "calibrate stereo", {.force = options.force, .inputs = inputs});
   std::array<CornersFile, 2> eyes;
-  std::array<Eigen::Vector2i, 2> sizes_px;
   for (std::size_t eye = 0; eye < 2; ++eye) {
     const fs::path corners = options.corners.empty() ? fs::path() : options.corners[eye];
     const auto& images = eye == 0 ? options.left : options.right;
-    eyes[eye] = CornersOf({images, options.lens.board, corners}, quiet);
-    sizes_px[eye] = {eyes[eye].width_px, eyes[eye].height_px};
+    eyes[eye] = CornersOf({images, options.lens.board, corners}, ProgressFunction("images", quiet));
   }
+  RequireAsMany(eyes[0].views.size(), eyes[1].views.size());
   StereoOptions calibration;
   calibration.camera = options.lens.Calibration();
-  const StereoResult result = CalibrateStereo(Pair(std::move(eyes)), sizes_px,
-                                              ParseBoardSpec(options.lens.board), calibration);
+  const JudgedStereo judged = CalibrateAndJudge(eyes, calibration);
+  const StereoResult& result = judged.result;
   if (!result.IsUsable()) throw WorkError(fmt::format("calibrate stereo: {}", result.message));
-  WriteStereoResults(output, result, options.lens.board, T_RC0);
+  WriteStereoResults(output, judged, options.lens.board, T_RC0);
   if (quiet) return;
   fmt::print("{} pairs and {} single views used, reprojection error {:.4f} px RMS\n",
              result.pairs_used, result.single_views_used, result.solution.RmsPx());

@@ -3,29 +3,20 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "calibration/verdict/tip.h"
 #include "recording/streams/series_file.h"
 #include "recording/text/csv.h"
 
 namespace flextip {
 namespace {
 
-constexpr double kDeg = 180.0 / std::numbers::pi;
 constexpr const char* kPivot = "pivot.p_R";
 
 std::vector<double> Numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 double Seconds(const std::vector<PivotPose>& poses, std::size_t i) {
   return 1e-9 * static_cast<double>(poses[i].t_ns - poses[0].t_ns);
-}
-
-/// The name of an axis of the body where it is one of them, else its components.
-std::string AxisName(const Eigen::Vector3d& axis) {
-  for (int i = 0; i < 3; ++i) {
-    if (std::abs(axis[i]) > 0.999) return std::string(1, "xyz"[i]);
-  }
-  return fmt::format("({:.2f} {:.2f} {:.2f})", axis.x(), axis.y(), axis.z());
 }
 
 nlohmann::json OutlierList(const std::vector<PivotPose>& poses, const PivotResult& result) {
@@ -39,39 +30,6 @@ nlohmann::json OutlierList(const std::vector<PivotPose>& poses, const PivotResul
 }
 
 }  // namespace
-
-Calibration TipCalibration(const PivotResult& result, const std::string& tip_name) {
-  Calibration calibration;
-  calibration.kind = "tip";
-  if (!result.IsUsable()) {
-    calibration.unobservable = {{tip_name, result.unobservable}, {kPivot, result.unobservable}};
-    return calibration;
-  }
-  calibration.numbers[tip_name] = Numbers(result.p_BE);
-  calibration.numbers[kPivot] = Numbers(result.p_R);
-  calibration.covariance.setZero(6, 6);
-  const int tip = calibration.RangeOf(tip_name).first, pivot = calibration.RangeOf(kPivot).first;
-  const Matrix6d& C = result.covariance;
-  calibration.covariance.block<3, 3>(tip, tip) = C.topLeftCorner<3, 3>();
-  calibration.covariance.block<3, 3>(tip, pivot) = C.topRightCorner<3, 3>();
-  calibration.covariance.block<3, 3>(pivot, tip) = C.bottomLeftCorner<3, 3>();
-  calibration.covariance.block<3, 3>(pivot, pivot) = C.bottomRightCorner<3, 3>();
-  return calibration;
-}
-
-std::string AdviceText(const PivotResult& result, const std::string& body) {
-  const PivotAdvice& advice = result.advice;
-  const double sd_m = std::sqrt(result.covariance.topLeftCorner<3, 3>().trace());
-  const std::string turn =
-      fmt::format("{} further poses turned by {:.0f} deg to both sides about the {} axis of {}",
-                  advice.poses, kDeg * advice.angle_rad, AxisName(advice.axis_B), body);
-  if (!std::isfinite(advice.sd_after_m)) return turn + " would help most";
-  if (!result.IsUsable()) {
-    return fmt::format("{} would give the tip to {:.3f} mm", turn, 1e3 * advice.sd_after_m);
-  }
-  return fmt::format("{} would lower the tip's standard deviation from {:.3f} to {:.3f} mm", turn,
-                     1e3 * sd_m, 1e3 * advice.sd_after_m);
-}
 
 nlohmann::json TipSummary(const std::vector<PivotPose>& poses, const PivotResult& result,
                           const std::string& tip_name, const std::string& body) {
@@ -89,7 +47,7 @@ nlohmann::json TipSummary(const std::vector<PivotPose>& poses, const PivotResult
                   {"least_turn_rad", result.turn_rad[0]},
                   {"advice", AdviceText(result, body)}});
   if (!result.IsUsable()) return summary;
-  const Eigen::Matrix<double, 6, 1> sd = result.covariance.diagonal().cwiseSqrt();
+  const Vector6d sd = result.covariance.diagonal().cwiseSqrt();
   summary["tip"] = {{"name", tip_name},
                     {"value_m", Numbers(result.p_BE)},
                     {"standard_deviation_m", Numbers(sd.head<3>())}};

@@ -9,10 +9,13 @@
 
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/tip/output.h"
+#include "apps/calibrate/verdict_json.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
+#include "calibration/entries.h"
 #include "calibration/tip/tip_poses.h"
+#include "calibration/verdict/tip.h"
 #include "core/error.h"
 #include "pipeline/instrument_tracker.h"
 #include "recording/frames/frames.h"
@@ -52,17 +55,17 @@ std::string ChooseSensor(const CalibrateTipOptions& options, const Recording& re
 
 TipBody CollarBody(const CalibrateTipOptions& options, OutputFolder& output, bool quiet) {
   SilenceVideoCodecs();
-  TrackInputOptions source;
-  source.source = options.input.recording;
-  source.calibrations = options.input.calibrations;
-  TrackInput input = OpenTrackInput(source);
+  TrackInput input = OpenRecordingToTrack(options.input.recording,
+                                          {.calibrations = options.input.calibrations});
   output.Warn(input.warnings);
-  TipFollower follower(input.recording, {}, false);
+  InstrumentTracker tracker(TrackerSetupOf(input.recording, {}, false));
   Progress progress("frames", input.frames->Count(), quiet, "fps");
   TipBody body{"tags0.p_E", "E", {}, false};
   std::size_t frames = 0;
   while (const auto set = input.frames->Next()) {
-    if (const auto pose = CollarPivotPose(follower.Follow(*set), set->t_ns)) {
+    if (const auto pose = CollarPivotPose(
+            tracker.Follow(set->Pointers(), set->t_ns, ReadingsAt(input.recording, set->t_ns)),
+            set->t_ns)) {
       body.poses.push_back(*pose);
     }
     progress.Update(++frames);
@@ -113,13 +116,13 @@ void RunCalibrateTip(const CalibrateTipOptions& options, bool quiet) {
   if (!result.IsUsable()) {
     output.Warn(fmt::format("{} cannot be named: {}", body.tip_name, result.unobservable));
   }
-  WriteCalibration(output.folder() / "calibration.yaml", TipCalibration(result, body.tip_name));
+  WriteCalibration(output.folder() / "calibration.yaml", TipEntries(result, body.tip_name));
   if (!result.residuals.empty()) {
     WriteTextFile(output.folder() / "residuals.csv", TipResidualTable(body.poses, result));
     report::WriteFigures(output.folder() / "figures.json", TipFigures(body.poses, result));
   }
   auto summary = TipSummary(body.poses, result, body.tip_name, body.frame);
-  summary["verdict"] = VerdictJson(TipVerdict(result, body.tip_name, body.frame));
+  summary["verdict"] = VerdictJson(JudgeTip(result, body.tip_name, body.frame));
   output.WriteSummary(summary);
   report::WriteCalibrateReport(output.folder());
   output.Commit();

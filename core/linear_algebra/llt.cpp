@@ -1,0 +1,57 @@
+#include "core/linear_algebra.h"
+#include "core/linear_algebra/columns.h"
+
+namespace flextip {
+
+template <int N>
+Llt<N>::Llt(const std::type_identity_t<Matrix>& A) : llt_(A) {}
+
+template <int N>
+void Llt<N>::SolveInPlace(double* columns, Eigen::Index count) const {
+  SolveLInPlace(columns, count);
+  SolveLTransposedInPlace(columns, count);
+}
+
+template <int N>
+void Llt<N>::SolveLInPlace(double* columns, Eigen::Index count) const {
+  ForColumns<N>(columns, llt_.rows(), count, [&](auto& x) { llt_.matrixL().solveInPlace(x); });
+}
+
+template <int N>
+void Llt<N>::SolveLTransposedInPlace(double* columns, Eigen::Index count) const {
+  ForColumns<N>(columns, llt_.rows(), count, [&](auto& x) { llt_.matrixU().solveInPlace(x); });
+}
+
+template <int N>
+auto Llt<N>::Inverse() const -> Matrix {
+  Matrix inverse = Matrix::Identity(llt_.rows(), llt_.cols());
+  SolveInPlace(inverse.data(), inverse.cols());
+  return inverse;
+}
+
+template <int N>
+auto Llt<N>::L() const -> Matrix {
+  return llt_.matrixL();
+}
+
+template <int N>
+double Llt<N>::LogDeterminant() const {
+  return 2.0 * llt_.matrixLLT().diagonal().array().log().sum();
+}
+
+template <int N>
+bool Llt<N>::Succeeded() const {
+  return llt_.info() == Eigen::Success;
+}
+
+template <int N>
+double Llt<N>::ReciprocalCondition() const requires(N == Eigen::Dynamic) {
+  return llt_.rcond();
+}
+
+template class Llt<2>;
+template class Llt<3>;
+template class Llt<6>;
+template class Llt<Eigen::Dynamic>;
+
+}  // namespace flextip

@@ -1,0 +1,151 @@
+#include "pipeline/instrument_controller.h"
+
+#include <cmath>
+
+#include "core/error.h"
+#include "pipeline/tip_fusion.h"
+
+namespace flextip {
+namespace {
+
+bool IsStraight(ControllerKind kind) {
+  return kind == ControllerKind::kStraightCalculate || kind == ControllerKind::kStraightTrack;
+}
+bool IsRod(ControllerKind kind) {
+  return kind == ControllerKind::kRodCalculate || kind == ControllerKind::kRodTrack;
+}
+
+EstimatorOptions OptionsFor(EstimatorOptions options, ControllerKind kind) {
+  options.use_positions = UsesTipMeasurement(kind);
+  return options;
+}
+
+}  // namespace
+
+InstrumentController::InstrumentController(const InstrumentControllerOptions& options,
+                                           std::unique_ptr<InstrumentModel> model,
+                                           std::unique_ptr<InstrumentTracker> tracker)
+    : options_(options),
+      model_(std::move(model)),
+      tracker_(std::move(tracker)),
+      estimator_(OptionsFor(options.estimator, options.control.kind), options.window_samples),
+      place_(options.control) {
+  if (!options.direction) return;
+  if (!IsRod(options.control.kind)) {
+    throw InputError(std::string("the tip's direction needs a rod controller, not ") +
+                     Name(options.control.kind));
+  }
+  direction_.emplace(*options.direction);
+}
+
+ControllerCommand InstrumentController::Step(const ControllerInputs& inputs) {
+  ControllerCommand command;
+  command.t_ns = inputs.t_ns;
+  const SensorReadings seen = See(inputs);
+  const std::optional<Measurements> gathered = Gather(seen);
+  if (!gathered) return command;
+  command.measurements = Correct(inputs.t_ns, *gathered);
+  command.estimate = Estimate(command.measurements);
+  command.p_RE_measured =
+      FuseTip(options_.control.kind, command.measurements, command.estimate, options_.em_is_tip);
+  command.goal = Keep(inputs, command.estimate);
+  Control(inputs, command);
+  return command;
+}
+
+/// Track. The pictures are seen with the sensors as they are: an effect of the camera is corrected
+/// in the tip, as in a recording.
+SensorReadings InstrumentController::See(const ControllerInputs& inputs) {
+  SensorReadings seen = inputs.sensors;
+  if (tracker_ && !inputs.pictures.empty()) {
+    track_ = tracker_->Follow(inputs.pictures, inputs.pictures_t_ns, inputs.sensors);
+    seen.tip = {inputs.pictures_t_ns, {track_->tip, track_->direction_noise_rad}};
+  }
+  if (!seen.tip) return seen;
+  if (tip_t_ns_ && seen.tip->t_ns <= *tip_t_ns_) {
+    seen.tip.reset();
+  } else {
+    tip_t_ns_ = seen.tip->t_ns;
+  }
+  return seen;
+}
+
+/// Undoes what the found model says of the sensors.
+Measurements InstrumentController::Correct(TimeNs t_ns, const Measurements& measured) {
+  if (!model_) return measured;
+  model_->Advance(t_ns, measured, f_tip_N_);
+  return model_->Correct(measured);
+}
+
+ShaftEstimate InstrumentController::Estimate(const Measurements& measurements) {
+  ShaftEstimate estimate =
+      estimator_.Update(measurements, model_ ? model_->Shaft() : ShaftChange());
+  f_tip_N_ = estimate.model.f_tip_N;
+  if (IsStraight(options_.control.kind) && options_.straight_at_registered_port)
+    estimate.model.p_RP = options_.estimator.p_RP;
+  return estimate;
+}
+
+/// Keeps the goal out of forbidden regions.
+FixturesOutput InstrumentController::Keep(const ControllerInputs& inputs,
+                                          const ShaftEstimate& estimate) const {
+  if (!inputs.p_RE_desired) return {};
+  const bool known = estimate.status == EstimateStatus::kOk;
+  const double tip_sd_m = known ? MaxSd(estimate.p_RE_covariance_m2) : 0.0;
+  return Constrain(options_.fixtures, *inputs.p_RE_desired, tip_sd_m);
+}
+
+void InstrumentController::Control(const ControllerInputs& inputs, ControllerCommand& command) {
+  command.p_RW_command = command.measurements.p_RW;
+  if (!inputs.p_RE_desired) {
+    command.status = ControlStatus::kNoGoal;
+  } else if (direction_ && inputs.d_RE_desired) {
+    ControlDirection(*inputs.d_RE_desired, command);
+  } else {
+    ControlPlace(command);
+  }
+}
+
+void InstrumentController::ControlPlace(ControllerCommand& command) {
+  ControlInput input;
+  input.p_RW = command.measurements.p_RW;
+  input.p_RE_desired = command.goal.p_RE_desired;
+  input.p_RE_measured = command.p_RE_measured.value_or(Eigen::Vector3d::Zero());
+  input.tip_measured = command.p_RE_measured.has_value();
+  input.model = command.estimate.model;
+  const ControlOutput output = place_.Step(input);
+  command.status = output.status;
+  command.p_RW_command = output.p_RW_command;
+  command.p_RE_used = output.p_RE_used;
+  command.step_limited = output.step_limited;
+  command.damped = output.damped;
+}
+
+/// Place and direction: the tip as tracked, or by the rod where the kind calculates it.
+void InstrumentController::ControlDirection(const Eigen::Vector3d& d_RE_desired,
+                                            ControllerCommand& command) {
+  const ShaftEstimate& estimate = command.estimate;
+  const bool tracks = UsesTipMeasurement(options_.control.kind);
+  command.status = ControlStatus::kNoTip;
+  if (tracks && !command.p_RE_measured) return;
+  command.status = ControlStatus::kNoModel;
+  const bool fits =
+      estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
+  if (!fits) return;
+  DirectionInput input;
+  input.p_RW = command.measurements.p_RW;
+  input.p_RE = tracks ? *command.p_RE_measured : estimate.p_RE;
+  input.d_RE = estimate.d_RE;
+  input.p_RE_desired = command.goal.p_RE_desired;
+  input.d_RE_desired = d_RE_desired;
+  input.free_axis = options_.direction_free_axis;
+  input.model = estimate.model;
+  const DirectionOutput output = direction_->Step(input);
+  command.status = output.status;
+  command.p_RW_command = output.p_RW_command;
+  command.p_RE_used = input.p_RE;
+  command.step_limited = output.step_limited;
+  command.damped = output.damped;
+}
+
+}  // namespace flextip

@@ -1,0 +1,97 @@
+// One control cycle, from sensor samples to the wrist's command: the loop as a library.
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "control/controller.h"
+#include "control/direction_controller.h"
+#include "control/fixtures.h"
+#include "core/image.h"
+#include "estimation/instrument_model.h"
+#include "pipeline/instrument_estimator.h"
+#include "pipeline/instrument_tracker.h"
+#include "pipeline/sensor_readings.h"
+
+namespace flextip {
+
+struct InstrumentControllerOptions {
+  EstimatorOptions estimator;  ///< from EstimatorOptionsFor; `use_positions` follows control.kind
+  int window_samples = 0;      ///< of the window estimator; 0: each sample by itself
+  ControllerOptions control;
+  /// Where there, a cycle that is given a direction controls place and direction by the exact rod;
+  /// needs a rod kind.
+  std::optional<DirectionOptions> direction;
+  /// With kPositionFirst: the place along it does not matter (any length; zero: all of it does).
+  Eigen::Vector3d direction_free_axis = Eigen::Vector3d::Zero();
+  Fixtures fixtures;
+  bool em_is_tip = false;  ///< without vision, em0 carried to the tip is the tip's measurement
+  /// The straight kinds pivot at the port as registered, not as estimated.
+  bool straight_at_registered_port = false;
+};
+
+/// What one cycle is given. Fixed size but for the pictures, which stay the caller's.
+struct ControllerInputs {
+  TimeNs t_ns = 0;                         ///< of the cycle; not before the last one
+  SensorReadings sensors;                  ///< the newest sample of each stream; a tip counts once
+  std::span<const Image* const> pictures;  ///< one a camera, null: none of it; empty: no picture
+  TimeNs pictures_t_ns = 0;
+  std::optional<Eigen::Vector3d> p_RE_desired;  ///< absent: the cycle only watches
+  std::optional<Eigen::Vector3d> d_RE_desired;  ///< the tip's direction, any length
+};
+
+/// What one cycle says. Fixed size; all in R.
+struct ControllerCommand {
+  TimeNs t_ns = 0;
+  ControlStatus status = ControlStatus::kNoWrist;
+  Eigen::Vector3d p_RW_command = Eigen::Vector3d::Zero();  ///< means nothing with kNoWrist
+  Eigen::Vector3d p_RE_used = Eigen::Vector3d::Zero();     ///< the tip the step started from
+  bool step_limited = false, damped = false;               ///< as in ControlOutput
+  Measurements measurements;                               ///< gathered, seen and corrected
+  ShaftEstimate estimate;
+  std::optional<Eigen::Vector3d> p_RE_measured;  ///< the tip as the controller was given it
+  FixturesOutput goal;                           ///< what was wanted, kept by the fixtures
+};
+
+/// The whole cycle. A function of its inputs and its own state: the same inputs give the same
+/// commands, bit for bit. Without pictures it allocates nothing once it runs.
+class InstrumentController {
+ public:
+  /// `model`: what was found of instrument and sensors (diagnosis); null: as their data say.
+  /// `tracker` sees the tip where a cycle is given pictures. Throws InputError where
+  /// `options.direction` comes without a rod kind.
+  explicit InstrumentController(const InstrumentControllerOptions& options,
+                                std::unique_ptr<InstrumentModel> model = nullptr,
+                                std::unique_ptr<InstrumentTracker> tracker = nullptr);
+
+  /// Runs one cycle. Throws InputError only for pictures of the wrong size.
+  ControllerCommand Step(const ControllerInputs& inputs);
+
+  /// What the tracker said of the last pictures; empty before the first.
+  const std::optional<TipTrack>& Track() const { return track_; }
+  /// What the window said last; null without a window.
+  const WindowEstimate* Window() const { return estimator_.Window(); }
+
+ private:
+  SensorReadings See(const ControllerInputs& inputs);
+  Measurements Correct(TimeNs t_ns, const Measurements& measured);
+  ShaftEstimate Estimate(const Measurements& measurements);
+  FixturesOutput Keep(const ControllerInputs& inputs, const ShaftEstimate& estimate) const;
+  void Control(const ControllerInputs& inputs, ControllerCommand& command);
+  void ControlPlace(ControllerCommand& command);
+  void ControlDirection(const Eigen::Vector3d& d_RE_desired, ControllerCommand& command);
+
+  InstrumentControllerOptions options_;
+  std::unique_ptr<InstrumentModel> model_;
+  std::unique_ptr<InstrumentTracker> tracker_;
+  InstrumentEstimator estimator_;
+  TipController place_;
+  std::optional<DirectionController> direction_;
+  std::optional<TipTrack> track_;
+  std::optional<TimeNs> tip_t_ns_;                     // of the last tip that counted
+  Eigen::Vector3d f_tip_N_ = Eigen::Vector3d::Zero();  // as estimated last
+};
+
+}  // namespace flextip

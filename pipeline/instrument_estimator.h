@@ -1,0 +1,28 @@
+// The estimator of a run: of one sample, or over a window of samples.
+#pragma once
+
+#include <optional>
+
+#include "estimation/shaft_estimator.h"
+#include "estimation/window_estimator.h"
+
+namespace flextip {
+
+class InstrumentEstimator {
+ public:
+  /// `window_samples`: how many samples say together where the port is; 0: each sample by itself.
+  explicit InstrumentEstimator(const EstimatorOptions& options, int window_samples = 0);
+
+  /// Fits the latest sample; allocates nothing.
+  ShaftEstimate Update(const Measurements& measurements, const ShaftChange& change = {});
+
+  /// What the window said with the last update; null without a window and before the first.
+  const WindowEstimate* Window() const { return window_estimate_ ? &*window_estimate_ : nullptr; }
+
+ private:
+  ShaftEstimator single_;
+  std::optional<WindowEstimator> window_;
+  std::optional<WindowEstimate> window_estimate_;
+};
+
+}  // namespace flextip

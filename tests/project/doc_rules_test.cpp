@@ -1,0 +1,66 @@
+#include "tests/project/doc_rules.h"
+
+#include <gmock/gmock.h>
+
+namespace flextip {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const ProjectTexts& Project() {
+  static const ProjectTexts texts = ReadProjectTexts(FLEXTIP_SOURCE_DIR);
+  return texts;
+}
+
+TEST(DocRules, EveryLinkLeadsSomewhere) {
+  ASSERT_TRUE(Project().contains("docs/architecture.md"));
+  EXPECT_THAT(BrokenLinks(Project()), IsEmpty());
+}
+
+TEST(DocRules, LinesAreShort) { EXPECT_THAT(LongLines(Project()), IsEmpty()); }
+
+TEST(DocRules, TroubleshootingQuotesMessagesThatAreThere) {
+  const std::string page = "docs/troubleshooting.md";
+  ASSERT_THAT(Project().at(page), HasSubstr("| `"));
+  EXPECT_THAT(UnknownMessages(Project(), page), IsEmpty());
+}
+
+TEST(DocRules, SeeALinkToNothing) {
+  EXPECT_THAT(BrokenLinks({{"docs/a.md", "[b](b.md)\n[c](../core/c.h)\n"}, {"core/c.h", ""}}),
+              ElementsAre("docs/a.md:1: there is no docs/b.md"));
+}
+
+TEST(DocRules, SeeALinkToNoHeading) {
+  const ProjectTexts texts{{"a.md", "[x](docs/b.md#the-x) [y](docs/b.md#y) [z](#z)\n## Z\n"},
+                           {"docs/b.md", "# B\n\n## The `x`\n```\n# y\n```\n"}};
+  EXPECT_THAT(BrokenLinks(texts), ElementsAre("a.md:1: docs/b.md has no #y"));
+}
+
+TEST(DocRules, SeeAMentionOfNothing) {
+  EXPECT_THAT(BrokenLinks({{"core/a.h", "\n// docs/b.md, and docs/c.md\n"}, {"docs/c.md", ""}}),
+              ElementsAre("core/a.h:2: there is no docs/b.md"));
+}
+
+TEST(DocRules, CountCharactersOutsideTablesAndCode) {
+  const std::string hundred(100, 'x'), more(101, 'x');
+  std::string wide;
+  for (int i = 0; i < 100; ++i) wide += "µ";
+  const ProjectTexts texts{
+      {"a.md", hundred + "\n" + wide + "\n| " + more + "\n```\n" + more + "\n```\n" + more + "\n"},
+      {"core/a.h", "// " + more + "\n"}};
+  EXPECT_THAT(LongLines(texts),
+              ElementsAre("a.md:7: 101 characters", "core/a.h:1: 104 characters"));
+}
+
+TEST(DocRules, SeeAMessageThatNobodySays) {
+  const ProjectTexts texts{
+      {"docs/t.md", "| `found … apples, \"two\"` | why |\n| `no pears` | `not a message` |\n"},
+      {"apps/a.cpp", "Fail(\"found {} \"\n     \"apples, \\\"two\\\" expected\");\n"},
+      {"tests/a.cpp", "\"no pears\""}};
+  EXPECT_THAT(UnknownMessages(texts, "docs/t.md"), ElementsAre("\"no pears\" of \"no pears\""));
+}
+
+}  // namespace
+}  // namespace flextip
