@@ -27,7 +27,7 @@ const std::map<std::string, Names>& Arrows() {
       {"pipeline", {"core", "kinematics", "estimation", "control", "vision", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
-      {"report", {"core"}},
+      {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording"}},
       {"reproduction",
        {"core", "kinematics", "estimation", "control", "pipeline", "simulation", "workspace",
@@ -57,7 +57,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"tbb/", {"vision", "simulation", "diagnosis", "workspace", "reproduction", "apps", "bench"}},
       {"geos", {"reproduction"}},
       {"boost/", {"workspace", "reproduction"}},
-      {"nlohmann/", {"report", "diagnosis", "reproduction", "apps", "testdata", "bench"}},
+      {"nlohmann/", {"report", "reproduction", "apps", "testdata", "bench"}},
       {"CLI/", {"apps", "reproduction", "bench"}},
   };
   return foreign;
