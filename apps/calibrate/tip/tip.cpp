@@ -55,8 +55,8 @@ std::string ChooseSensor(const CalibrateTipOptions& options, const Recording& re
 
 TipBody CollarBody(const CalibrateTipOptions& options, OutputFolder& output, bool quiet) {
   SilenceVideoCodecs();
-  TrackInput input = OpenRecordingToTrack(options.input.recording,
-                                          {.calibrations = options.input.calibrations});
+  TrackInput input =
+      OpenRecordingToTrack(options.input.recording, {.calibrations = options.input.calibrations});
   output.Warn(input.warnings);
   InstrumentTracker tracker(TrackerSetupOf(input.recording, {}, false));
   Progress progress("frames", input.frames->Count(), quiet, "fps");
