@@ -27,8 +27,8 @@ const std::map<std::string, Names>& Arrows() {
       {"pipeline", {"core", "kinematics", "estimation", "control", "vision", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
-      {"report", {"core"}},
-      {"workspace", {"core", "kinematics", "control", "recording"}},
+      {"report", {"core", "recording"}},
+      {"workspace", {"core", "kinematics", "control", "recording", "report"}},
       {"reproduction",
        {"core", "kinematics", "estimation", "control", "pipeline", "simulation", "workspace",
         "report", "recording", "apps"}},
@@ -57,7 +57,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"tbb/", {"vision", "simulation", "diagnosis", "workspace", "reproduction", "apps", "bench"}},
       {"geos", {"reproduction"}},
       {"boost/", {"workspace", "reproduction"}},
-      {"nlohmann/", {"report", "diagnosis", "reproduction", "apps", "testdata", "bench"}},
+      {"nlohmann/", {"report", "reproduction", "apps", "testdata", "bench"}},
       {"CLI/", {"apps", "reproduction", "bench"}},
   };
   return foreign;
