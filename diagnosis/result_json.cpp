@@ -4,7 +4,7 @@
 
 #include "diagnosis/diagnose.h"
 #include "diagnosis/model/catalogue.h"
-#include "diagnosis/replay/model_input.h"
+#include "diagnosis/replay/sample_input.h"
 
 namespace flextip::diagnosis {
 namespace {
@@ -69,7 +69,7 @@ Json Nominal(const DiagnosisResult& result, bool tolerances) {
 
 Json Summaries(const DiagnosisResult& result) {
   Json json = Json::object();
-  for (const auto& name : result.catalogue) json[name] = MakeEffect(name)->Summary();
+  for (const auto& name : result.catalogue) json[name] = result.summaries.at(name);
   return json;
 }
 
