@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cassert>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "core/check.h"
 #include "core/error.h"
 #include "report/embedded.h"
 
@@ -56,8 +56,8 @@ std::string PlotJson(const Plot& plot) {
                       {"log_y", plot.log_y},
                       {"traces", nlohmann::json::array()}};
   for (const auto& trace : plot.traces) {
-    assert(trace.x.size() == trace.y.size());
-    assert(trace.z.empty() || trace.z.size() == trace.x.size());
+    FLEXTIP_CHECK(trace.x.size() == trace.y.size(), "as many x as y");
+    FLEXTIP_CHECK(trace.z.empty() || trace.z.size() == trace.x.size(), "as many z as x");
     json["traces"].push_back(TraceJson(trace));
   }
   for (const PlotBand& band : plot.bands) {
@@ -167,14 +167,14 @@ void Report::AddTable(const Table& table) {
   body_ += "<figure class=\"table\">\n" + Title(table.title) + "<table>\n<thead>" +
            Row(table.header, "th") + "</thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
-    assert(row.size() == table.header.size());
+    FLEXTIP_CHECK(row.size() == table.header.size(), "a cell for each column");
     body_ += Row(row, "td");
   }
   body_ += "</tbody></table>\n" + Caption(table.caption) + "</figure>\n";
 }
 
 void Report::AddPlot(const Plot& plot) {
-  assert(!has_figures_);
+  FLEXTIP_CHECK(!has_figures_, "figures are added once");
   has_plots_ = true;
   const bool in_space = !plot.traces.empty() && !plot.traces.front().z.empty();
   body_ += fmt::format(
@@ -185,7 +185,7 @@ void Report::AddPlot(const Plot& plot) {
 
 void Report::AddFigure(const std::string& title, const std::string& caption,
                        const std::string& json) {
-  assert(!has_plots_);
+  FLEXTIP_CHECK(!has_plots_, "plots are added once");
   has_figures_ = true;
   body_ += fmt::format(
       "<figure class=\"plot\">\n{}<div class=\"drawing\"><script type=\"application/json\">{}"

@@ -1,6 +1,6 @@
 #include "workspace/belief.h"
 
-#include <cassert>
+#include "core/check.h"
 
 namespace flextip {
 namespace {
@@ -35,7 +35,7 @@ template <>
 const char* ErrorName<2>(int index) {
   constexpr const char* kNames[] = {"port z",  "port y",  "link 1", "link 2",
                                     "joint 1", "joint 2", "shaft"};
-  assert(index >= 0 && index < BeliefError<2>::kCount);
+  FLEXTIP_CHECK(index >= 0 && index < BeliefError<2>::kCount, "a component of the error");
   return kNames[index];
 }
 
@@ -43,7 +43,7 @@ template <>
 const char* ErrorName<3>(int index) {
   constexpr const char* kNames[] = {"port x", "port y",  "port z",  "link 1", "link 2",
                                     "base",   "joint 1", "joint 2", "shaft"};
-  assert(index >= 0 && index < BeliefError<3>::kCount);
+  FLEXTIP_CHECK(index >= 0 && index < BeliefError<3>::kCount, "a component of the error");
   return kNames[index];
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.h"
 #include "recording/text/text.h"
 
 namespace flextip {
@@ -150,7 +151,7 @@ CsvWriter& CsvWriter::Add(TimeNs value) {
 }
 
 CsvWriter& CsvWriter::Add(const std::string& text) {
-  assert(text.find_first_of(",\n\r") == std::string::npos);
+  FLEXTIP_CHECK(text.find_first_of(",\n\r") == std::string::npos, "no separator within a field");
   Separate();
   text_ += text;
   return *this;
@@ -162,7 +163,7 @@ CsvWriter& CsvWriter::AddEmpty(int count) {
 }
 
 void CsvWriter::EndRow() {
-  assert(fields_ == width_);
+  FLEXTIP_CHECK(fields_ == width_, "a field for each column");
   fields_ = 0;
   text_ += '\n';
 }
