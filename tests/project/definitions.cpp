@@ -190,6 +190,16 @@ class Reader {
     }
     return name;
   }
+  /// Returns `last`, or the index of the word before "<...>" where that stands at `last`.
+  static std::size_t BeforeTemplateArguments(const Tokens& head, std::size_t last) {
+    if (head[last].text != ">") return last;
+    int depth = 0;
+    for (std::size_t i = last; i > 0; --i) {
+      if (head[i].text == ">") ++depth;
+      if (head[i].text == "<" && --depth == 0) return i - 1;
+    }
+    return last;
+  }
   std::string FunctionName(const Tokens& head) const {
     std::size_t open = 0;
     while (open < head.size() && head[open].text != "(") ++open;
@@ -198,20 +208,13 @@ class Reader {
       return "";
     if (head[open - 1].text == "operator" && open + 2 < head.size()) open += 2;  // operator()()
     std::size_t first = open - 1;
-    const auto is_part = [&](const Token& token, const Token& next) {
-      return (token.text == "::") || (token.IsWord() && next.text == "::") ||
-             token.text == "operator";
-    };
-    if (Has(head, "operator")) {
-      while (head[first].text != "operator") --first;
-    } else if (head[first].text == ">") {
-      while (head[first].text != "<" && first > 0) --first;
-      if (first > 0) --first;
-    }
-    while (first > 0 && is_part(head[first - 1], head[first])) --first;
+    while (Has(head, "operator") && head[first].text != "operator") --first;
+    first = BeforeTemplateArguments(head, first);
+    while (first > 0 && (head[first].text == "::" || head[first - 1].text == "::"))
+      first = BeforeTemplateArguments(head, first - 1);
     std::string name;
     for (std::size_t i = first; i < open; ++i) name += head[i].text;
-    if (name == "main" || name.empty()) return "";
+    if (name == "main" || name == "catch" || name.empty()) return "";
     const std::size_t after = Closed(head, open);
     name += ParameterTypes(head, open);
     if (after < head.size() && head[after].text == "const") name += " const";
