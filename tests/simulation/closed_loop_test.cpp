@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 
+#include "pipeline/instrument_tracker.h"
 #include "simulation/closed_loop/scenario.h"
 
 namespace flextip::simulation {
@@ -141,19 +142,28 @@ TEST(ClosedLoop, ThroughTheLaparoscope) {
   scenario.loop.path.settle_s = 0.1;
   const Laparoscope laparoscope(scenario.loop.base.cam0->calibration, *scenario.loop.base.tags0,
                                 scenario.laparoscope);
-  int saved = 0;
+  std::vector<Image> saved;
   const LoopCamera camera{laparoscope, scenario.tracker, [&](TimeNs, const Image& image) {
                             EXPECT_EQ(image.width_px, 1280);
-                            ++saved;
+                            saved.push_back(image);
                           }};
   const LoopResult result = RunClosedLoop(scenario.loop, &camera);
-  EXPECT_EQ(saved, static_cast<int>(result.updates.size()));
-  EXPECT_EQ(result.tip_statuses.at("ok"), saved);
+  ASSERT_EQ(saved.size(), result.updates.size());
+  EXPECT_EQ(result.tip_statuses.at("ok"), static_cast<int>(saved.size()));
   EXPECT_LT(result.max_deviation_m, 1.5e-3);
   // What vision saw is not the truth.
   const auto& tips = result.recording.vision0->tips;
   EXPECT_GT((tips[0].value.p_RE - result.truth[0].value.p_RE).norm(), 1e-6);
   EXPECT_LT((tips[0].value.p_RE - result.truth[0].value.p_RE).norm(), 3e-3);
+  // The loop saw through the tracker of recordings: its own recording says the same again.
+  InstrumentTracker tracker(TrackerSetupOf(result.recording, scenario.tracker));
+  for (std::size_t i = 0; i < saved.size(); ++i) {
+    const Image* const pictures[] = {&saved[i]};
+    const TimeNs t_ns = tips[i].t_ns;
+    const TipTrack track = tracker.Follow(pictures, t_ns, ReadingsAt(result.recording, t_ns));
+    EXPECT_EQ(track.tip.status, tips[i].value.status);
+    EXPECT_LT((track.tip.p_RE - tips[i].value.p_RE).norm(), 1e-9);
+  }
 }
 
 }  // namespace
