@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "reproduction/chapter2/maps/figures.h"
+#include "workspace/map_figures.h"
 
 namespace flextip {
 namespace {
@@ -44,8 +44,8 @@ report::FigureTrace PartOutline(const WorkspaceMap<N>& map, const ToleranceQuest
       most(map.right_m.back(), map.up_m.back());
   const Eigen::Vector2d low = slice.InPlane(question.part_min).cwiseMax(least),
                         high = slice.InPlane(question.part_max).cwiseMin(most);
-  return reproduction::TraceInMm({low, {high.x(), low.y()}, high, {low.x(), high.y()}, low},
-                                 {.name = "part", .color = "#1d2733"});
+  return TraceInMm({low, {high.x(), low.y()}, high, {low.x(), high.y()}, low},
+                   {.name = "part", .color = "#1d2733"});
 }
 
 template <int N>
@@ -108,20 +108,16 @@ std::vector<report::Figure> MapFigures(const MapSetup<N>& setup, const std::stri
   constexpr double kEvery_m = 0.0125;
   const std::string in = " (" + slice + ")";
   std::vector<report::Figure> figures{
-      Titled(reproduction::MapFigure(map, reproduction::MapQuantity::kNorm), prefix + "norm",
-             "||G||" + in),
-      Titled(reproduction::MapFigure(map, reproduction::MapQuantity::kPhiHat), prefix + "bound",
+      Titled(MapFigure(map, MapQuantity::kNorm), prefix + "norm", "||G||" + in),
+      Titled(MapFigure(map, MapQuantity::kPhiHat), prefix + "bound",
              "Bound on the largest angle" + in),
-      Titled(reproduction::MapFigure(map, reproduction::MapQuantity::kPhiMax), prefix + "angle",
+      Titled(MapFigure(map, MapQuantity::kPhiMax), prefix + "angle",
              "Largest angle between desired and actual motion" + in),
-      Titled(
-          reproduction::DirectionFigure(map, reproduction::MapDirection::kVSigma, true, kEvery_m),
-          prefix + "v-sigma",
-          "Desired motions that leave the longest error, as long as ||G|| is large" + in),
-      Titled(reproduction::DirectionFigure(map, reproduction::MapDirection::kPPhi, true, kEvery_m),
-             prefix + "p-phi",
+      Titled(DirectionFigure(map, MapDirection::kVSigma, true, kEvery_m), prefix + "v-sigma",
+             "Desired motions that leave the longest error, as long as ||G|| is large" + in),
+      Titled(DirectionFigure(map, MapDirection::kPPhi, true, kEvery_m), prefix + "p-phi",
              "Desired motions with the largest angle, as long as it is large" + in)};
-  for (auto& figure : figures) reproduction::MarkPorts(figure, setup, map.slice);
+  for (auto& figure : figures) MarkPorts(figure, setup, map.slice);
   return figures;
 }
 
@@ -130,17 +126,15 @@ std::vector<report::Figure> WorstFigures(const MapSetup<N>& setup, const Toleran
                                          const std::string& slice, const std::string& prefix,
                                          const WorkspaceMap<N>& map, const WorstValues& worst) {
   std::vector<double> norm, angle_deg;
-  for (const double v : worst.norm) norm.push_back(reproduction::ToDigits(v, 4));
-  for (const double v : worst.angle_rad)
-    angle_deg.push_back(reproduction::ToDigits(kDegrees * v, 4));
+  for (const double v : worst.norm) norm.push_back(ToDigits(v, 4));
+  for (const double v : worst.angle_rad) angle_deg.push_back(ToDigits(kDegrees * v, 4));
   const std::string in = " over the bounded errors (" + slice + ")";
   std::vector<report::Figure> figures{
-      Titled(reproduction::MapFigure(map, reproduction::MapQuantity::kNorm, norm),
-             prefix + "worst-norm", "Worst ||G||" + in),
-      Titled(reproduction::MapFigure(map, reproduction::MapQuantity::kPhiMax, angle_deg),
-             prefix + "worst-angle", "Worst largest angle" + in)};
+      Titled(MapFigure(map, MapQuantity::kNorm, norm), prefix + "worst-norm", "Worst ||G||" + in),
+      Titled(MapFigure(map, MapQuantity::kPhiMax, angle_deg), prefix + "worst-angle",
+             "Worst largest angle" + in)};
   for (auto& figure : figures) {
-    reproduction::MarkPorts(figure, setup, map.slice);
+    MarkPorts(figure, setup, map.slice);
     if (task.question.part_min.allFinite())
       figure.traces.push_back(PartOutline(map, task.question));
   }
@@ -154,15 +148,13 @@ report::Figure PlanFigure(const WorkspaceMap<N>& map, const Path& direct, const 
   std::vector<Eigen::Vector2d> places = direct.points;
   places.insert(places.end(), planned.points.begin(), planned.points.end());
   report::Figure figure =
-      Titled(reproduction::MapFigure(PartAround(map, places, kMargin_m),
-                                     reproduction::MapQuantity::kPhiMax),
-             "plan", "Paths (dashed) and where the tip goes, over the largest angle");
+      Titled(MapFigure(PartAround(map, places, kMargin_m), MapQuantity::kPhiMax), "plan",
+             "Paths (dashed) and where the tip goes, over the largest angle");
   const auto add = [&](const Path& path, const Followed<N>& followed, const std::string& name,
                        const std::string& color) {
+    figure.traces.push_back(TraceInMm(path.points, {.name = name, .color = color, .dashed = true}));
     figure.traces.push_back(
-        reproduction::TraceInMm(path.points, {.name = name, .color = color, .dashed = true}));
-    figure.traces.push_back(reproduction::TraceInMm(InSlice(map.slice, followed.tips),
-                                                    {.name = name + ", the tip", .color = color}));
+        TraceInMm(InSlice(map.slice, followed.tips), {.name = name + ", the tip", .color = color}));
   };
   if (direct.status == PathStatus::kOk) add(direct, by_direct, "shortest", "#d55e00");
   if (planned.status == PathStatus::kOk) add(planned, by_planned, "planned", "#009e73");

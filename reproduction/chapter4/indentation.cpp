@@ -107,7 +107,7 @@ Results RunAll(const ReproduceOptions& options, const ChapterProgress& progress)
 double Mean(const PressTrial& trial, double PressRun::*member) {
   std::vector<double> values;
   for (const PressRun& run : trial.runs) values.push_back(run.*member);
-  return MeanAndSd(values).mean;
+  return MeanSdOf(values).mean;
 }
 
 double Max(const PressTrial& trial, double PressRun::*member) {

@@ -1,7 +1,7 @@
 // The predicted tip against the truth of simulated recordings, whose plant shares no code with the
 // model and is a little off its data sheet in everything.
-#include "core/linear_algebra.h"
 #include "pipeline/tip_predictor.h"
+#include "core/linear_algebra.h"
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,8 @@ class Tracker {
     Vector6 e;
     for (int k = 0; k < 6; ++k) e[k] = sd_[k] * normal_(random_);
     const Pose truth = Truth(hidden, i);
-    model.Seen(hidden.truth[i].t_ns, MeasurementsAt(hidden.recording, hidden.truth[i].t_ns), {ExpRotation(e.head<3>()) * truth.R, truth.p + e.tail<3>()},
+    model.Seen(hidden.truth[i].t_ns, MeasurementsAt(hidden.recording, hidden.truth[i].t_ns),
+               {ExpRotation(e.head<3>()) * truth.R, truth.p + e.tail<3>()},
                sd_.cwiseAbs2().asDiagonal());
   }
 
@@ -124,9 +125,11 @@ TEST(TipPredictor, SaysNothingWhereTheWristIsNotKnown) {
   const TimeNs first = hidden.recording.wrist0->samples.front().t_ns;
   EXPECT_FALSE(PredictAt(model, hidden.recording, first - 1));
   EXPECT_TRUE(PredictAt(model, hidden.recording, first));
-  model.Seen(first - 1, MeasurementsAt(hidden.recording, first - 1), Pose(), Matrix6::Identity());  // nothing to carry it on with
+  model.Seen(first - 1, MeasurementsAt(hidden.recording, first - 1), Pose(),
+             Matrix6::Identity());  // nothing to carry it on with
   EXPECT_FALSE(PredictAt(model, hidden.recording, first - 1));
-  EXPECT_FALSE(PredictAt(model, hidden.recording, hidden.recording.wrist0->samples.back().t_ns + 1'000'000'000));
+  EXPECT_FALSE(PredictAt(model, hidden.recording,
+                         hidden.recording.wrist0->samples.back().t_ns + 1'000'000'000));
   hidden.recording.wrist0.reset();
   EXPECT_FALSE(PredictAt(model, hidden.recording, first));
 }

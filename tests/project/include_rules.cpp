@@ -28,7 +28,7 @@ const std::map<std::string, Names>& Arrows() {
       {"simulation", {"core", "recording", "vision"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core", "recording"}},
-      {"workspace", {"core", "kinematics", "control", "recording"}},
+      {"workspace", {"core", "kinematics", "control", "recording", "report"}},
       {"reproduction",
        {"core", "kinematics", "estimation", "control", "pipeline", "simulation", "workspace",
         "report", "recording", "apps"}},
