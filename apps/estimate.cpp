@@ -12,7 +12,7 @@
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
 #include "core/error.h"
-#include "diagnosis/model/model_at.h"
+#include "diagnosis/model/extended_instrument.h"
 #include "pipeline/estimate_recording.h"
 #include "pipeline/sensor_readings.h"
 #include "recording/text/csv.h"
@@ -82,7 +82,7 @@ Estimates EstimateAll(const Recording& recording, const EstimateOptions& options
   const auto update = [&](std::size_t done, std::size_t) { progress.Update(done); };
   if (options.model.empty()) return EstimateRecording(recording, estimator, nullptr, update);
   const diagnosis::ExtendedModel found = diagnosis::ReadModel(options.model);
-  diagnosis::ModelAt model(found, recording);
+  diagnosis::ExtendedInstrument model(found, recording);
   return EstimateRecording(diagnosis::WithoutLatency(recording, found), estimator, &model, update);
 }
 

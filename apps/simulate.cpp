@@ -15,7 +15,7 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "core/error.h"
-#include "diagnosis/model/model_at.h"
+#include "diagnosis/model/extended_instrument.h"
 #include "recording/recording_writer.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
@@ -137,7 +137,7 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
     const diagnosis::ExtendedModel model = diagnosis::ReadModel(options.model);
     const Recording& base = scenario.loop.base;
     scenario.loop.model = [model, &base] {
-      return std::make_unique<diagnosis::ModelAt>(model, base);
+      return std::make_unique<diagnosis::ExtendedInstrument>(model, base);
     };
   }
   OutputFolder output(options.out, "simulate", {.force = options.force, .inputs = inputs});

@@ -20,7 +20,7 @@ struct Work {
 
   Work(const Recording& recording, const std::string& name, const DiagnoseOptions& options)
       : samples(MakeSampleSet(recording, name)),
-        layout(samples, MakeCatalogue(samples, options.without)),
+        layout(samples, MakeCatalogue(samples, options.without, options.own_effects)),
         base(samples, layout),
         extended(samples, layout) {}
 };
@@ -122,6 +122,7 @@ void DescribeRecording(const Work& work, const Selection& selection, const Recor
   for (int b = 0; b < work.layout.EffectCount(); ++b) {
     const auto& block = work.layout.Blocks()[b];
     result.catalogue.push_back(block.effect->Name());
+    result.summaries[block.effect->Name()] = block.effect->Summary();
     const Eigen::VectorXd tolerance = work.layout.Tolerances().segment(block.first, block.size);
     result.nominal.push_back(
         {block.effect->Name(), block.effect->Report(Eigen::VectorXd::Zero(block.size),

@@ -15,6 +15,7 @@ namespace flextip::diagnosis {
 
 struct DiagnoseOptions {
   std::vector<std::string> without;  ///< effects left out of the catalogue
+  EffectMakers own_effects;          ///< of the user's own, judged like those of the catalogue
   bool measure_gain = true;          ///< fits on parts of the recording, judged on the rest
 };
 
@@ -88,7 +89,8 @@ struct DiagnosisResult {
   std::vector<EffectFit> nominal;       ///< of every effect: the base's values, sd the tolerances
   int samples = 0, failed_samples = 0, fits = 0;
   bool converged = false, has_load = false;
-  std::vector<std::string> catalogue;  ///< effects that this recording could show
+  std::vector<std::string> catalogue;            ///< effects that this recording could show
+  std::map<std::string, std::string> summaries;  ///< of each of them, a line
   std::vector<std::string> warnings;
 };
 

@@ -3,8 +3,8 @@
 #include <ceres/tiny_solver.h>
 
 #include <algorithm>
-#include <cassert>
 
+#include "core/check.h"
 #include "core/linear_algebra.h"
 #include "estimation/beam_choice.h"
 #include "estimation/rod_fit.h"
@@ -88,7 +88,7 @@ void ShaftEstimator::Reset() { *this = ShaftEstimator(options_); }
 
 void ShaftEstimator::SetPort(const Eigen::Vector3d& shift_m, const Eigen::Matrix3d& covariance_m2) {
   const Llt cholesky(covariance_m2);
-  assert(cholesky.Succeeded());
+  FLEXTIP_CHECK(cholesky.Succeeded(), "a positive definite covariance");
   port_shift_m_ = shift_m;
   port_whitening_ = cholesky.SolveL(Eigen::Matrix3d::Identity());
 }

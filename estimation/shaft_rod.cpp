@@ -1,8 +1,8 @@
 #include "estimation/shaft_rod.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "core/check.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -43,7 +43,7 @@ bool IsPlain(const RodEffects& e) {
 }
 
 ShaftRodState ShaftRod::Solve(const ShaftProblem& problem, std::span<const RodStation> stations) {
-  assert(stations.size() <= kMaxShaftStations);
+  FLEXTIP_CHECK(stations.size() <= kMaxShaftStations, "the stations fit their array");
   const RodProblem& rod = problem.rod.rod;
   ShaftRodState state;
   if (!IsPlain(problem.rod.effects)) {

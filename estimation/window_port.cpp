@@ -1,10 +1,10 @@
 #include "estimation/window_port.h"
 
 #include <algorithm>
-#include <cassert>
 #include <limits>
 #include <utility>
 
+#include "core/check.h"
 #include "core/linear_algebra.h"
 
 namespace flextip {
@@ -27,7 +27,7 @@ WindowPort::WindowPort(int samples, double prior_m, bool use_positions)
       samples_(std::size_t(samples) + 1),
       parts_(std::size_t(samples) + 1),
       covariance_m2_(PriorCovariance(prior_m_)) {
-  assert(samples >= 1);
+  FLEXTIP_CHECK(samples >= 1, "a window has a sample");
 }
 
 void WindowPort::Reset() {

@@ -1,8 +1,8 @@
 #include "kinematics/rod.h"
 
-#include <cassert>
 #include <cmath>
 
+#include "core/check.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "kinematics/load_steps.h"
@@ -310,7 +310,7 @@ void RodSolver::FillState(const Evaluation& e, RodState& state) {
 }
 
 RodSection RodSolver::Section(double s_m) const {
-  assert(warm_ && s_m >= 0.0 && s_m <= problem_.length_m);
+  FLEXTIP_CHECK(warm_ && s_m >= 0.0 && s_m <= problem_.length_m, "a place on a solved rod");
   const Scaled scaled(problem_);
   const double sigma = 1.0 - s_m / problem_.length_m;
   RodFlow<9> flow;
@@ -321,8 +321,7 @@ RodSection RodSolver::Section(double s_m) const {
     const Eigen::Vector3d n_beyond = scaled.f + x_.sigma_port * scaled.q;
     ok = AdvanceWristStretch(n_beyond, x_.r, scaled.q, sigma - x_.sigma_port, flow);
   }
-  assert(ok);  // the same path was walked when the rod was solved
-  (void)ok;
+  FLEXTIP_CHECK(ok, "the path walked when the rod was solved");
   return MakeSection(flow, &tip_, s_m);
 }
 

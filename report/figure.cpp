@@ -1,10 +1,10 @@
 #include "report/figure.h"
 
-#include <cassert>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/check.h"
 #include "core/error.h"
 
 namespace flextip::report {
@@ -34,9 +34,11 @@ const char* Name(FigureTrace::Kind kind) {
 }
 
 Json TraceJson(const FigureTrace& trace) {
-  assert(trace.labels.empty() ? trace.x.size() == trace.y.size()
-                              : trace.labels.size() == trace.y.size());
-  assert(trace.y_error.empty() || trace.y_error.size() == trace.y.size());
+  FLEXTIP_CHECK((trace.labels.empty() ? trace.x.size() == trace.y.size()
+                                      : trace.labels.size() == trace.y.size()),
+                "a place or a label for each y");
+  FLEXTIP_CHECK(trace.y_error.empty() || trace.y_error.size() == trace.y.size(),
+                "an error for each y");
   Json json{{"name", trace.name}, {"kind", Name(trace.kind)}, {"y", Numbers(trace.y)}};
   if (trace.labels.empty()) {
     json["x"] = Numbers(trace.x);
@@ -56,7 +58,7 @@ Json TraceJson(const FigureTrace& trace) {
 
 Json FieldJson(const FigureField& field) {
   const std::size_t columns = field.x.size();
-  assert(field.values.size() == columns * field.y.size());
+  FLEXTIP_CHECK(field.values.size() == columns * field.y.size(), "a value for each cell");
   auto rows = Json::array();
   for (std::size_t r = 0; r < field.y.size(); ++r) {
     auto row = Json::array();
@@ -92,7 +94,8 @@ std::string Text(const Json& json) {
 
 FigureTrace Segments(const std::vector<double>& x, const std::vector<double>& y,
                      const std::vector<double>& u, const std::vector<double>& v) {
-  assert(x.size() == y.size() && x.size() == u.size() && x.size() == v.size());
+  FLEXTIP_CHECK(x.size() == y.size() && x.size() == u.size() && x.size() == v.size(),
+                "an arrow at each place");
   constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
   FigureTrace trace;
   for (std::size_t i = 0; i < x.size(); ++i) {

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "core/check.h"
 #include "core/error.h"
 #include "report/embedded.h"
 #include "report/result_files.h"
@@ -143,7 +143,7 @@ void Report::AddTable(const Table& table) {
   body_ += "<figure class=\"table\">\n" + Title(table.title) + "<table>\n<thead>" +
            Row(table.header, "th") + "</thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
-    assert(row.size() == table.header.size());
+    FLEXTIP_CHECK(row.size() == table.header.size(), "a cell for each column");
     body_ += Row(row, "td");
   }
   body_ += "</tbody></table>\n" + Caption(table.caption) + "</figure>\n";
@@ -153,7 +153,7 @@ void Report::AddDrawing(const std::string& title, const std::string& caption,
                         const std::string& json, bool in_space) {
   has_figures_ = true;
   has_space_ = has_space_ || in_space;
-  assert(!has_space_ || !has_flat_);
+  FLEXTIP_CHECK(!has_space_ || !has_flat_, "a page has one of the two plotting bundles");
   body_ += fmt::format(
       "<figure class=\"plot\">\n{}<div class=\"drawing{}\"><script type=\"application/json\">{}"
       "</script></div>\n{}</figure>\n",

@@ -3,8 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+
+#include "core/check.h"
 
 namespace flextip {
 namespace {
@@ -77,7 +78,7 @@ std::size_t WorkspaceMap<N>::Reached() const {
 
 template <int N>
 WorkspaceMap<N> ComputeMap(const MapSetup<N>& setup, const Slice<N>& slice, double spacing_m) {
-  assert(spacing_m > 0.0);
+  FLEXTIP_CHECK(spacing_m > 0.0, "a positive spacing");
   WorkspaceMap<N> map{.slice = slice, .spacing_m = spacing_m};
   const double reach = setup.truth.shaft_m;
   map.right_m = Lines(setup.truth.p_port[slice.right], reach, spacing_m);
@@ -96,7 +97,7 @@ WorkspaceMap<N> ComputeMap(const MapSetup<N>& setup, const Slice<N>& slice, doub
 template <int N>
 WorkspaceMap<N> PartAround(const WorkspaceMap<N>& map, const std::vector<Eigen::Vector2d>& places,
                            double margin_m) {
-  assert(!places.empty());
+  FLEXTIP_CHECK(!places.empty(), "a map has a place");
   Eigen::Vector2d low = places.front(), high = places.front();
   for (const auto& p : places) {
     low = low.cwiseMin(p);

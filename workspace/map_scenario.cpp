@@ -100,8 +100,8 @@ class Reader {
     scenario_.setup.truth.p_port = Vector(Section(top_, "port"), "position_m");
   }
 
-  ModelError<N> ReadModelError(const YamlMap& map) {
-    ModelError<N> error;
+  BeliefError<N> ReadModelError(const YamlMap& map) {
+    BeliefError<N> error;
     if (map.Has("port_m")) error.port_m = Vector(map, "port_m");
     if (map.Has("links_m")) {
       const auto links = map.Numbers("links_m", 2);
@@ -119,7 +119,7 @@ class Reader {
     if (!top_.Has("errors")) return;
     const YamlMap map = Section(top_, "errors");
     scenario_.setup.error = ReadModelError(map);
-    const ModelError<N>& error = scenario_.setup.error;
+    const BeliefError<N>& error = scenario_.setup.error;
     const PlanarArm& links = LinksOf(scenario_.setup.truth.arm);
     if (!(links.link1_m + error.links_m[0] > 0.0 && links.link2_m + error.links_m[1] > 0.0))
       throw map.Error("links_m", "leaves a believed link without length");

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "control/motion_error.h"
-#include "workspace/model_error.h"
+#include "workspace/belief.h"
 #include "workspace/true_shaft.h"
 
 namespace flextip {
@@ -17,7 +17,7 @@ template <int N>
 struct MapSetup {
   PortInstrument<N> truth = {};
   std::optional<TipForce<N>> force = {};
-  ModelError<N> error = {};
+  BeliefError<N> error = {};
   double gain = 1.0;  ///< k of (2.1)
 };
 

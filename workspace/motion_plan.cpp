@@ -1,9 +1,10 @@
 #include "workspace/motion_plan.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
+
+#include "core/check.h"
 
 namespace flextip {
 namespace {
@@ -116,7 +117,7 @@ Path PlanMotion(const WorkspaceMap<N>& map, const Eigen::Vector2d& start,
 template <int N>
 Followed<N> FollowPath(const MapSetup<N>& setup, const std::vector<VectorN<N>>& path,
                        const FollowOptions& options) {
-  assert(!path.empty());
+  FLEXTIP_CHECK(!path.empty(), "a path has a place");
   Followed<N> followed;
   TrueShaft<N> shaft(setup.truth, setup.force);
   const auto start = shaft.AtTip(path.front());

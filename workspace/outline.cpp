@@ -1,8 +1,9 @@
 #include "workspace/outline.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+
+#include "core/check.h"
 
 namespace flextip {
 namespace {
@@ -40,7 +41,7 @@ double Beyond(const PlanarInstrument& instrument, const Vector2d& p_wrist) {
 }  // namespace
 
 std::vector<Vector2d> WristOutline(const PlanarArm& arm, double spacing_m) {
-  assert(spacing_m > 0.0);
+  FLEXTIP_CHECK(spacing_m > 0.0, "a positive spacing");
   const Polygon joints = JointPolygon(arm.limits);
   const double reach = arm.link1_m + arm.link2_m;  // no joint moves the wrist by more per radian
   std::vector<Vector2d> outline;

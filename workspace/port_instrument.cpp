@@ -1,6 +1,6 @@
 #include "workspace/port_instrument.h"
 
-#include <cassert>
+#include "core/check.h"
 
 namespace flextip {
 
@@ -16,7 +16,7 @@ template <int N>
 MatrixN<N> PortInstrument<N>::TipByWrist(const VectorN<N>& p_wrist) const {
   const VectorN<N> to_port = p_port - p_wrist;
   const double distance = to_port.norm();
-  assert(distance > 0.0);
+  FLEXTIP_CHECK(distance > 0.0, "the wrist is off the port");
   const VectorN<N> u = to_port / distance;
   // The direction turns by -(I - u u^T) / distance with the wrist.
   const MatrixN<N> across = MatrixN<N>::Identity() - u * u.transpose();

@@ -11,7 +11,7 @@ namespace {
 
 /// A place in the unit box or ball: no more components than there are errors.
 template <int N>
-using Unit = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, ModelError<N>::kCount, 1>;
+using Unit = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, BeliefError<N>::kCount, 1>;
 
 /// The measure as a function of x in the unit box or ball, one component for each error that is
 /// bounded away from zero.
@@ -26,7 +26,7 @@ class ErrorSet {
         measure_(measure),
         nominal_(setup.error.AsVector()),
         half_(scale * bounds.half_width.AsVector()) {
-    for (int i = 0; i < ModelError<N>::kCount; ++i)
+    for (int i = 0; i < BeliefError<N>::kCount; ++i)
       if (half_[i] > 0.0) active_.push_back(i);
     const auto at_nominal = Believe(setup_.truth, setup_.error, state_.theta);
     if (at_nominal) reaches_ = at_nominal->Reaches();
@@ -34,14 +34,14 @@ class ErrorSet {
   }
 
   int Size() const { return int(active_.size()); }
-  ModelError<N> Error(const Unit<N>& x) const {
-    typename ModelError<N>::Vector v = ModelError<N>::Vector::Zero();
+  BeliefError<N> Error(const Unit<N>& x) const {
+    typename BeliefError<N>::Vector v = BeliefError<N>::Vector::Zero();
     for (int i = 0; i < Size(); ++i) v[active_[i]] = half_[active_[i]] * x[i];
-    return ModelError<N>::FromVector(v);
+    return BeliefError<N>::FromVector(v);
   }
 
   double Value(const Unit<N>& x) const {
-    const auto error = ModelError<N>::FromVector(nominal_ + Error(x).AsVector());
+    const auto error = BeliefError<N>::FromVector(nominal_ + Error(x).AsVector());
     const auto belief = Believe(setup_.truth, error, state_.theta);
     if (!belief || belief->Reaches() != reaches_ || belief->J_hat.determinant() * sign_ <= 0.0)
       return Hopeless();  // between it and the setup's own error lies a singular Jacobian
@@ -80,7 +80,7 @@ class ErrorSet {
   const TrueState<N>& state_;
   BoundShape shape_;
   Measure measure_;
-  typename ModelError<N>::Vector nominal_, half_;
+  typename BeliefError<N>::Vector nominal_, half_;
   std::vector<int> active_;
   bool reaches_ = true;
   double sign_ = 0.0;

@@ -13,14 +13,14 @@ enum class BoundShape { kBox, kEllipsoid };
 /// of its components negative).
 template <int N>
 struct ErrorBounds {
-  ModelError<N> half_width = {};
+  BeliefError<N> half_width = {};
   BoundShape shape = BoundShape::kBox;
 };
 
 template <int N>
 struct WorstError {
-  double value = 0.0;        ///< of the measure; see FindWorst for what infinite and pi mean
-  ModelError<N> error = {};  ///< of the set, added to the setup's
+  double value = 0.0;         ///< of the measure; see FindWorst for what infinite and pi mean
+  BeliefError<N> error = {};  ///< of the set, added to the setup's
 };
 
 /// The largest value of the measure at one state, over `scale` times the bounds: from all corners

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "core/check.h"
 #include "core/error.h"
 #include "core/version.h"
 
@@ -112,7 +113,7 @@ void OutputFolder::RefuseToReplace(const std::vector<fs::path>& inputs) const {
 
 void OutputFolder::WriteSummary(nlohmann::json results) const {
   if (results.is_null()) results = nlohmann::json::object();
-  assert(results.is_object());
+  FLEXTIP_CHECK(results.is_object(), "results by name");
   if (HasNoNumber(results)) throw WorkError("summary.json would hold a NaN or infinite value");
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
   results["command"] = command_;
@@ -130,7 +131,7 @@ void OutputFolder::WriteSummary(nlohmann::json results) const {
 }
 
 void OutputFolder::Commit() {
-  assert(!committed_);
+  FLEXTIP_CHECK(!committed_, "committed once");
   const auto move = [&](const fs::path& from, const fs::path& to) {
     std::error_code error;
     fs::rename(from, to, error);

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "diagnosis/model/catalogue.h"
-#include "diagnosis/replay/model_input.h"
+#include "diagnosis/replay/sample_input.h"
 #include "recording/text/csv.h"
 
 namespace flextip {
@@ -70,7 +70,7 @@ Json Nominal(const DiagnosisResult& result, bool tolerances) {
 
 Json Summaries(const DiagnosisResult& result) {
   Json json = Json::object();
-  for (const auto& name : result.catalogue) json[name] = MakeEffect(name)->Summary();
+  for (const auto& name : result.catalogue) json[name] = result.summaries.at(name);
   return json;
 }
 

@@ -102,9 +102,9 @@ void Summarise(const MapSetup<N>& setup, const std::string& slice, const Workspa
 
 /// One row for each error that is bounded, with the size that was found.
 template <int N>
-void AddErrors(const std::string& slice, const ModelError<N>& error, Findings& findings) {
+void AddErrors(const std::string& slice, const BeliefError<N>& error, Findings& findings) {
   const auto v = error.AsVector();
-  for (int i = 0; i < ModelError<N>::kCount; ++i) {
+  for (int i = 0; i < BeliefError<N>::kCount; ++i) {
     if (v[i] == 0.0) continue;
     const bool is_angle = i >= N + 2 && i < 2 * N + 2;
     findings.Add(fmt::format("{}: {} of the error that passes it first", slice, ErrorName<N>(i)),

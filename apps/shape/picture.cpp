@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/check.h"
 #include "core/error.h"
 
 namespace flextip {
@@ -153,7 +153,7 @@ void DrawPanel(const Panel& panel, const std::string& title, const RodProblem& p
 }  // namespace
 
 std::string DrawShape(const RodProblem& problem, const Shape& shape) {
-  assert(shape.IsUsable());
+  FLEXTIP_CHECK(shape.IsUsable(), "a solved shape");
   cv::Mat picture(2 * kPanelHeight_px, kWidth_px, CV_8UC3, cv::Scalar(255, 255, 255));
   std::vector<Eigen::Vector3d> seen = shape.points;
   seen.push_back(problem.p_port);

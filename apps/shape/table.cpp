@@ -1,9 +1,9 @@
 #include "apps/shape/table.h"
 
-#include <cassert>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/check.h"
 #include "recording/text/csv.h"
 
 namespace flextip {
@@ -69,7 +69,7 @@ std::vector<RodProblem> ReadShapeProblems(const std::filesystem::path& file) {
 }
 
 std::string ShapeTable(const std::vector<RodProblem>& problems, const std::vector<Shape>& shapes) {
-  assert(problems.size() == shapes.size());
+  FLEXTIP_CHECK(problems.size() == shapes.size(), "a shape for each problem");
   CsvWriter csv(AllColumns());
   for (std::size_t i = 0; i < problems.size(); ++i) {
     const auto& problem = problems[i];

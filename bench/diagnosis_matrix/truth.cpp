@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "diagnosis/effects/port_motion.h"
-
 namespace flextip::bench {
 namespace {
 
@@ -53,10 +51,8 @@ TrueParameters TrueTheta(const hidden::HiddenRecording& hidden,
       truth = TruthOf(hidden, block.effect->Name());
       label = hidden.label.parameters.at(block.effect->Name());
     }
-    if (block.effect->Name() == "port_motion") {
-      static_cast<diagnosis::PortMotion&>(layout.MutableEffect(b))
-          .SetFrequency(truth.at("frequency_hz").at(0));
-    }
+    if (truth.contains("frequency_hz"))
+      layout.MutableEffect(b).SetScanCentre(truth.at("frequency_hz").at(0));
     const auto reported = block.effect->Report(Eigen::VectorXd::Zero(block.size),
                                                Eigen::MatrixXd::Identity(block.size, block.size));
     const Values values = ReportedTruth(reported, truth);

@@ -28,7 +28,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--json", a.json, "file for the figures");
 }
 
-nlohmann::json ToJson(const TipErrors& s) {
+nlohmann::json ToJson(const TipScore& s) {
   return {{"frames", s.frames},
           {"found", s.found},
           {"rms_mm", 1e3 * s.rms_m},
@@ -36,7 +36,7 @@ nlohmann::json ToJson(const TipErrors& s) {
           {"nees", s.nees}};
 }
 
-nlohmann::json Row(const TipBounds& b, const TipErrors& tracker, const TipErrors& contour) {
+nlohmann::json Row(const TipBounds& b, const TipScore& tracker, const TipScore& contour) {
   return {{"bound_mm",
            {{"collar_known", 1e3 * b.collar_known.TipRms()},
             {"all_known", 1e3 * b.all_known.TipRms()},
@@ -50,7 +50,7 @@ nlohmann::json Row(const TipBounds& b, const TipErrors& tracker, const TipErrors
 struct Total {
   double squares = 0, bounds = 0, nees = 0;
   int scenes = 0;
-  void Add(const TipErrors& score, double bound_m) {
+  void Add(const TipScore& score, double bound_m) {
     if (score.found == 0) return;
     squares += score.rms_m * score.rms_m;
     bounds += bound_m * bound_m;
@@ -78,8 +78,8 @@ void Run(Arguments& a) {
       " | tracker RMS, bias, NEES (3), found | outline alone RMS, NEES (3), found\n");
   for (const BoundScene& scene : DrawScenes(a.poses, a.seed)) {
     const TipBounds b = BoundTip(ModelPixels(laparoscope, options, collar, tube, scene));
-    const TipErrors t = MeasureTracker(laparoscope, options, collar, tube, scene, a.frames);
-    const TipErrors c = MeasureContour(laparoscope, options, tube, scene, a.frames);
+    const TipScore t = MeasureTracker(laparoscope, options, collar, tube, scene, a.frames);
+    const TipScore c = MeasureContour(laparoscope, options, tube, scene, a.frames);
     tracker_collar.Add(t, b.collar.TipRms());
     tracker_all.Add(t, b.all.TipRms());
     rows.push_back(Row(b, t, c));

@@ -18,7 +18,7 @@ constexpr int kWarmUp = 10;
 constexpr TimeNs kPeriod_ns = 33'333'333;
 
 struct Sums {
-  TipErrors score;
+  TipScore score;
   Vector3d error = Vector3d::Zero();
   void Add(const Vector3d& e, const Eigen::Matrix3d& covariance) {
     ++score.found;
@@ -26,7 +26,7 @@ struct Sums {
     score.rms_m += e.squaredNorm();
     score.nees += MahalanobisSquared(e, covariance);
   }
-  TipErrors Done() {
+  TipScore Done() {
     if (score.found == 0) return score;
     score.rms_m = std::sqrt(score.rms_m / score.found);
     score.nees /= score.found;
@@ -52,9 +52,9 @@ class Exposures {
 
 }  // namespace
 
-TipErrors MeasureTracker(const simulation::Laparoscope& laparoscope,
-                         const simulation::LaparoscopeOptions& options, const TagCollar& collar,
-                         const TubeShape& tube, const BoundScene& scene, int frames) {
+TipScore MeasureTracker(const simulation::Laparoscope& laparoscope,
+                        const simulation::LaparoscopeOptions& options, const TagCollar& collar,
+                        const TubeShape& tube, const BoundScene& scene, int frames) {
   const Exposures exposures(laparoscope, options, tube, scene);
   TipTracker tracker(BoundCamera(), collar);
   Sums sums;
@@ -68,9 +68,9 @@ TipErrors MeasureTracker(const simulation::Laparoscope& laparoscope,
   return sums.Done();
 }
 
-TipErrors MeasureContour(const simulation::Laparoscope& laparoscope,
-                         const simulation::LaparoscopeOptions& options, const TubeShape& tube,
-                         const BoundScene& scene, int frames) {
+TipScore MeasureContour(const simulation::Laparoscope& laparoscope,
+                        const simulation::LaparoscopeOptions& options, const TubeShape& tube,
+                        const BoundScene& scene, int frames) {
   const Exposures exposures(laparoscope, options, tube, scene);
   ContourOptions contour_options;
   contour_options.blur_px = options.blur_sigma_px;

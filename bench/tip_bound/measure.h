@@ -6,7 +6,7 @@
 namespace flextip::bench {
 
 /// Over the frames in which the estimator gave a tip.
-struct TipErrors {
+struct TipScore {
   int frames = 0, found = 0;
   double rms_m = 0.0;   ///< of the tip's position against the truth
   double bias_m = 0.0;  ///< the mean error's length
@@ -15,13 +15,13 @@ struct TipErrors {
 
 /// The tracker (TipTracker::Track) on `frames` noisy pictures of the scene; a few more before them
 /// are not counted.
-TipErrors MeasureTracker(const simulation::Laparoscope& laparoscope,
-                         const simulation::LaparoscopeOptions& options, const TagCollar& collar,
-                         const TubeShape& tube, const BoundScene& scene, int frames);
+TipScore MeasureTracker(const simulation::Laparoscope& laparoscope,
+                        const simulation::LaparoscopeOptions& options, const TagCollar& collar,
+                        const TubeShape& tube, const BoundScene& scene, int frames);
 
 /// The outline alone (ShaftContour::Fit), from predictions some pixels off.
-TipErrors MeasureContour(const simulation::Laparoscope& laparoscope,
-                         const simulation::LaparoscopeOptions& options, const TubeShape& tube,
-                         const BoundScene& scene, int frames);
+TipScore MeasureContour(const simulation::Laparoscope& laparoscope,
+                        const simulation::LaparoscopeOptions& options, const TubeShape& tube,
+                        const BoundScene& scene, int frames);
 
 }  // namespace flextip::bench

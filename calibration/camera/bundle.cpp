@@ -5,7 +5,6 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "calibration/camera/normal.h"
 #include "calibration/camera/projection_derivative.h"
 #include "calibration/camera/shape_elimination.h"
+#include "core/check.h"
 #include "core/matrix_types.h"
 #include "core/rotation.h"
 
@@ -140,7 +140,8 @@ bool Minimise(const CameraSolution& s, const BundleOptions& options, Parameters&
 bool AdjustBundle(CameraSolution& solution, const BundleOptions& options) {
   CameraSolution moved = solution;
   moved.warp_estimated = options.estimate_warp;
-  assert(!options.estimate_shape || (moved.shape.sd_m > 0 && moved.noise_px > 0));
+  FLEXTIP_CHECK(!options.estimate_shape || (moved.shape.sd_m > 0 && moved.noise_px > 0),
+                "a prior for the shape that is estimated");
   Parameters at(moved);
   if (!Minimise(moved, options, at)) return false;
   at.MoveInto(moved);

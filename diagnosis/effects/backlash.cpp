@@ -21,7 +21,7 @@ class Backlash : public DirectEffect {
       all.push_back({tolerance * kWithinPlay, kTypical_m * kWithinPlay, false});
     return all;
   }
-  void Apply(const double* theta, const Moment& now, EffectMemory& memory,
+  void Apply(const double* theta, const Instant& now, EffectMemory& memory,
              InputChange& change) const override {
     // Without play yet, its directions are those of a small one (a secant).
     const double width = std::max(theta[0], kReference_m), limit = 0.5 * width;
@@ -38,15 +38,16 @@ class Backlash : public DirectEffect {
       if (wrist != free) dragged = 1.0;
       const bool as_at_start = dragged == 0.0;
       const double by_play = wrist - measured[i] - (as_at_start ? start : 0.0);
-      change.Linear(0, model_input::kWrist + i, by_play / width);
+      change.Linear(0, sample_input::kWrist + i, by_play / width);
       if (!as_at_start) continue;
-      change.Add(model_input::kWrist + i, start);
-      if (start == theta[1 + i]) change.Derivative(1 + i, model_input::kWrist + i, 1.0);
+      change.Add(sample_input::kWrist + i, start);
+      if (start == theta[1 + i]) change.Derivative(1 + i, sample_input::kWrist + i, 1.0);
     }
   }
+  double WristPlay(const Eigen::VectorXd& theta) const override { return theta[0]; }
 
  protected:
-  std::vector<Named> Names() const override { return {{"width_m"}, {"start_m", 3}}; }
+  std::vector<Named> Names() const override { return {{"width_m"}, {"start_m", 3, 0.0, true}}; }
 
  private:
   static constexpr double kTypical_m = 0.001;

@@ -16,9 +16,9 @@ class EmDistortion : public Effect {
     for (int i = 0; i < 3; ++i) all.push_back({kCentre_m * tolerance[0], kCentre_m * 0.015, false});
     return all;
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    for (int i = 0; i < 9; ++i) change.Linear(i, model_input::kEmGradient + i, 1.0);
-    for (int i = 0; i < 3; ++i) change.Linear(9 + i, model_input::kEmOffset + i, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    for (int i = 0; i < 9; ++i) change.Linear(i, sample_input::kEmGradient + i, 1.0);
+    for (int i = 0; i < 3; ++i) change.Linear(9 + i, sample_input::kEmOffset + i, 1.0);
   }
   std::vector<ReportedParameter> Report(const Eigen::VectorXd& theta,
                                         const Eigen::MatrixXd& covariance) const override {

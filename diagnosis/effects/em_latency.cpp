@@ -13,9 +13,10 @@ class EmLatency : public DirectEffect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return WithTypical(ToleranceOf(samples, Name(), "delay_s", 0.003), 0.04);
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    change.Linear(0, model_input::kEmDelay, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    change.Linear(0, sample_input::kEmDelay, 1.0);
   }
+  int DelayInput() const override { return sample_input::kEmDelay; }
 
  protected:
   std::vector<Named> Names() const override { return {{"delay_s"}}; }

@@ -18,15 +18,15 @@ class FocalLength : public Effect {
     const double tolerance = ToleranceOf(samples, Name(), "scale", 0.002)[0];
     return WithTypical({tolerance, tolerance}, 0.04);
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    change.Linear(0, model_input::kLogFocal, 1.0);
-    change.Linear(1, model_input::kFocalTurn, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    change.Linear(0, sample_input::kLogFocal, 1.0);
+    change.Linear(1, sample_input::kFocalTurn, 1.0);
   }
   std::vector<ReportedParameter> Report(const Eigen::VectorXd& theta,
                                         const Eigen::MatrixXd& covariance) const override {
     const double scale = std::exp(theta[0]);
     return {{"scale", {scale}, {scale * std::sqrt(covariance(0, 0))}},
-            {"turn", {theta[1]}, {std::sqrt(covariance(1, 1))}}};
+            {"turn", {theta[1]}, {std::sqrt(covariance(1, 1))}, true}};
   }
   Eigen::VectorXd FromReported(const std::vector<std::vector<double>>& values) const override {
     return Eigen::Vector2d(std::log(values.at(0).at(0)), values.at(1).at(0));

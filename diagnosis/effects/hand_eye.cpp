@@ -14,10 +14,10 @@ class HandEye : public DirectEffect {
     all.insert(all.end(), shift.begin(), shift.end());
     return all;
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
     for (int i = 0; i < 3; ++i) {
-      change.Linear(i, model_input::kCameraTurn + i, 1.0);
-      change.Linear(3 + i, model_input::kCameraShift + i, 1.0);
+      change.Linear(i, sample_input::kCameraTurn + i, 1.0);
+      change.Linear(3 + i, sample_input::kCameraShift + i, 1.0);
     }
   }
 

@@ -11,8 +11,8 @@ class Length : public DirectEffect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return WithTypical(ToleranceOf(samples, Name(), "delta_m", 0.0003), 0.004);
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    change.Linear(0, model_input::kLength, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    change.Linear(0, sample_input::kLength, 1.0);
   }
 
  protected:

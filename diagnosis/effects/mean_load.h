@@ -14,7 +14,7 @@ class MeanLoad : public DirectEffect {
   std::string Summary() const override { return "the slow part of the unknown tip force"; }
   bool Applies(const SampleSet& samples) const override { return !samples.has_load; }
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override;
-  void Apply(const double* theta, const Moment& now, EffectMemory& memory,
+  void Apply(const double* theta, const Instant& now, EffectMemory& memory,
              InputChange& change) const override;
 
  protected:

@@ -11,8 +11,8 @@ class PortCompliance : public DirectEffect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return Positive(WithTypical(ToleranceOf(samples, Name(), "compliance_m_N", 3e-05), 0.0008));
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    change.Linear(0, model_input::kPortCompliance, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    change.Linear(0, sample_input::kPortCompliance, 1.0);
   }
 
  protected:

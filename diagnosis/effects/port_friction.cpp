@@ -17,7 +17,7 @@ class PortFriction : public DirectEffect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return Positive(WithTypical(ToleranceOf(samples, Name(), "coefficient", 0.03), 0.3));
   }
-  void Apply(const double* theta, const Moment& now, EffectMemory& memory,
+  void Apply(const double* theta, const Instant& now, EffectMemory& memory,
              InputChange& change) const override {
     if (now.ds_port_dfriction_m == 0.0) return;  // before the first replay
     // Without friction yet, its direction is that of a moderate one.
@@ -31,8 +31,9 @@ class PortFriction : public DirectEffect {
     const double holding = (s_last_m - now.s_port_free_m) / ds_m;
     const double ratio = std::clamp(holding, -coefficient, coefficient);
     s_last_m = now.s_port_free_m + ds_m * ratio;
-    change.Linear(0, model_input::kPortFriction, ratio / coefficient);
+    change.Linear(0, sample_input::kPortFriction, ratio / coefficient);
   }
+  bool NeedsPortPlace() const override { return true; }
 
  protected:
   std::vector<Named> Names() const override { return {{"coefficient"}}; }

@@ -16,8 +16,8 @@ class PortMoment : public Effect {
     const auto tolerance = ToleranceOf(samples, Name(), "stiffness_Nm_rad", 0.005);
     return WithTypical({tolerance[0], tolerance[0], tolerance[0]}, 0.1);
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    for (int i = 0; i < 3; ++i) change.Linear(i, model_input::kPortCouple + i, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    for (int i = 0; i < 3; ++i) change.Linear(i, sample_input::kPortCouple + i, 1.0);
   }
   std::vector<ReportedParameter> Report(const Eigen::VectorXd& theta,
                                         const Eigen::MatrixXd& covariance) const override {

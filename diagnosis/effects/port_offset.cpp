@@ -11,8 +11,8 @@ class PortOffset : public DirectEffect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return WithTypical(ToleranceOf(samples, Name(), "offset_m", 0.0003, 3), 0.003);
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    for (int i = 0; i < 3; ++i) change.Linear(i, model_input::kPort + i, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    for (int i = 0; i < 3; ++i) change.Linear(i, sample_input::kPort + i, 1.0);
   }
 
  protected:

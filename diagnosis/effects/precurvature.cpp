@@ -11,8 +11,8 @@ class Precurvature : public DirectEffect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return WithTypical(ToleranceOf(samples, Name(), "curvature_1_m", 0.003, 2), 0.1);
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    for (int i = 0; i < 2; ++i) change.Linear(i, model_input::kCurvature + i, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    for (int i = 0; i < 2; ++i) change.Linear(i, sample_input::kCurvature + i, 1.0);
   }
 
  protected:

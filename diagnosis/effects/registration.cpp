@@ -18,8 +18,8 @@ std::vector<FitParameter> Registration::Parameters(const SampleSet& samples) con
   return all;
 }
 
-void Registration::Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const {
-  for (int i = 0; i < 12; ++i) change.Linear(i, model_input::kEmTurn + i, 1.0);
+void Registration::Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const {
+  for (int i = 0; i < 12; ++i) change.Linear(i, sample_input::kEmTurn + i, 1.0);
 }
 
 std::vector<DirectEffect::Named> Registration::Names() const {

@@ -12,7 +12,7 @@ class Registration : public DirectEffect {
   std::string Summary() const override { return "the sensors' frames in the robot's"; }
   bool Applies(const SampleSet& samples) const override;
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override;
-  void Apply(const double* theta, const Moment& now, EffectMemory& memory,
+  void Apply(const double* theta, const Instant& now, EffectMemory& memory,
              InputChange& change) const override;
 
  protected:

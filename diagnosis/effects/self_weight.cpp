@@ -12,9 +12,9 @@ class SelfWeight : public Effect {
     nominal_kg_m_ = samples.instrument.mass_per_length_kg_m;
     return WithTypical(ToleranceOf(samples, Name(), kParameter, 0.003), 0.05);
   }
-  void Apply(const double*, const Moment& now, EffectMemory&, InputChange& change) const override {
+  void Apply(const double*, const Instant& now, EffectMemory&, InputChange& change) const override {
     for (int i = 0; i < 3; ++i)
-      change.Linear(0, model_input::kWeight + i, now.samples.gravity_m_s2[i]);
+      change.Linear(0, sample_input::kWeight + i, now.samples.gravity_m_s2[i]);
   }
   std::vector<ReportedParameter> Report(const Eigen::VectorXd& theta,
                                         const Eigen::MatrixXd& covariance) const override {

@@ -11,8 +11,8 @@ class ShaftLoad : public DirectEffect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return WithTypical(ToleranceOf(samples, Name(), "force_per_length_N_m", 0.02, 3), 0.4);
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    for (int i = 0; i < 3; ++i) change.Linear(i, model_input::kInside + i, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    for (int i = 0; i < 3; ++i) change.Linear(i, sample_input::kInside + i, 1.0);
   }
 
  protected:

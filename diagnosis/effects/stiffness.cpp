@@ -14,8 +14,8 @@ class Stiffness : public Effect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return WithTypical(ToleranceOf(samples, Name(), "scale", 0.02), 0.2);
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    change.Linear(0, model_input::kStiffness, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    change.Linear(0, sample_input::kStiffness, 1.0);
   }
   std::vector<ReportedParameter> Report(const Eigen::VectorXd& theta,
                                         const Eigen::MatrixXd& covariance) const override {

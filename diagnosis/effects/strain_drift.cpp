@@ -13,8 +13,8 @@ class StrainDrift : public DirectEffect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return WithTypical(ToleranceOf(samples, Name(), "rate_Nm_s", 2e-05, 4), 0.0005);
   }
-  void Apply(const double*, const Moment& now, EffectMemory&, InputChange& change) const override {
-    for (int i = 0; i < 4; ++i) change.Linear(i, model_input::kStrainOffset + i, now.t_s);
+  void Apply(const double*, const Instant& now, EffectMemory&, InputChange& change) const override {
+    for (int i = 0; i < 4; ++i) change.Linear(i, sample_input::kStrainOffset + i, now.t_s);
   }
 
  protected:

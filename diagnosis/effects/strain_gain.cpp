@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "diagnosis/model/catalogue.h"
 
 namespace flextip::diagnosis {
@@ -11,8 +13,15 @@ class StrainGain : public DirectEffect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return WithTypical(ToleranceOf(samples, Name(), "gain", 0.01, 4), 0.15);
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    for (int i = 0; i < 4; ++i) change.Linear(i, model_input::kStrainGain + i, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    for (int i = 0; i < 4; ++i) change.Linear(i, sample_input::kStrainGain + i, 1.0);
+  }
+  std::string WhatIsWrong(const std::vector<std::vector<double>>& values) const override {
+    const std::string wrong = DirectEffect::WhatIsWrong(values);
+    if (!wrong.empty()) return wrong;
+    for (const double gain : values.at(0))
+      if (!(gain > 0)) return fmt::format("found a gain of {}, expected more than 0", gain);
+    return "";
   }
 
  protected:

@@ -11,8 +11,8 @@ class TagOffset : public DirectEffect {
   std::vector<FitParameter> Parameters(const SampleSet& samples) const override {
     return WithTypical(ToleranceOf(samples, Name(), "offset_m", 0.0002, 3), 0.002);
   }
-  void Apply(const double*, const Moment&, EffectMemory&, InputChange& change) const override {
-    for (int i = 0; i < 3; ++i) change.Linear(i, model_input::kTagOffset + i, 1.0);
+  void Apply(const double*, const Instant&, EffectMemory&, InputChange& change) const override {
+    for (int i = 0; i < 3; ++i) change.Linear(i, sample_input::kTagOffset + i, 1.0);
   }
 
  protected:

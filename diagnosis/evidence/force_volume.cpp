@@ -12,7 +12,7 @@ constexpr std::size_t kSamples = 100;
 
 /// The parameters that scale what the force does.
 std::vector<int> Compliances(const Replay& replay) {
-  using namespace model_input;
+  using namespace sample_input;
   std::vector<int> found;
   for (const auto& column : replay.Samples()[replay.Samples().size() / 2].columns)
     if (column.input == kTipCompliance || column.input == kPortCompliance ||

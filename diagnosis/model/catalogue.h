@@ -36,9 +36,10 @@ using Catalogue = std::vector<std::unique_ptr<Effect>>;
 
 /// The effects that `samples` could show, in the order of docs; those named in `without` are left
 /// out. Fresh objects: some hold what a diagnosis finds on its way (a frequency).
-Catalogue MakeCatalogue(const SampleSet& samples, const std::vector<std::string>& without = {});
+Catalogue MakeCatalogue(const SampleSet& samples, const std::vector<std::string>& without = {},
+                        const EffectMakers& own = {});
 
 /// One effect by its name; null where there is none of that name.
-std::unique_ptr<Effect> MakeEffect(const std::string& name);
+std::unique_ptr<Effect> MakeEffect(const std::string& name, const EffectMakers& own = {});
 
 }  // namespace flextip::diagnosis

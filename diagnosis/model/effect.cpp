@@ -1,18 +1,34 @@
 #include "diagnosis/model/effect.h"
 
-#include <cassert>
 #include <cmath>
 
+#include "core/check.h"
 #include "core/error.h"
 
 namespace flextip::diagnosis {
+
+std::string Effect::WhatIsWrong(const std::vector<std::vector<double>>& values) const {
+  const Eigen::VectorXd theta = FromReported(values);
+  const std::vector<FitParameter> fitted = Parameters(SampleSet{});
+  for (Eigen::Index j = 0; j < theta.size(); ++j) {
+    if (!std::isfinite(theta[j])) return "its values mean nothing (a scale must be positive)";
+    if (fitted[j].positive && theta[j] < 0) {
+      return fmt::format("found {}, expected a number of at least 0", theta[j]);
+    }
+  }
+  return "";
+}
+
+Eigen::Vector2d Effect::ScanShapes(double /*value*/, const Instant& /*now*/) const {
+  return Eigen::Vector2d::Zero();
+}
 
 std::vector<ReportedParameter> DirectEffect::Report(const Eigen::VectorXd& theta,
                                                     const Eigen::MatrixXd& covariance) const {
   std::vector<ReportedParameter> reported;
   int j = 0;
   for (const Named& named : Names()) {
-    ReportedParameter parameter{named.name, {}, {}};
+    ReportedParameter parameter{named.name, {}, {}, named.may_be_missing};
     for (int i = 0; i < named.size; ++i, ++j) {
       parameter.value.push_back(named.nominal + theta[j]);
       parameter.sd.push_back(std::sqrt(std::max(0.0, covariance(j, j))));
@@ -25,7 +41,7 @@ std::vector<ReportedParameter> DirectEffect::Report(const Eigen::VectorXd& theta
 Eigen::VectorXd DirectEffect::FromReported(const std::vector<std::vector<double>>& values) const {
   std::vector<double> theta;
   const auto names = Names();
-  assert(values.size() == names.size());
+  FLEXTIP_CHECK(values.size() == names.size(), "a list of values for each reported parameter");
   for (std::size_t n = 0; n < names.size(); ++n)
     for (const double value : values[n]) theta.push_back(value - names[n].nominal);
   return Eigen::Map<Eigen::VectorXd>(theta.data(), Eigen::Index(theta.size()));

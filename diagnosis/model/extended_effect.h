@@ -10,16 +10,11 @@
 
 namespace flextip::diagnosis {
 
-/// One of the catalogue, or the registration of sensors' frames; null for another name.
-std::unique_ptr<Effect> MakeEffectOfModel(const std::string& name);
+/// Returns the effect of the catalogue or of `own` by its name, or the registration of the
+/// sensors' frames; null for another name.
+std::unique_ptr<Effect> MakeEffectOfModel(const std::string& name, const EffectMakers& own = {});
 
-/// The names and sizes of its parameters, with values of no effect and without deviations.
+/// Returns the names and sizes of its parameters, with values of no effect and without deviations.
 std::vector<ReportedParameter> ParametersOf(const Effect& effect);
-
-/// Whether a file may lack it, written before it was reported: it is then of no effect.
-bool MayBeMissing(const std::string& effect, const std::string& parameter);
-
-/// Why `values` mean nothing; empty where they do.
-std::string WhatIsWrong(const Effect& effect, const std::vector<std::vector<double>>& values);
 
 }  // namespace flextip::diagnosis

@@ -62,28 +62,29 @@ std::vector<double> ReadValues(const YamlMap& map, const std::string& key, std::
 }
 
 /// One effect's mapping; standard deviations are read later.
-EffectFit ReadEffect(const YamlMap& section, const std::string& name) {
-  const auto effect = MakeEffectOfModel(name);
+EffectFit ReadEffect(const YamlMap& section, const std::string& name, const EffectMakers& own) {
+  const auto effect = MakeEffectOfModel(name, own);
   if (!effect) throw section.Error(name, fmt::format("found effect '{}', which is unknown", name));
   const YamlMap map = section.Map(name);
   EffectFit fit{name, ParametersOf(*effect)};
   std::vector<std::vector<double>> values;
   for (ReportedParameter& parameter : fit.parameters) {
-    if (map.Has(parameter.name) || !MayBeMissing(name, parameter.name)) {
+    if (map.Has(parameter.name) || !parameter.may_be_missing) {
       parameter.value = ReadValues(map, parameter.name, parameter.value.size());
     }
     values.push_back(parameter.value);
   }
   RejectUnknownKeys(map);
-  const std::string wrong = WhatIsWrong(*effect, values);
+  const std::string wrong = effect->WhatIsWrong(values);
   if (!wrong.empty()) throw section.Error(name, wrong);
   return fit;
 }
 
-std::vector<EffectFit> ReadEffects(const YamlMap& top, const std::string& key) {
+std::vector<EffectFit> ReadEffects(const YamlMap& top, const std::string& key,
+                                   const EffectMakers& own) {
   const YamlMap section = top.Map(key);
   std::vector<EffectFit> effects;
-  for (const std::string& name : section.Keys()) effects.push_back(ReadEffect(section, name));
+  for (const std::string& name : section.Keys()) effects.push_back(ReadEffect(section, name, own));
   return effects;
 }
 
@@ -92,7 +93,7 @@ void ReadDeviations(const YamlMap& section, std::vector<EffectFit>& effects) {
     if (!section.Has(fit.effect)) continue;
     const YamlMap map = section.Map(fit.effect);
     for (ReportedParameter& parameter : fit.parameters) {
-      if (!map.Has(parameter.name) && MayBeMissing(fit.effect, parameter.name)) {
+      if (!map.Has(parameter.name) && parameter.may_be_missing) {
         parameter.sd.assign(parameter.value.size(), 0.0);
         continue;
       }
@@ -111,9 +112,8 @@ void ReadDeviations(const YamlMap& section, std::vector<EffectFit>& effects) {
 bool AreRows(const std::vector<std::string>& found, const std::vector<EffectFit>& effects) {
   std::vector<EffectFit> least = effects;
   for (EffectFit& fit : least) {
-    std::erase_if(fit.parameters, [&](const ReportedParameter& parameter) {
-      return MayBeMissing(fit.effect, parameter.name);
-    });
+    std::erase_if(fit.parameters,
+                  [](const ReportedParameter& parameter) { return parameter.may_be_missing; });
   }
   const auto same = [&](const std::vector<std::string>& names) {
     return std::is_permutation(names.begin(), names.end(), found.begin(), found.end());
@@ -157,9 +157,17 @@ void CheckFormat(const YamlMap& top) {
   }
 }
 
-double Delay(const ExtendedModel& model, const char* effect) {
-  const EffectFit* fit = model.Find(effect);
-  return fit == nullptr ? 0.0 : fit->parameters.at(0).value.at(0);
+/// Returns the delay (s) of a sensor's stamps by all effects that act on its delay.
+double Delay(const ExtendedModel& model, int delay_input, const EffectMakers& own) {
+  double delay_s = 0.0;
+  for (const auto* list : {&model.effects, &model.within_tolerance}) {
+    for (const EffectFit& fit : *list) {
+      const auto effect = MakeEffectOfModel(fit.effect, own);
+      if (effect && effect->DelayInput() == delay_input)
+        delay_s += fit.parameters.at(0).value.at(0);
+    }
+  }
+  return delay_s;
 }
 
 template <class Samples>
@@ -209,14 +217,15 @@ void WriteModel(const std::filesystem::path& file, const ExtendedModel& model) {
   WriteTextFile(file, ModelYaml(model));
 }
 
-ExtendedModel ReadModel(const std::filesystem::path& file) {
+ExtendedModel ReadModel(const std::filesystem::path& file, const EffectMakers& own) {
   const YamlMap top = YamlMap::Load(file);
   CheckFormat(top);
   ExtendedModel model;
   model.centre_m = top.Vector3("centre_m");
   model.start_ns = top.Integer("start_ns");
-  model.effects = ReadEffects(top, "effects");
-  if (top.Has("within_tolerance")) model.within_tolerance = ReadEffects(top, "within_tolerance");
+  model.effects = ReadEffects(top, "effects", own);
+  if (top.Has("within_tolerance"))
+    model.within_tolerance = ReadEffects(top, "within_tolerance", own);
   for (const EffectFit& fit : model.within_tolerance) {
     if (model.Find(fit.effect) != &fit) {
       throw top.Map("within_tolerance").Error(fit.effect, "is among the effects too");
@@ -237,8 +246,9 @@ ExtendedModel ReadModel(const std::filesystem::path& file) {
   return model;
 }
 
-Recording WithoutLatency(Recording recording, const ExtendedModel& model) {
-  const double em_s = Delay(model, "em_latency"), camera_s = Delay(model, "camera_latency");
+Recording WithoutLatency(Recording recording, const ExtendedModel& model, const EffectMakers& own) {
+  const double em_s = Delay(model, sample_input::kEmDelay, own);
+  const double camera_s = Delay(model, sample_input::kCameraDelay, own);
   if (recording.em0) MoveBack(recording.em0->samples, em_s);
   if (recording.em1) MoveBack(recording.em1->samples, em_s);
   if (recording.vision0) MoveBack(recording.vision0->tips, camera_s);

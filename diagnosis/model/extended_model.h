@@ -24,21 +24,25 @@ struct ExtendedModel {
   const EffectFit* Find(const std::string& effect) const;
 };
 
+/// Returns the model that a diagnosis found.
 ExtendedModel FromResult(const DiagnosisResult& result);
 
+/// Returns the text of model.yaml.
 std::string ModelYaml(const ExtendedModel& model);
 /// Throws WorkError where the file cannot be written.
 void WriteModel(const std::filesystem::path& file, const ExtendedModel& model);
 
-/// Throws InputError with file and line for keys, effects or parameters that are unknown or
-/// missing, a wrong count, and values that have no meaning (a negative friction, a stiffness of
-/// zero). Effects come in alphabetical order.
-ExtendedModel ReadModel(const std::filesystem::path& file);
+/// Reads model.yaml with effects of the catalogue and of `own`, in alphabetical order. Throws
+/// InputError with file and line for keys, effects or parameters that are unknown or missing, a
+/// wrong count, and values that have no meaning (a negative friction, a stiffness of zero).
+ExtendedModel ReadModel(const std::filesystem::path& file, const EffectMakers& own = {});
 
-/// "port_offset.offset_m[0]" and so on: the names of the covariance's rows.
+/// Returns the names of the covariance's rows: "port_offset.offset_m[0]" and so on.
 std::vector<std::string> NumberNames(const std::vector<EffectFit>& effects);
 
-/// `recording` with the streams that are stamped late by `model` moved to when they were taken.
-Recording WithoutLatency(Recording recording, const ExtendedModel& model);
+/// Returns `recording` with the streams that `model` says are stamped late moved to when they were
+/// taken.
+Recording WithoutLatency(Recording recording, const ExtendedModel& model,
+                         const EffectMakers& own = {});
 
 }  // namespace flextip::diagnosis

@@ -16,6 +16,7 @@ ParameterLayout::ParameterLayout(const SampleSet& samples, Catalogue catalogue)
   for (int b = 0; b < int(catalogue_.size()); ++b) {
     const auto own = catalogue_[b]->Parameters(samples);
     blocks_.push_back({catalogue_[b].get(), Size(), int(own.size()), b >= effect_count_});
+    if (catalogue_[b]->Scanned(samples)) scanned_.push_back(b);
     parameters_.insert(parameters_.end(), own.begin(), own.end());
   }
   tolerances_.resize(Size());

@@ -58,7 +58,7 @@ void Replay::FitForce(std::size_t k, EffectRodSolver& solver) {
   double damping = 0.0;
   sample.force_merit = merit();
   for (int i = 0; i < kForceSteps; ++i) {
-    const Eigen::MatrixXd B = sample.compared.by_inputs(rows, Eigen::seqN(model_input::kForce, 3));
+    const Eigen::MatrixXd B = sample.compared.by_inputs(rows, Eigen::seqN(sample_input::kForce, 3));
     const Eigen::Matrix3d H = B.transpose() * noise.Solve(B) + precision;
     const Eigen::Vector3d g =
         B.transpose() * noise.Solve(residual()) - precision * (sample.f_tip_N - mean_N);
@@ -175,7 +175,7 @@ void Replay::FixNoiseModel() {
 /// Mean of the tip's force before the sensors say anything of it.
 Eigen::Vector3d Replay::MeanForce(std::size_t k) const {
   if (samples_.has_load) return samples_.samples[k].f_tip_N;
-  return replayed_[k].inputs.segment<3>(model_input::kForce);
+  return replayed_[k].inputs.segment<3>(sample_input::kForce);
 }
 
 /// Covariance of the tip's force.
@@ -190,7 +190,7 @@ Eigen::Matrix3d Replay::ForcePrior(std::size_t k) const {
 
 /// EI / L^2 of the shaft as the replay has it.
 double Replay::ForceUnit(std::size_t k) const {
-  return force_unit_N_ * std::exp(replayed_[k].inputs[model_input::kStiffness]);
+  return force_unit_N_ * std::exp(replayed_[k].inputs[sample_input::kStiffness]);
 }
 
 std::vector<Eigen::Vector3d> Replay::Forces() const {

@@ -7,9 +7,9 @@ namespace {
 
 constexpr double kAtTip_m = 1e-6;  // an EM sensor this near to the tip is at the tip
 
-EffectRodProblem MakeProblem(const SampleSet& samples, std::size_t k, const ModelInputs& u,
+EffectRodProblem MakeProblem(const SampleSet& samples, std::size_t k, const SampleInputs& u,
                              const Eigen::Vector3d& f_tip_N) {
-  using namespace model_input;
+  using namespace sample_input;
   const DiagnosisSample& sample = samples.samples[k];
   EffectRodProblem problem;
   RodProblem& rod = problem.rod;
@@ -44,8 +44,8 @@ void Fill(const Eigen::Vector3d& value, const InputDerivative& derivative, int f
 
 }  // namespace
 
-RodEffects EffectsOf(const ModelInputs& u, const Eigen::Vector3d& y_wrist) {
-  using namespace model_input;
+RodEffects EffectsOf(const SampleInputs& u, const Eigen::Vector3d& y_wrist) {
+  using namespace sample_input;
   RodEffects effects;
   effects.y_wrist = y_wrist;
   effects.curvature_1_m = u.segment<2>(kCurvature);
@@ -57,7 +57,7 @@ RodEffects EffectsOf(const ModelInputs& u, const Eigen::Vector3d& y_wrist) {
   return effects;
 }
 
-SolvedSample SolveSample(const SampleSet& samples, std::size_t k, const ModelInputs& inputs,
+SolvedSample SolveSample(const SampleSet& samples, std::size_t k, const SampleInputs& inputs,
                          const Eigen::Vector3d& f_tip_N, EffectRodSolver& solver) {
   RodStation stations[3];
   int count = 0, em = -1, strain = -1;

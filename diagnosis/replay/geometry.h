@@ -26,10 +26,10 @@ struct SolvedSample {
 };
 
 /// What `inputs` do to the rod; `y_wrist` in R.
-RodEffects EffectsOf(const ModelInputs& inputs, const Eigen::Vector3d& y_wrist);
+RodEffects EffectsOf(const SampleInputs& inputs, const Eigen::Vector3d& y_wrist);
 
 /// Solves one sample's rod: base, the rod's part of `inputs`, tip force.
-SolvedSample SolveSample(const SampleSet& samples, std::size_t k, const ModelInputs& inputs,
+SolvedSample SolveSample(const SampleSet& samples, std::size_t k, const SampleInputs& inputs,
                          const Eigen::Vector3d& f_tip_N, EffectRodSolver& solver);
 
 }  // namespace flextip::diagnosis

@@ -67,7 +67,7 @@ bool Replay::Finish() {
 double Replay::FreePortPlace(std::size_t k) const {
   const ReplayedSample& sample = replayed_[k];
   return sample.solved.s_port_m -
-         sample.solved.ds_port_dfriction_m * sample.inputs[model_input::kPortFriction];
+         sample.solved.ds_port_dfriction_m * sample.inputs[sample_input::kPortFriction];
 }
 
 /// The same by the least-squares parabola through the samples around: what makes the shaft stick or
@@ -99,9 +99,9 @@ double Replay::ApplyEffects(const Eigen::VectorXd& theta) {
     if (replayed_[k].ok) s_port_free_m[k] = SmoothPortPlace(k);
   for (std::size_t k = 0; k < replayed_.size(); ++k) {
     ReplayedSample& sample = replayed_[k];
-    Moment now{samples_, k, samples_.samples[k].t_s, s_port_free_m[k], 0.0};
+    Instant now{samples_, k, samples_.samples[k].t_s, s_port_free_m[k], 0.0};
     if (sample.ok) now.ds_port_dfriction_m = sample.solved.ds_port_dfriction_m;
-    const double friction = sample.inputs[model_input::kPortFriction];
+    const double friction = sample.inputs[sample_input::kPortFriction];
     sample.inputs.setZero();
     sample.columns.clear();
     for (std::size_t b = 0; b < layout_.Blocks().size(); ++b) {
@@ -109,7 +109,7 @@ double Replay::ApplyEffects(const Eigen::VectorXd& theta) {
       InputChange input(theta.data() + block.first, block.first, sample.inputs, sample.columns);
       block.effect->Apply(theta.data() + block.first, now, memory[b], input);
     }
-    const double by = std::abs(sample.inputs[model_input::kPortFriction] - friction);
+    const double by = std::abs(sample.inputs[sample_input::kPortFriction] - friction);
     sample.stale = by > 0.2 * kSameFriction;
     change = std::max(change, by);
   }
@@ -131,8 +131,8 @@ void Replay::SolveRods() {
 void Replay::Retime() {
   ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      replayed_[k].measured = retiming_.At(k, replayed_[k].inputs[model_input::kEmDelay],
-                                           replayed_[k].inputs[model_input::kCameraDelay]);
+      replayed_[k].measured = retiming_.At(k, replayed_[k].inputs[sample_input::kEmDelay],
+                                           replayed_[k].inputs[sample_input::kCameraDelay]);
   });
 }
 
@@ -239,7 +239,7 @@ void Replay::CompareSamples() {
         const auto moment = Around(k, [&](std::size_t j) -> Eigen::Matrix<double, 1, 1> {
           return replayed_[j].solved.at.segment<1>(place::kMoments + i);
         });
-        sample.compared.by_inputs(row::kStrain + i, model_input::kStrainGain + i) = moment[0];
+        sample.compared.by_inputs(row::kStrain + i, sample_input::kStrainGain + i) = moment[0];
       }
     }
   });

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "diagnosis/model/parameter_layout.h"
-#include "diagnosis/replay/sensor_model.h"
+#include "diagnosis/replay/sensor_prediction.h"
 #include "diagnosis/samples/retiming.h"
 
 namespace flextip::diagnosis {
@@ -20,7 +20,7 @@ struct ReplayedSample {
   bool ok = false;    ///< the rod has an equilibrium
   bool stale = true;  ///< its inputs are not those it was solved with
   SolvedSample solved;
-  ModelInputs inputs = ModelInputs::Zero();
+  SampleInputs inputs = SampleInputs::Zero();
   std::vector<InputChange::Column> columns;  ///< of the inputs, by parameter
   Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
   DiagnosisSample measured;  ///< what the sensors say of this time, latency taken off

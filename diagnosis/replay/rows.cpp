@@ -67,7 +67,7 @@ Replay::Statistics Replay::StatisticsOf(std::size_t k,
   s.by_force.resize(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {
     s.e[i] = sample.compared.residual[s.rows[i]];
-    s.by_force.row(i) = sample.compared.by_inputs.block<1, 3>(s.rows[i], model_input::kForce);
+    s.by_force.row(i) = sample.compared.by_inputs.block<1, 3>(s.rows[i], sample_input::kForce);
   }
   s.force_prior = ForcePrior(k);
   s.e += s.by_force * (sample.f_tip_N - MeanForce(k));
@@ -81,8 +81,8 @@ Replay::InputNoise Replay::InputNoiseHere(std::size_t k) const {
   const auto& by_inputs = replayed_[k].compared.by_inputs;
   InputNoise noise;
   noise.leftCols<3>() =
-      samples_.samples[k].p_RW_noise_m * by_inputs.middleCols<3>(model_input::kWrist);
-  noise.rightCols<3>() = by_inputs.middleCols<3>(model_input::kForce) * Llt(ForcePrior(k)).L();
+      samples_.samples[k].p_RW_noise_m * by_inputs.middleCols<3>(sample_input::kWrist);
+  noise.rightCols<3>() = by_inputs.middleCols<3>(sample_input::kForce) * Llt(ForcePrior(k)).L();
   return noise;
 }
 
@@ -91,8 +91,8 @@ Replay::InputNoise Replay::InputNoiseHere(std::size_t k) const {
 double Replay::ByInput(std::size_t k, int r, int input) const {
   const ReplayedSample& sample = replayed_[k];
   double value = sample.compared.by_inputs(r, input);
-  if (input == model_input::kStiffness && !samples_.has_load)
-    value += sample.compared.by_inputs.block<1, 3>(r, model_input::kForce).dot(sample.f_tip_N);
+  if (input == sample_input::kStiffness && !samples_.has_load)
+    value += sample.compared.by_inputs.block<1, 3>(r, sample_input::kForce).dot(sample.f_tip_N);
   return value;
 }
 
@@ -145,8 +145,6 @@ WhitenedRows Replay::Whiten(const std::bitset<row::kCount>& rows_used) const {
 
 void Replay::PredictForces(const Eigen::VectorXd& dtheta) {
   if (samples_.has_load) return;
-  const int stiffness = layout_.Find("stiffness");
-  const double stiffer = stiffness < 0 ? 1.0 : std::exp(dtheta[layout_.Blocks()[stiffness].first]);
   ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       ReplayedSample& sample = replayed_[k];
@@ -155,10 +153,14 @@ void Replay::PredictForces(const Eigen::VectorXd& dtheta) {
       if (s.rows.empty()) continue;
       Eigen::Vector3d step =
           MeanForce(k) + s.Force(s.e - Derivatives(k, s.rows) * dtheta) - sample.f_tip_N;
-      for (const auto& column : sample.columns)
-        if (column.input >= model_input::kForce && column.input < model_input::kForce + 3)
-          step[column.input - model_input::kForce] += column.value * dtheta[column.parameter];
-      sample.f_tip_N = (sample.f_tip_N + ShortStep(k, step)) * stiffer;
+      double log_stiffer = 0.0;
+      for (const auto& column : sample.columns) {
+        const double moved = column.value * dtheta[column.parameter];
+        if (column.input >= sample_input::kForce && column.input < sample_input::kForce + 3)
+          step[column.input - sample_input::kForce] += moved;
+        if (column.input == sample_input::kStiffness) log_stiffer += moved;
+      }
+      sample.f_tip_N = (sample.f_tip_N + ShortStep(k, step)) * std::exp(log_stiffer);
     }
   });
 }

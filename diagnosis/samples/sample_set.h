@@ -11,7 +11,7 @@
 
 #include "core/instrument.h"
 #include "core/pose.h"
-#include "diagnosis/replay/model_input.h"
+#include "diagnosis/replay/sample_input.h"
 #include "recording/recording.h"
 
 namespace flextip::diagnosis {

@@ -4,17 +4,15 @@
 #include <cmath>
 
 #include "core/linear_algebra.h"
-#include "diagnosis/effects/port_motion.h"
 #include "diagnosis/evidence/force_volume.h"
-#include "diagnosis/search/frequency_scan.h"
+#include "diagnosis/search/parameter_scan.h"
 
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kAtRest = 0.5;         // of a parameter's standard deviation
-constexpr double kHopeless = 40.0;      // in log odds, after two rounds
-constexpr double kFarthest = 6.0;       // typical sizes
-constexpr double kSameFrequency = 0.6;  // of what the recording resolves
+constexpr double kAtRest = 0.5;     // of a parameter's standard deviation
+constexpr double kHopeless = 40.0;  // in log odds, after two rounds
+constexpr double kFarthest = 6.0;   // typical sizes
 
 /// Minus twice the log of how likely parameters `theta` are, the generic terms at their best.
 double Merit(const LinearProblem& problem, const Eigen::VectorXd& theta,
@@ -41,24 +39,14 @@ Eigen::VectorXd Plausible(Eigen::VectorXd mode, const ParameterLayout& layout) {
   return mode;
 }
 
-PortMotion* PortMotionOf(ParameterLayout& layout) {
-  const int block = layout.Find("port_motion");
-  return block < 0 ? nullptr : static_cast<PortMotion*>(&layout.MutableEffect(block));
-}
-
-/// Looks for the breathing frequency anew; what was found before stays where it is confirmed.
-void FindFrequency(Replay& replay, ParameterLayout& layout) {
-  PortMotion* motion = PortMotionOf(layout);
-  if (motion == nullptr) return;
-  const auto& block = layout.Blocks()[layout.Find("port_motion")];
-  const double found_hz = BestPortFrequency(replay);
-  Eigen::VectorXd theta = replay.Theta();
-  auto own = theta.segment(block.first, block.size);
-  const double now_hz = motion->Frequency() + own[own.size() - 1];
-  if (std::abs(found_hz - now_hz) < kSameFrequency / replay.Set().Duration()) return;
-  motion->SetFrequency(found_hz);
-  own.setZero();
-  replay.Evaluate(theta);
+/// Scans the parameters that call for it in round `round`: all in the first one, after that those
+/// of effects that are not fitted anyway.
+void Scan(Replay& replay, ParameterLayout& layout, const Hypothesis& hypothesis, int round) {
+  for (const int block : layout.ScannedBlocks()) {
+    const auto& present = hypothesis.effects;
+    const bool fitted = std::find(present.begin(), present.end(), block) != present.end();
+    if (round == 0 || !fitted) ScanAgain(replay, layout, block);
+  }
 }
 
 }  // namespace
@@ -129,16 +117,11 @@ std::optional<LinearProblem> MoveToTarget(Replay& replay, const Weighing& weighi
 }
 
 Place PlaceOf(const Replay& replay) {
-  Place place{replay.Theta(), replay.Forces(), 0.0};
-  const int block = replay.Layout().Find("port_motion");
-  if (block < 0) return place;
-  const auto& motion = static_cast<const PortMotion&>(*replay.Layout().Blocks()[block].effect);
-  place.port_frequency_hz = motion.Frequency();
-  return place;
+  return {replay.Theta(), replay.Forces(), ScanCentres(replay.Layout())};
 }
 
 void GoTo(Replay& replay, ParameterLayout& layout, const Place& place) {
-  if (PortMotion* motion = PortMotionOf(layout)) motion->SetFrequency(place.port_frequency_hz);
+  SetScanCentres(layout, place.scan_centres);
   replay.SetForces(place.forces_N);
   replay.Evaluate(place.theta);
 }
@@ -147,12 +130,10 @@ HypothesisFit FitHypothesis(Replay& replay, ParameterLayout& layout, const Hypot
                             const SelectionOptions& options, const FitOptions& fit_options) {
   HypothesisFit fit;
   fit.hypothesis = hypothesis;
-  const bool breathes = std::any_of(hypothesis.effects.begin(), hypothesis.effects.end(),
-                                    [&](int block) { return block == layout.Find("port_motion"); });
   std::optional<LinearProblem> here;
   for (int round = 0; round < fit_options.rounds; ++round) {
-    const bool scan = round < fit_options.scans && (round == 0 || !breathes);
-    if (scan) FindFrequency(replay, layout);
+    const bool scan = round < fit_options.scans;
+    if (scan) Scan(replay, layout, hypothesis, round);
     if (scan || !here) here = ProblemHere(replay, fit_options.basis, options);
     const bool far = fit_options.scans > 0 && round == 0;
     const Rows may_miss =

@@ -51,7 +51,7 @@ std::optional<LinearProblem> MoveToTarget(Replay& replay, const Weighing& weighi
 struct Place {
   Eigen::VectorXd theta;
   std::vector<Eigen::Vector3d> forces_N;
-  double port_frequency_hz = 0.0;
+  std::vector<double> scan_centres;  ///< of the layout's scanned parameters
 };
 Place PlaceOf(const Replay& replay);
 void GoTo(Replay& replay, ParameterLayout& layout, const Place& place);
@@ -68,7 +68,7 @@ struct FitOptions {
   const Eigen::MatrixXd& basis;  ///< of the generic terms
   Rows may_miss = Rows::Zero();
   int rounds = 4;
-  int scans = 0;          ///< first rounds that look for a breathing frequency
+  int scans = 0;          ///< first rounds that scan parameters such as a frequency
   double worth = -1e300;  ///< log posterior below which, clearly, the fit is given up
 };
 

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kLeaders = 3;  // fitted from the base simulation
 constexpr double kClearly = 30.0;    // log odds, seen from there, that a leader is ahead by
 constexpr int kFirstRounds = 6;      // of the fit from the base simulation
-constexpr int kScans = 3;            // of them, with a look for a breathing frequency
+constexpr int kScans = 3;            // of them, with a scan of parameters such as a frequency
 constexpr int kFitRounds = 4;        // of a fit from where another hypothesis fits
 constexpr int kMostFits = 12;
 constexpr int kFreshFits = 3;          // from the base, where nothing explains the recording

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/check.h"
 #include "recording/cameras/yaml.h"
 #include "recording/streams/sensor_head.h"
 #include "recording/text/text.h"
@@ -84,7 +85,7 @@ std::string DistortionName(Distortion distortion) {
   const auto model = std::find_if(kModels.begin(), kModels.end(), [&](const ModelName& candidate) {
     return candidate.distortion == distortion;
   });
-  assert(model != kModels.end());
+  FLEXTIP_CHECK(model != kModels.end(), "a known distortion model");
   return model->name;
 }
 

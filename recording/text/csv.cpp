@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.h"
 #include "recording/text/text.h"
 
 namespace flextip {
@@ -193,7 +194,7 @@ CsvWriter& CsvWriter::Add(TimeNs value) {
 }
 
 CsvWriter& CsvWriter::Add(const std::string& text) {
-  assert(text.find_first_of("\n\r") == std::string::npos);
+  FLEXTIP_CHECK(text.find_first_of("\n\r") == std::string::npos, "no line break within a field");
   Separate();
   if (text.find_first_of(",\"") == std::string::npos && Trim(text).size() == text.size()) {
     text_ += text;
@@ -214,7 +215,7 @@ CsvWriter& CsvWriter::AddEmpty(int count) {
 }
 
 void CsvWriter::EndRow() {
-  assert(fields_ == width_);
+  FLEXTIP_CHECK(fields_ == width_, "a field for each column");
   fields_ = 0;
   text_ += '\n';
 }

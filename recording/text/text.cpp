@@ -7,6 +7,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "core/check.h"
 #include "core/error.h"
 
 namespace flextip {
@@ -26,7 +27,7 @@ std::optional<T> ParseWhole(std::string_view text) {
 std::string NumberText(double value) {
   std::array<char, 32> buffer{};
   const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  assert(error == std::errc());
+  FLEXTIP_CHECK(error == std::errc(), "a number fits the buffer");
   return std::string(buffer.data(), end);
 }
 

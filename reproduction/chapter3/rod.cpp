@@ -1,8 +1,8 @@
 #include "reproduction/chapter3/rod.h"
 
-#include <cassert>
 #include <cmath>
 
+#include "core/check.h"
 #include "kinematics/rod.h"
 
 namespace flextip::reproduction {
@@ -20,7 +20,7 @@ PlaneRodState PlaneRodAt(const BentShaft& shaft, double distance_m) {
     rod = solver.Solve(problem);
     if (change < 1e-12) break;
   }
-  assert(rod.IsUsable());
+  FLEXTIP_CHECK(rod.IsUsable(), "a solved rod");
   PlaneRodState state;
   state.depth_m = (rod.tip.p - problem.p_port).norm();
   state.readings << 0.0, 0.0, rod.tip.p.x(), rod.tip.p.y(),

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/students_t.hpp>
-#include <cassert>
 #include <cmath>
 #include <memory>
 
+#include "core/check.h"
 #include "core/error.h"
 
 namespace flextip::reproduction {
@@ -61,7 +61,7 @@ double SweptArea(const std::vector<Eigen::Vector3d>& tips, double wall_x_m) {
 }
 
 double OutlineArea(const std::vector<Eigen::Vector3d>& tips, double wall_x_m, int along) {
-  assert(along == 1 || along == 2);
+  FLEXTIP_CHECK(along == 1 || along == 2, "an axis across the wall's normal");
   constexpr double kUnit = 1e-3;  // the library's tolerances suit numbers of the order of one
   constexpr double kNarrowest = 1e-7;
   const Geos geos;
@@ -96,7 +96,7 @@ Incursion MeasureIncursion(const std::vector<Eigen::Vector3d>& tips, double wall
 }
 
 double StudentP(const MeanSd& a, const MeanSd& b) {
-  assert(a.count > 1 && b.count > 1);
+  FLEXTIP_CHECK(a.count > 1 && b.count > 1, "two numbers in each sample");
   const double freedom = a.count + b.count - 2;
   const double pooled = ((a.count - 1) * a.sd * a.sd + (b.count - 1) * b.sd * b.sd) / freedom;
   const double error = std::sqrt(pooled * (1.0 / a.count + 1.0 / b.count));

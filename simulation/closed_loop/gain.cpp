@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
-#include "diagnosis/model/model_at.h"
+#include "diagnosis/model/extended_instrument.h"
 #include "simulation/closed_loop/closed_loop.h"
 #include "simulation/effects/catalogue.h"
 
@@ -201,7 +201,10 @@ ClosedLoopGain MeasureClosedLoopGain(const Recording& recording,
     const bool knows = i % 2 == 1;
     LoopSetup setup = common;
     setup.controller.kind = controller.kind;
-    if (knows) setup.model = [&] { return std::make_unique<diagnosis::ModelAt>(now, common.base); };
+    if (knows)
+      setup.model = [&] {
+        return std::make_unique<diagnosis::ExtendedInstrument>(now, common.base);
+      };
     try {
       (knows ? controller.extended : controller.base) = Run(setup);
     } catch (const std::runtime_error&) {  // no equilibrium at the start or on the way

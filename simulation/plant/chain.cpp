@@ -1,8 +1,9 @@
 #include "simulation/plant/chain.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+
+#include "core/check.h"
 
 namespace flextip::simulation {
 namespace {
@@ -21,7 +22,8 @@ ChainNewton::ChainNewton(const ChainProblem& problem)
       loads_(pointed_ ? links_.size() : 0),
       gradient_(links_.size()),
       mixed_(links_.size()) {
-  assert(problem.n1 >= 4 && problem.n2 >= 4 && problem.load);
+  FLEXTIP_CHECK(problem.n1 >= 4 && problem.n2 >= 4 && problem.load,
+                "four links on either side, and a load");
 }
 
 ChainNewton::Result ChainNewton::Solve(ChainState& state) {

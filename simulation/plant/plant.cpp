@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
+#include "core/check.h"
 #include "core/rotation.h"
 #include "simulation/plant/chain.h"
 #include "simulation/plant/friction.h"
@@ -72,7 +72,8 @@ struct Plant::Call {
 
 Plant::Plant(const PlantSetup& setup, const PlantOptions& options)
     : setup_(setup), options_(options) {
-  assert(options.links_before_port >= 4 && options.links_behind_port >= 4);
+  FLEXTIP_CHECK(options.links_before_port >= 4 && options.links_behind_port >= 4,
+                "four links on either side");
 }
 
 /// Applies the load in steps, from none to all of it, halving a step that fails.

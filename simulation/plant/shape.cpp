@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 
+#include "core/check.h"
 #include "core/rotation.h"
 
 namespace flextip::simulation {
@@ -38,7 +38,7 @@ const char* Name(PlantStatus status) {
 }
 
 PlantShape::Part PlantShape::PartAt(double s_m) const {
-  assert(IsUsable() && s_m >= -1e-9 && s_m <= length_m + 1e-9);
+  FLEXTIP_CHECK(IsUsable() && s_m >= -1e-9 && s_m <= length_m + 1e-9, "a place on a solved shaft");
   return parts_[s_m < s_port_m ? 0 : 1];
 }
 

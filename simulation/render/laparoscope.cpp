@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <cassert>
 #include <cmath>
 
+#include "core/check.h"
 #include "core/error.h"
 #include "simulation/render/film.h"
 #include "simulation/render/lens.h"
@@ -161,7 +161,8 @@ Laparoscope::Laparoscope(Laparoscope&&) noexcept = default;
 Laparoscope& Laparoscope::operator=(Laparoscope&&) noexcept = default;
 
 LinearImage Laparoscope::Impl::Draw(const ShaftCurve& curve, int frame_number) const {
-  assert(curve.points.size() >= 2 && curve.diameter_m > 0);
+  FLEXTIP_CHECK(curve.points.size() >= 2 && curve.diameter_m > 0,
+                "a curve has two points and a diameter");
   render::Scene scene(camera, frame_number);
   scene.AddInstrument(curve, collar, options.hazards);
   for (std::size_t i = 0; i < other_collars.size(); ++i) {
@@ -190,7 +191,7 @@ Image Laparoscope::Render(const ShaftCurve& curve, int frame_number) const {
 }
 
 Image Laparoscope::Render(std::span<const ShaftCurve> during_exposure, int frame_number) const {
-  assert(!during_exposure.empty());
+  FLEXTIP_CHECK(!during_exposure.empty(), "an exposure has an instant");
   LinearImage light = impl_->Draw(during_exposure.front(), frame_number);
   for (const ShaftCurve& curve : during_exposure.subspan(1)) {
     const LinearImage more = impl_->Draw(curve, frame_number);

@@ -1,7 +1,8 @@
 #include "simulation/render/lens.h"
 
-#include <cassert>
 #include <opencv2/imgproc.hpp>
+
+#include "core/check.h"
 
 namespace flextip::simulation::render {
 
@@ -23,7 +24,7 @@ void Blur(LinearImage& light, double sigma_px) {
 }
 
 LinearImage MeansOver(const LinearImage& fine, int parts) {
-  assert(fine.width_px % parts == 0 && fine.height_px % parts == 0);
+  FLEXTIP_CHECK(fine.width_px % parts == 0 && fine.height_px % parts == 0, "whole pixels");
   LinearImage means{fine.width_px / parts, fine.height_px / parts, fine.channels, {}};
   means.data.resize(fine.data.size() / (static_cast<std::size_t>(parts) * parts));
   const cv::Mat from(fine.height_px, fine.width_px, CV_32FC(fine.channels),

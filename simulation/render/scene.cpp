@@ -1,9 +1,9 @@
 #include "simulation/render/scene.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
+#include "core/check.h"
 #include "core/rotation.h"
 
 namespace flextip::simulation::render {
@@ -50,7 +50,7 @@ Scene::Scene(const CameraModel& camera, int frame_number)
 
 void Scene::Finish() {
   materials_.insert(materials_.end(), face_materials_.begin(), face_materials_.end());
-  assert(materials_.size() <= kMaxObjects + 1);
+  FLEXTIP_CHECK(materials_.size() <= kMaxObjects + 1, "the objects fit their index");
   spans_.assign(tubes_.size(), std::vector<Span>(tiles_.size()));
   for (std::size_t i = 0; i < tubes_.size(); ++i) MarkTube(i);
   for (std::size_t i = 0; i < faces_.size(); ++i) MarkFace(i);

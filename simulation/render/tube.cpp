@@ -1,8 +1,9 @@
 #include "simulation/render/tube.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+
+#include "core/check.h"
 
 namespace flextip::simulation::render {
 namespace {
@@ -46,7 +47,7 @@ void Hermite(const Vector3d& p0, const Vector3d& p1, const Vector3d& m0, const V
 Tube::Tube(const std::vector<Vector3d>& points, const Vector3d& last_tangent, double radius_m,
            Ends ends)
     : radius_m_(radius_m), ends_(ends) {
-  assert(points.size() >= 2 && radius_m > 0);
+  FLEXTIP_CHECK(points.size() >= 2 && radius_m > 0, "a tube has two points and a radius");
   std::vector<double> s(points.size(), 0.0);
   for (std::size_t i = 1; i < points.size(); ++i) {
     s[i] = s[i - 1] + (points[i] - points[i - 1]).norm();

@@ -1,8 +1,8 @@
 #include "simulation/sensors/pose_history.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "core/check.h"
 #include "core/rotation.h"
 
 namespace flextip::simulation {
@@ -14,13 +14,13 @@ constexpr TimeNs kKept_ns = 1'000'000'000;
 
 void PoseHistory::Add(TimeNs t_ns, const Pose& pose) {
   if (!entries_.empty() && entries_.back().t_ns == t_ns) entries_.pop_back();
-  assert(entries_.empty() || entries_.back().t_ns < t_ns);
+  FLEXTIP_CHECK(entries_.empty() || entries_.back().t_ns < t_ns, "strictly increasing time");
   entries_.push_back({t_ns, pose});
   while (entries_.front().t_ns < t_ns - kKept_ns) entries_.pop_front();
 }
 
 Pose PoseHistory::At(TimeNs t_ns) const {
-  assert(!entries_.empty());
+  FLEXTIP_CHECK(!entries_.empty(), "the history has a pose");
   if (t_ns <= entries_.front().t_ns) return entries_.front().value;
   if (t_ns >= entries_.back().t_ns) return entries_.back().value;
   const auto after =

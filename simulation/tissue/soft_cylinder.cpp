@@ -1,9 +1,10 @@
 #include "simulation/tissue/soft_cylinder.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numbers>
+
+#include "core/check.h"
 
 namespace flextip::simulation {
 namespace {
@@ -61,7 +62,8 @@ SoftCylinderSetup SiliconeOf(const Silicone& material, double rod_diameter_m, do
 }
 
 SoftCylinder::SoftCylinder(const SoftCylinderSetup& setup) : setup_(setup) {
-  assert(setup.radius_m > 0.0 && setup.onset_m > 0.0 && setup.rod_diameter_m > 0.0);
+  FLEXTIP_CHECK(setup.radius_m > 0.0 && setup.onset_m > 0.0 && setup.rod_diameter_m > 0.0,
+                "positive lengths");
   const Eigen::Vector3d& n = setup_.normal;
   across_.col(0) = n.cross(std::abs(n.z()) < 0.9 ? Eigen::Vector3d(Eigen::Vector3d::UnitZ())
                                                  : Eigen::Vector3d(Eigen::Vector3d::UnitX()))

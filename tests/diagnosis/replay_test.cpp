@@ -80,7 +80,7 @@ class ReplayDerivatives : public testing::TestWithParam<bool> {
     // A force stays as far from its mean as it was.
     for (std::size_t k = 0; k < forces_N.size(); ++k)
       for (const auto& column : replay_.Samples()[k].columns)
-        if (const int axis = column.input - model_input::kForce; axis >= 0 && axis < 3)
+        if (const int axis = column.input - sample_input::kForce; axis >= 0 && axis < 3)
           forces_N[k][axis] += column.value * (theta - theta_)[column.parameter];
     replay_.SetForces(forces_N);
     for (int i = 0; i < passes; ++i) EXPECT_TRUE(replay_.EvaluateWithForces(theta));
@@ -244,7 +244,7 @@ TEST_P(ReplayDerivatives, PlayHoldsTheWristWhereverItIsSaidToStart) {
   theta_[j + 1] = 5.0 * theta_[j];
   Evaluate();
   for (const ReplayedSample& sample : replay_.Samples())
-    EXPECT_LE(std::abs(sample.inputs[model_input::kWrist]), 0.5 * theta_[j] + 1e-12);
+    EXPECT_LE(std::abs(sample.inputs[sample_input::kWrist]), 0.5 * theta_[j] + 1e-12);
 }
 
 TEST_P(ReplayDerivatives, OfFrictionWhileTheShaftSlides) {
@@ -255,14 +255,14 @@ TEST_P(ReplayDerivatives, OfFrictionWhileTheShaftSlides) {
   const int j = Index("port_friction");
   std::vector<bool> slides;
   for (const ReplayedSample& sample : replay_.Samples())
-    slides.push_back(std::abs(sample.inputs[model_input::kPortFriction]) == theta_[j]);
+    slides.push_back(std::abs(sample.inputs[sample_input::kPortFriction]) == theta_[j]);
   const Eigen::MatrixXd X = Derivatives(replay_);
   // Those that stick at one of the points of the differences show it in their input.
   const double h = 0.02 * layout_.Parameter(j).typical;
   for (const double step : {-h, -0.5 * h, 0.5 * h, h}) {
     At(theta_ + step * Eigen::VectorXd::Unit(layout_.Size(), j));
     for (std::size_t k = 0; k < slides.size(); ++k) {
-      const double ratio = replay_.Samples()[k].inputs[model_input::kPortFriction];
+      const double ratio = replay_.Samples()[k].inputs[sample_input::kPortFriction];
       slides[k] = slides[k] && std::abs(std::abs(ratio) - theta_[j] - step) < 1e-12;
     }
   }

@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-#include "diagnosis/model/model_at.h"
+#include "diagnosis/model/extended_instrument.h"
 #include "simulation/closed_loop/scenario.h"
 #include "tests/extended_model/model_of_label.h"
 
@@ -69,7 +69,9 @@ TEST(ClosedLoopGain, StartsWithoutNoiseAndUnderALargeLoad) {
     setup.controller.kind = kind;
     setup.model = {};
     const double without = simulation::RunClosedLoop(setup, nullptr).rms_deviation_m;
-    setup.model = [&] { return std::make_unique<diagnosis::ModelAt>(model, setup.base); };
+    setup.model = [&] {
+      return std::make_unique<diagnosis::ExtendedInstrument>(model, setup.base);
+    };
     const double with = simulation::RunClosedLoop(setup, nullptr).rms_deviation_m;
     EXPECT_LT(with, 0.2 * without) << Name(kind);
     // Where the tip is calculated, the first estimates are not at the bottom yet: 0.13 mm.

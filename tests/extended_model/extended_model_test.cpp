@@ -12,7 +12,7 @@
 #include "core/rotation.h"
 #include "diagnosis/model/catalogue.h"
 #include "diagnosis/model/extended_effect.h"
-#include "diagnosis/model/model_at.h"
+#include "diagnosis/model/extended_instrument.h"
 #include "estimation/shaft_rod.h"
 #include "testdata/hidden/draw.h"
 
@@ -190,7 +190,7 @@ TEST_F(ModelFile, BadFilesAreRefusedInOneLine) {
   EXPECT_THROW(diagnosis::ReadModel("/no/such/model.yaml"), InputError);
 }
 
-TEST(ModelAt, LatenciesMoveTheirStreamsOnly) {
+TEST(ExtendedInstrument, LatenciesMoveTheirStreamsOnly) {
   Recording recording;
   recording.wrist0.emplace().samples = {{100, {}}};
   recording.em0.emplace().samples = {{1'000'000'000, {}}};
@@ -204,11 +204,11 @@ TEST(ModelAt, LatenciesMoveTheirStreamsOnly) {
   EXPECT_EQ(moved.vision0->tips[0].t_ns, 980'000'000);
 }
 
-TEST(ModelAt, AnEmptyModelChangesNothing) {
+TEST(ExtendedInstrument, AnEmptyModelChangesNothing) {
   Recording base;
   base.instrument = {0.5, 0.003, 0.3, 0.0};
   base.p_RP = {0.25, 0.0, 0.0};
-  diagnosis::ModelAt model(diagnosis::ExtendedModel{}, base);
+  diagnosis::ExtendedInstrument model(diagnosis::ExtendedModel{}, base);
   Measurements z;
   z.em = EmMeasurement{{ExpRotation({0.1, 0.2, 0.3}), {0.4, 0.01, 0.02}}, 0.02, 1e-4, 1e-3};
   z.tip = TipObservation{TipStatus::kOk,

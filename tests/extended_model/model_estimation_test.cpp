@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "diagnosis/model/model_at.h"
+#include "diagnosis/model/extended_instrument.h"
 #include "pipeline/estimate_recording.h"
 #include "tests/extended_model/model_of_label.h"
 
@@ -49,7 +49,7 @@ Errors Compare(const hidden::HiddenRecording& hidden, bool use_positions) {
   options.use_positions = use_positions;
   options.estimate_tissue = false;
   const diagnosis::ExtendedModel found = ModelOfLabel(hidden);
-  diagnosis::ModelAt model(found, recording);
+  diagnosis::ExtendedInstrument model(found, recording);
   InstrumentEstimator without(options), with(options);
   const Recording timed = diagnosis::WithoutLatency(recording, found);
   return {TipError(EstimateRecording(recording, without), hidden.truth),

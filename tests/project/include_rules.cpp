@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -13,9 +11,20 @@ namespace flextip {
 namespace {
 
 using Names = std::set<std::string>;
+const std::string kClosedLoop = "simulation/closed_loop";
 
-/// Folder -> the folders whose headers it may include. A folder may always include its own.
+Names With(Names names, const Names& more) {
+  names.insert(more.begin(), more.end());
+  return names;
+}
+
+/// Returns folder -> the folders whose headers it may include. A folder may always include its own.
+/// The closed loop is a folder of its own: it joins the plant with the controllers.
 const std::map<std::string, Names>& Arrows() {
+  static const Names models{"core", "kinematics", "estimation", "control", "vision", "recording"};
+  static const Names libraries{"core",      "kinematics", "estimation",  "control",    "vision",
+                               "recording", "pipeline",   "calibration", "simulation", kClosedLoop,
+                               "diagnosis", "report",     "workspace"};
   static const std::map<std::string, Names> arrows{
       {"core", {}},
       {"kinematics", {"core"}},
@@ -23,47 +32,43 @@ const std::map<std::string, Names>& Arrows() {
       {"control", {"core", "kinematics", "estimation"}},
       {"vision", {"core"}},
       {"recording", {"core"}},
+      {"pipeline", models},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
-      {"pipeline", {"core", "kinematics", "estimation", "control", "vision", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
+      {kClosedLoop, With(models, {"pipeline", "diagnosis", "simulation"})},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording", "report"}},
-      {"reproduction",
-       {"core", "kinematics", "estimation", "control", "pipeline", "simulation", "workspace",
-        "report", "recording", "apps"}},
+      {"reproduction", With(libraries, {"apps"})},  // a program: shares apps/common
+      {"apps", libraries},
+      {"examples", libraries},
       {"testdata", {"core", "recording", "simulation", "bench"}},
-      {"apps",
-       {"core", "kinematics", "estimation", "control", "vision", "recording", "calibration",
-        "pipeline", "simulation", "diagnosis", "report", "workspace"}},
-      {"bench",
-       {"core", "kinematics", "estimation", "control", "vision", "recording", "calibration",
-        "pipeline", "simulation", "diagnosis", "report", "workspace", "testdata"}},
+      {"bench", With(libraries, {"testdata"})},
+      {"tests", With(libraries, {"testdata", "bench", "apps", "reproduction"})},
   };
   return arrows;
 }
 
-/// The files of the target closed_loop join the plant with the controllers, and no others do.
-const Names kClosedLoop{"core",       "recording", "vision",   "control",
-                        "estimation", "pipeline",  "diagnosis"};
-
 /// Foreign header's beginning -> the folders whose .cpp files may include it.
 const std::map<std::string, Names>& ForeignHeaders() {
   static const std::map<std::string, Names> foreign{
-      {"opencv2/", {"vision", "recording", "calibration", "simulation", "apps", "bench"}},
-      {"apriltag", {"vision", "simulation"}},  // the renderer draws the library's patterns
-      {"ceres/", {"estimation", "vision", "calibration", "diagnosis"}},
-      {"yaml-cpp/", {"recording", "simulation", "diagnosis", "apps"}},
-      {"tbb/", {"vision", "simulation", "diagnosis", "workspace", "reproduction", "apps", "bench"}},
+      {"opencv2/", {"vision", "recording", "calibration", "simulation", "apps", "bench", "tests"}},
+      // The renderer draws the library's patterns.
+      {"apriltag", {"vision", "simulation", "tests"}},
+      {"ceres/", {"estimation", "calibration", "tests"}},
+      {"yaml-cpp/", {"recording"}},
+      {"tbb/",
+       {"simulation", kClosedLoop, "diagnosis", "workspace", "reproduction", "apps", "bench",
+        "tests"}},
       {"geos", {"reproduction"}},
       {"boost/", {"workspace", "reproduction"}},
-      {"nlohmann/", {"report", "reproduction", "apps", "testdata", "bench"}},
-      {"CLI/", {"apps", "reproduction", "bench"}},
+      {"nlohmann/", {"report", "reproduction", "apps", "bench", "testdata", "tests"}},
+      {"CLI/", {"reproduction", "apps", "bench", "testdata"}},
   };
   return foreign;
 }
-/// Headers of these folders are the program's own, not part of the libraries.
-const Names kPrograms{"apps", "bench"};
+/// Headers of these folders are a program's own, not a library's.
+const Names kPrograms{"apps", "bench", "tests", "testdata", "reproduction"};
 
 struct Include {
   std::size_t line = 0;
@@ -82,13 +87,12 @@ std::vector<Include> IncludesOf(const std::string& text) {
   return includes;
 }
 
-std::string FolderOf(const std::string& path) { return path.substr(0, path.find('/')); }
-
-bool ClosesTheLoop(const std::string& path) {
-  return path.starts_with("simulation/closed_loop") || path.starts_with("simulation/scenario");
+std::string FolderOf(const std::string& path) {
+  if (path.starts_with(kClosedLoop + "/")) return kClosedLoop;
+  return path.substr(0, path.find('/'));
 }
 
-/// All project headers that `path` includes, directly or through others.
+/// Returns all project headers that `path` includes, directly or through others.
 Names Reachable(const SourceTree& tree, const std::string& path) {
   Names seen;
   std::vector<std::string> open{path};
@@ -107,8 +111,7 @@ Names Reachable(const SourceTree& tree, const std::string& path) {
 std::string ArrowComplaint(const std::string& path, const std::string& header) {
   const std::string folder = FolderOf(path), other = FolderOf(header);
   if (!Arrows().contains(other) || other == folder) return "";
-  const Names& allowed = ClosesTheLoop(path) ? kClosedLoop : Arrows().at(folder);
-  return allowed.contains(other) ? "" : fmt::format("which {} may not use", folder);
+  return Arrows().at(folder).contains(other) ? "" : fmt::format("which {} may not use", folder);
 }
 
 std::string ForeignComplaint(const std::string& path, const std::string& header) {
@@ -123,8 +126,7 @@ std::string ForeignComplaint(const std::string& path, const std::string& header)
 
 /// The plant shares no solver with what is tested against it, not even through a third header.
 std::string PlantComplaint(const SourceTree& tree, const std::string& path) {
-  const bool plant = FolderOf(path) == "simulation" || FolderOf(path) == "testdata";
-  if (!plant || ClosesTheLoop(path)) return "";
+  if (FolderOf(path) != "simulation" && FolderOf(path) != "testdata") return "";
   for (const auto& header : Reachable(tree, path)) {
     if (FolderOf(header) == "kinematics") {
       return fmt::format("{}: reaches {}, but the plant has no part of the models", path, header);
@@ -135,24 +137,13 @@ std::string PlantComplaint(const SourceTree& tree, const std::string& path) {
 
 }  // namespace
 
-SourceTree ReadSourceTree(const std::filesystem::path& root) {
-  SourceTree tree;
-  for (const auto& [folder, unused] : Arrows()) {
-    if (!std::filesystem::is_directory(root / folder)) continue;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
-      const auto extension = entry.path().extension();
-      if (extension != ".h" && extension != ".cpp") continue;
-      std::ifstream file(entry.path());
-      tree[entry.path().lexically_relative(root).generic_string()] = {
-          std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    }
-  }
-  return tree;
-}
-
 std::vector<std::string> IncludeViolations(const SourceTree& tree) {
   std::vector<std::string> violations;
   for (const auto& [path, text] : tree) {
+    if (!Arrows().contains(FolderOf(path))) {
+      violations.push_back(fmt::format("{}: is in a folder without rules", path));
+      continue;
+    }
     for (const auto& include : IncludesOf(text)) {
       for (const auto& why :
            {ArrowComplaint(path, include.what), ForeignComplaint(path, include.what)}) {

@@ -33,13 +33,13 @@ TEST(IncludeRules, KeepTheModelsOutOfThePlant) {
                                  {"kinematics/rod.h", ""}}),
               SizeIs(2));  // against an arrow, and a model within reach
   EXPECT_THAT(
-      IncludeViolations({{"simulation/closed_loop.cpp", "#include \"kinematics/rod.h\"\n"}}),
+      IncludeViolations({{"simulation/closed_loop/loop.cpp", "#include \"kinematics/rod.h\"\n"}}),
       SizeIs(1));
 }
 
 TEST(IncludeRules, KeepTheModelsOutOfThePlantThroughOtherHeaders) {
-  const SourceTree tree{{"simulation/plant.cpp", "#include \"simulation/closed_loop.h\"\n"},
-                        {"simulation/closed_loop.h", "#include \"control/controller.h\"\n"},
+  const SourceTree tree{{"simulation/plant.cpp", "#include \"simulation/closed_loop/loop.h\"\n"},
+                        {"simulation/closed_loop/loop.h", "#include \"control/controller.h\"\n"},
                         {"control/controller.h", "#include \"kinematics/rod.h\"\n"},
                         {"kinematics/rod.h", ""}};
   EXPECT_THAT(IncludeViolations(tree),
@@ -48,7 +48,7 @@ TEST(IncludeRules, KeepTheModelsOutOfThePlantThroughOtherHeaders) {
 
 TEST(IncludeRules, LetOnlyTheLoopUseTheControllers) {
   EXPECT_THAT(
-      IncludeViolations({{"simulation/closed_loop.h", "#include \"control/controller.h\"\n"}}),
+      IncludeViolations({{"simulation/closed_loop/loop.h", "#include \"control/controller.h\"\n"}}),
       IsEmpty());
   EXPECT_THAT(IncludeViolations({{"simulation/sensors.h", "#include \"control/controller.h\"\n"}}),
               SizeIs(1));
@@ -60,6 +60,23 @@ TEST(IncludeRules, KeepForeignTypesOutOfHeaders) {
   EXPECT_THAT(IncludeViolations({{"control/a.cpp", "#  include <ceres/ceres.h>\n"}}), SizeIs(1));
   EXPECT_THAT(IncludeViolations({{"recording/a.cpp", "#include <apriltag/apriltag.h>\n"}}),
               SizeIs(1));
+}
+
+TEST(IncludeRules, KeepWhatIsHiddenToTestsAndBenchmarks) {
+  const std::string include = "#include \"testdata/hidden/draw.h\"\n";
+  EXPECT_THAT(IncludeViolations({{"apps/a.cpp", include}, {"testdata/hidden/draw.h", ""}}),
+              SizeIs(1));
+  EXPECT_THAT(IncludeViolations({{"tests/a.cpp", include}, {"bench/a.cpp", include}}), IsEmpty());
+}
+
+TEST(IncludeRules, KeepThePipelineFromThePlant) {
+  EXPECT_THAT(IncludeViolations({{"pipeline/a.cpp", "#include \"simulation/plant/plant.h\"\n"},
+                                 {"simulation/closed_loop/b.cpp", "#include \"pipeline/a.h\"\n"}}),
+              SizeIs(1));
+}
+
+TEST(IncludeRules, NameFoldersWithoutRules) {
+  EXPECT_THAT(IncludeViolations({{"elsewhere/a.cpp", ""}}), SizeIs(1));
 }
 
 TEST(IncludeRules, KeepTheReportToResultFiles) {

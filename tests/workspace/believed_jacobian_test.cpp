@@ -24,7 +24,7 @@ TEST(Believe, IsTheDerivativeOfTheBelievedTipInThePlane) {
   const PortInstrument<2> truth;
   for (int i = 0; i < 200; ++i) {
     const auto state = DrawState(truth, rng);
-    const auto error = i == 0 ? ModelError<2>{} : DrawError<2>(rng);
+    const auto error = i == 0 ? BeliefError<2>{} : DrawError<2>(rng);
     const auto belief = Believe(truth, error, state.theta);
     ASSERT_TRUE(belief);
     const auto tip = [&](const Eigen::Vector2d& theta) {
@@ -73,15 +73,15 @@ TEST(Believe, IsTheDerivativeOfTheBelievedTipInSpace) {
 TEST(Believe, HasNoJacobianWithTheWristOnThePort) {
   const PortInstrument<2> truth;
   const Eigen::Vector2d theta(0.1, 0.2);
-  const ModelError<2> error{.port_m = truth.arm.Wrist(theta) - truth.p_port};
+  const BeliefError<2> error{.port_m = truth.arm.Wrist(theta) - truth.p_port};
   EXPECT_FALSE(Believe(truth, error, theta));
 }
 
-TEST(ModelError, GoesToAVectorAndBack) {
+TEST(BeliefError, GoesToAVectorAndBack) {
   std::mt19937_64 rng(3);
   const auto error = DrawError<3>(rng);
   const auto v = error.AsVector();
-  EXPECT_EQ(ModelError<3>::FromVector(v).AsVector(), v);
+  EXPECT_EQ(BeliefError<3>::FromVector(v).AsVector(), v);
   EXPECT_EQ(v[4], error.links_m[1]);
   EXPECT_STREQ(ErrorName<3>(4), "link 2");
   EXPECT_STREQ(ErrorName<2>(0), "port z");

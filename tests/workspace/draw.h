@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "workspace/model_error.h"
+#include "workspace/belief.h"
 #include "workspace/true_shaft.h"
 
 namespace flextip {
@@ -37,9 +37,9 @@ TrueState<N> DrawState(const PortInstrument<N>& instrument, std::mt19937_64& rng
 
 /// Errors of a few mm and hundredths of a radian.
 template <int N>
-ModelError<N> DrawError(std::mt19937_64& rng) {
+BeliefError<N> DrawError(std::mt19937_64& rng) {
   std::normal_distribution<double> normal;
-  ModelError<N> error;
+  BeliefError<N> error;
   for (double& x : error.port_m) x = 0.005 * normal(rng);
   for (double& x : error.links_m) x = 0.003 * normal(rng);
   for (double& x : error.joints_rad) x = 0.02 * normal(rng);

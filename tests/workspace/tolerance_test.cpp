@@ -29,8 +29,8 @@ double WorstOnCircle(const WorkspaceMap<2>& map, const ToleranceQuestion<2>& que
       continue;
     for (int i = 0; i < 720; ++i) {
       const double angle = i * M_PI / 360.0;
-      const ModelError<2> error{.port_m =
-                                    radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle))};
+      const BeliefError<2> error{.port_m =
+                                     radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle))};
       const auto belief = Believe(kSetup.truth, error, at.state->theta);
       const double value = question.measure == Measure::kNorm
                                ? FindStepError(at.state->J, belief->J_hat, 1.0).norm

@@ -13,7 +13,7 @@ namespace {
 
 /// The measure with these errors; infinite (pi) where the believed shaft does not reach the port.
 template <int N>
-double ValueAt(const MapSetup<N>& setup, const TrueState<N>& state, const ModelError<N>& error,
+double ValueAt(const MapSetup<N>& setup, const TrueState<N>& state, const BeliefError<N>& error,
                Measure measure) {
   const auto belief = Believe(setup.truth, error, state.theta);
   const bool angle = measure == Measure::kAngle;
@@ -37,7 +37,7 @@ double BruteForce(const MapSetup<N>& setup, const TrueState<N>& state, const Err
     auto v = setup.error.AsVector();
     for (std::size_t k = 0; k < at.size(); ++k)
       v[index[k]] += bounds.half_width.AsVector()[index[k]] * x[int(k)];
-    worst = std::max(worst, ValueAt(setup, state, ModelError<N>::FromVector(v), measure));
+    worst = std::max(worst, ValueAt(setup, state, BeliefError<N>::FromVector(v), measure));
     more = false;
     for (auto& i : at) {
       if (++i <= steps) {
@@ -64,7 +64,7 @@ void Check(const ErrorBounds<N>& bounds, const std::vector<int>& index, int step
       const auto worst = FindWorst(setup, state, bounds, measure);
       EXPECT_GE(worst.value, brute * (1.0 - 1e-7)) << i;
       EXPECT_LE(worst.value, brute * (1.0 + coarseness)) << i;
-      const auto sum = ModelError<N>::FromVector(setup.error.AsVector() + worst.error.AsVector());
+      const auto sum = BeliefError<N>::FromVector(setup.error.AsVector() + worst.error.AsVector());
       EXPECT_DOUBLE_EQ(worst.value, ValueAt(setup, state, sum, measure));
     }
   }

@@ -1,4 +1,4 @@
-#include "diagnosis/model/model_at.h"
+#include "diagnosis/model/extended_instrument.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,18 +10,19 @@
 
 namespace flextip::diagnosis {
 
-using namespace model_input;
+using namespace sample_input;
 
-struct ModelAt::Acting {
+struct ExtendedInstrument::Acting {
   std::unique_ptr<Effect> effect;
   Eigen::VectorXd theta;
   EffectMemory memory{};
-  bool rubs = false;
 };
 
-ModelAt::~ModelAt() = default;
+ExtendedInstrument::~ExtendedInstrument() = default;
 
-ModelAt::ModelAt(const ExtendedModel& model, const Recording& base) : start_ns_(model.start_ns) {
+ExtendedInstrument::ExtendedInstrument(const ExtendedModel& model, const Recording& base,
+                                       const EffectMakers& own)
+    : start_ns_(model.start_ns) {
   set_.instrument = base.instrument;
   set_.p_RP = base.p_RP;
   set_.gravity_m_s2 = base.gravity_m_s2;
@@ -31,22 +32,22 @@ ModelAt::ModelAt(const ExtendedModel& model, const Recording& base) : start_ns_(
   set_.samples.resize(1);
   for (const auto* list : {&model.effects, &model.within_tolerance}) {
     for (const EffectFit& fit : *list) {
-      Acting acting{MakeEffectOfModel(fit.effect), {}, {}, fit.effect == "port_friction"};
+      Acting acting{MakeEffectOfModel(fit.effect, own), {}};
       if (!acting.effect) throw InputError("model: effect '" + fit.effect + "' is unknown");
       acting.effect->Parameters(set_);  // tells it what is nominal
       std::vector<std::vector<double>> values;
       for (const ReportedParameter& parameter : fit.parameters) values.push_back(parameter.value);
       acting.theta = acting.effect->FromReported(values);
-      has_friction_ |= acting.rubs;
-      has_tag_offset_ |= fit.effect == "tag_offset";
-      if (fit.effect == "backlash") shaft_.wrist_play_m = acting.theta[0];
+      needs_port_place_ |= acting.effect->NeedsPortPlace();
+      shaft_.wrist_play_m += acting.effect->WristPlay(acting.theta);
       acting_.push_back(std::move(acting));
     }
   }
   columns_.reserve(64);
 }
 
-void ModelAt::SetSample(TimeNs t_ns, const Measurements& z, const Eigen::Vector3d& f_tip_N) {
+void ExtendedInstrument::SetSample(TimeNs t_ns, const Measurements& z,
+                                   const Eigen::Vector3d& f_tip_N) {
   DiagnosisSample& now = set_.samples[0];
   now.t_s = 1e-9 * static_cast<double>(t_ns - start_ns_);
   now.p_RW = z.p_RW;
@@ -58,16 +59,16 @@ void ModelAt::SetSample(TimeNs t_ns, const Measurements& z, const Eigen::Vector3
                                          Eigen::Vector3d::UnitY());
 }
 
-void ModelAt::Apply(Acting& acting, double s_port_free_m, double ds_port_dfriction_m) {
-  const Moment moment{set_, 0, set_.samples[0].t_s, s_port_free_m, ds_port_dfriction_m};
+void ExtendedInstrument::Apply(Acting& acting, double s_port_free_m, double ds_port_dfriction_m) {
+  const Instant now{set_, 0, set_.samples[0].t_s, s_port_free_m, ds_port_dfriction_m};
   columns_.clear();
   InputChange change(acting.theta.data(), 0, inputs_, columns_);
-  acting.effect->Apply(acting.theta.data(), moment, acting.memory, change);
+  acting.effect->Apply(acting.theta.data(), now, acting.memory, change);
 }
 
 /// Where the port and the tip are with the friction of the last instant: what the next one's
 /// friction and the tags' offset are reckoned from. Where there is no equilibrium, the last holds.
-void ModelAt::SolveShaft() {
+void ExtendedInstrument::SolveShaft() {
   const SolvedSample solved = SolveSample(set_, 0, inputs_, set_.samples[0].f_tip_N, solver_);
   if (!solved.ok) return;
   ds_port_dfriction_m_ = solved.ds_port_dfriction_m;
@@ -77,25 +78,26 @@ void ModelAt::SolveShaft() {
   R_RE_.col(2) = R_RE_.col(0).cross(R_RE_.col(1));
 }
 
-void ModelAt::Advance(TimeNs t_ns, const Measurements& measured, const Eigen::Vector3d& f_tip_N) {
+void ExtendedInstrument::Advance(TimeNs t_ns, const Measurements& measured,
+                                 const Eigen::Vector3d& f_tip_N) {
   if (!measured.p_RW.allFinite()) return;
   SetSample(t_ns, measured, f_tip_N);
   inputs_.setZero();
   for (Acting& acting : acting_)
-    if (!acting.rubs) Apply(acting, 0.0, 0.0);
-  if (has_friction_ || has_tag_offset_) {
+    if (!acting.effect->NeedsPortPlace()) Apply(acting, 0.0, 0.0);
+  if (needs_port_place_ || !inputs_.segment<3>(kTagOffset).isZero(0.0)) {
     inputs_[kPortFriction] = friction_;
     SolveShaft();
     inputs_[kPortFriction] = 0.0;
   }
   for (Acting& acting : acting_)
-    if (acting.rubs) Apply(acting, s_port_free_m_, ds_port_dfriction_m_);
+    if (acting.effect->NeedsPortPlace()) Apply(acting, s_port_free_m_, ds_port_dfriction_m_);
   friction_ = inputs_[kPortFriction];
   FillShaft();
 }
 
-void ModelAt::FillShaft() {
-  const ModelInputs& u = inputs_;
+void ExtendedInstrument::FillShaft() {
+  const SampleInputs& u = inputs_;
   shaft_.stiffness_scale = std::exp(u[kStiffness]);
   shaft_.length_delta_m = u[kLength];
   shaft_.weight_N_m = u.segment<3>(kWeight);
@@ -105,8 +107,8 @@ void ModelAt::FillShaft() {
   shaft_.effects = EffectsOf(u, set_.samples[0].y_wrist);
 }
 
-void ModelAt::CorrectEm(EmMeasurement& em) const {
-  const ModelInputs& u = inputs_;
+void ExtendedInstrument::CorrectEm(EmMeasurement& em) const {
+  const SampleInputs& u = inputs_;
   const Eigen::Matrix3d back = ExpRotation(-u.segment<3>(kEmTurn));
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> G(u.data() + kEmGradient);
   // measured = centre + shift + R ((I + G) (p - centre) + offset)
@@ -118,9 +120,10 @@ void ModelAt::CorrectEm(EmMeasurement& em) const {
   em.position_noise_m *= unbend.norm() / std::sqrt(3.0);  // the RMS over all directions
 }
 
-/// Backwards through sensor_model's SeenTip and TrueTip; the yielding tip is the shaft's affair.
-void ModelAt::CorrectTip(Measurements& z) const {
-  const ModelInputs& u = inputs_;
+/// Backwards through sensor_prediction's SeenTip and TrueTip; the yielding tip is the shaft's
+/// affair.
+void ExtendedInstrument::CorrectTip(Measurements& z) const {
+  const SampleInputs& u = inputs_;
   TipObservation& tip = *z.tip;
   const Eigen::Vector3d p_RC = set_.has_camera ? set_.T_RC.p : set_.centre;
   const Eigen::Matrix3d vision_back = ExpRotation(-u.segment<3>(kVisionTurn));
@@ -148,7 +151,7 @@ void ModelAt::CorrectTip(Measurements& z) const {
   tip.d_RE = camera * focal * vision_back * *tip.d_RE;
 }
 
-Measurements ModelAt::Correct(const Measurements& measured) const {
+Measurements ExtendedInstrument::Correct(const Measurements& measured) const {
   Measurements z = measured;
   if (z.em) CorrectEm(*z.em);
   if (z.port_direction) {

@@ -1,6 +1,6 @@
-#include "workspace/model_error.h"
+#include "workspace/belief.h"
 
-#include <cassert>
+#include "core/check.h"
 
 namespace flextip {
 namespace {
@@ -17,14 +17,14 @@ VectorN<N> Shoulder(const ArmOf<N>& arm) {
 }  // namespace
 
 template <int N>
-typename ModelError<N>::Vector ModelError<N>::AsVector() const {
+typename BeliefError<N>::Vector BeliefError<N>::AsVector() const {
   Vector v;
   v << port_m, links_m, joints_rad, shaft_m;
   return v;
 }
 
 template <int N>
-ModelError<N> ModelError<N>::FromVector(const Vector& v) {
+BeliefError<N> BeliefError<N>::FromVector(const Vector& v) {
   return {.port_m = v.template head<N>(),
           .links_m = v.template segment<2>(N),
           .joints_rad = v.template segment<N>(N + 2),
@@ -35,7 +35,7 @@ template <>
 const char* ErrorName<2>(int index) {
   constexpr const char* kNames[] = {"port z",  "port y",  "link 1", "link 2",
                                     "joint 1", "joint 2", "shaft"};
-  assert(index >= 0 && index < ModelError<2>::kCount);
+  FLEXTIP_CHECK(index >= 0 && index < BeliefError<2>::kCount, "a component of the error");
   return kNames[index];
 }
 
@@ -43,12 +43,12 @@ template <>
 const char* ErrorName<3>(int index) {
   constexpr const char* kNames[] = {"port x", "port y",  "port z",  "link 1", "link 2",
                                     "base",   "joint 1", "joint 2", "shaft"};
-  assert(index >= 0 && index < ModelError<3>::kCount);
+  FLEXTIP_CHECK(index >= 0 && index < BeliefError<3>::kCount, "a component of the error");
   return kNames[index];
 }
 
 template <int N>
-std::optional<BelievedState<N>> Believe(const PortInstrument<N>& truth, const ModelError<N>& error,
+std::optional<BelievedState<N>> Believe(const PortInstrument<N>& truth, const BeliefError<N>& error,
                                         const VectorN<N>& theta) {
   PortInstrument<N> belief = truth;
   LinksOf(belief.arm).link1_m += error.links_m[0];
@@ -66,11 +66,11 @@ std::optional<BelievedState<N>> Believe(const PortInstrument<N>& truth, const Mo
                           .J_hat = belief.TipByWrist(p_wrist) * belief.arm.Jacobian(theta_hat)};
 }
 
-template struct ModelError<2>;
-template struct ModelError<3>;
-template std::optional<BelievedState<2>> Believe(const PortInstrument<2>&, const ModelError<2>&,
+template struct BeliefError<2>;
+template struct BeliefError<3>;
+template std::optional<BelievedState<2>> Believe(const PortInstrument<2>&, const BeliefError<2>&,
                                                  const VectorN<2>&);
-template std::optional<BelievedState<3>> Believe(const PortInstrument<3>&, const ModelError<3>&,
+template std::optional<BelievedState<3>> Believe(const PortInstrument<3>&, const BeliefError<3>&,
                                                  const VectorN<3>&);
 
 }  // namespace flextip

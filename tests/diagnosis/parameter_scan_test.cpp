@@ -1,5 +1,5 @@
 // The breathing frequency of hidden recordings, whose breath is no pure sine.
-#include "diagnosis/search/frequency_scan.h"
+#include "diagnosis/search/parameter_scan.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ double FoundIn(const SampleSet& samples) {
   const ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
   EXPECT_TRUE(replay.Evaluate(Eigen::VectorXd::Zero(layout.Size())));
-  return BestPortFrequency(replay);
+  return BestScannedValue(replay, layout.Find("port_motion"));
 }
 
 class Breathing : public testing::TestWithParam<std::uint64_t> {};
@@ -42,7 +42,7 @@ TEST(FrequencyScan, FindsASineOf031Hz) {
   for (std::size_t k = 0; k < samples.samples.size(); ++k) {
     DiagnosisSample& sample = samples.samples[k];
     const double wave_m = 1e-3 * std::sin(2.0 * std::numbers::pi * 0.31 * sample.t_s + 0.4);
-    const auto by_port = replay.Samples()[k].compared.by_inputs.middleCols<3>(model_input::kPort);
+    const auto by_port = replay.Samples()[k].compared.by_inputs.middleCols<3>(sample_input::kPort);
     const Rows moved = wave_m * (by_port * Eigen::Vector3d(0.3, 0.6, -0.7).normalized());
     sample.p_RS += moved.segment<3>(row::kEmPosition);
     sample.p_RE += moved.segment<3>(row::kTipPosition);

@@ -10,7 +10,7 @@ namespace flextip {
 /// Believed minus true. The arm's base and the port are registered in A: links that are believed
 /// longer move the wrist, not the base.
 template <int N>
-struct ModelError {
+struct BeliefError {
   static constexpr int kCount = 2 * N + 3;
   using Vector = Eigen::Matrix<double, kCount, 1>;  ///< port, links, joints, shaft
 
@@ -20,10 +20,10 @@ struct ModelError {
   double shaft_m = 0.0;
 
   Vector AsVector() const;
-  static ModelError FromVector(const Vector& v);
+  static BeliefError FromVector(const Vector& v);
 };
 
-/// "port z", "link 1", ..., of the component `index` of ModelError<N>::Vector.
+/// "port z", "link 1", ..., of the component `index` of BeliefError<N>::Vector.
 template <int N>
 const char* ErrorName(int index);
 
@@ -41,10 +41,10 @@ struct BelievedState {
 
 /// At the true joint angles `theta`. Empty where the believed wrist is on the believed port.
 template <int N>
-std::optional<BelievedState<N>> Believe(const PortInstrument<N>& truth, const ModelError<N>& error,
+std::optional<BelievedState<N>> Believe(const PortInstrument<N>& truth, const BeliefError<N>& error,
                                         const VectorN<N>& theta);
 
-extern template struct ModelError<2>;
-extern template struct ModelError<3>;
+extern template struct BeliefError<2>;
+extern template struct BeliefError<3>;
 
 }  // namespace flextip

@@ -38,7 +38,7 @@ struct ForceOnTip {
 /// `measured` holds what the sensors say of about the sample's time (retiming.h): each value is
 /// compared with the geometry at the time that it speaks of, its stamp less its latency.
 SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& measured,
-                       const ModelInputs& inputs, const ForceOnTip& f_tip,
+                       const SampleInputs& inputs, const ForceOnTip& f_tip,
                        const TimedGeometry& geometry, const GeometryByInputs& by_inputs);
 
 }  // namespace flextip::diagnosis

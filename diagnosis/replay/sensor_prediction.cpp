@@ -1,4 +1,4 @@
-#include "diagnosis/replay/sensor_model.h"
+#include "diagnosis/replay/sensor_prediction.h"
 
 #include <cmath>
 
@@ -7,8 +7,8 @@
 namespace flextip::diagnosis {
 namespace {
 
-using namespace model_input;
-using Three = Eigen::Matrix<double, 3, model_input::kCount>;
+using namespace sample_input;
+using Three = Eigen::Matrix<double, 3, sample_input::kCount>;
 
 /// J with Exp(w + dw) = Exp(J dw) Exp(w) to first order.
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
@@ -33,14 +33,14 @@ struct Predicted {
     d.col(input) -= geometry.rate.segment<3>(at);
   }
   /// Turned by Exp(`sign` w) about the origin, w standing in inputs from `input` on.
-  void Turn(const ModelInputs& u, int input, double sign) {
+  void Turn(const SampleInputs& u, int input, double sign) {
     const Eigen::Vector3d w = sign * u.segment<3>(input);
     const Eigen::Matrix3d R = ExpRotation(w);
     v = R * v;
     d = R * d;
     d.middleCols<3>(input) -= sign * Skew(v) * LeftJacobian(w);
   }
-  void Shift(const ModelInputs& u, int input, double sign) {
+  void Shift(const SampleInputs& u, int input, double sign) {
     v += sign * u.segment<3>(input);
     d.middleCols<3>(input) += sign * Eigen::Matrix3d::Identity();
   }
@@ -59,7 +59,7 @@ void AddDirection(const Eigen::Vector3d& measured, const Predicted& predicted, i
   out.by_inputs.middleRows<2>(first) = across.transpose() * predicted.d;
 }
 
-Predicted EmPosition(const SampleSet& samples, const ModelInputs& u, const TimedGeometry& sensed,
+Predicted EmPosition(const SampleSet& samples, const SampleInputs& u, const TimedGeometry& sensed,
                      const GeometryByInputs& by_inputs) {
   Predicted p(sensed, by_inputs, place::kEm);
   p.Delay(sensed, place::kEm, kEmDelay);
@@ -83,7 +83,7 @@ Predicted SeenByCamera(const TimedGeometry& sensed, const GeometryByInputs& by_i
 }
 
 /// E as it truly is: yielding under its force, with the tags off their place.
-Predicted TrueTip(const ModelInputs& u, const ForceOnTip& f_tip, const TimedGeometry& sensed,
+Predicted TrueTip(const SampleInputs& u, const ForceOnTip& f_tip, const TimedGeometry& sensed,
                   const GeometryByInputs& by_inputs) {
   Predicted p = SeenByCamera(sensed, by_inputs, place::kTip);
   p.v += u[kTipCompliance] * f_tip.at_N;
@@ -101,7 +101,7 @@ Predicted TrueTip(const ModelInputs& u, const ForceOnTip& f_tip, const TimedGeom
 }
 
 /// What a camera that is not where it was registered, with another focal length, makes of it.
-Predicted SeenTip(const SampleSet& samples, const ModelInputs& u, Predicted p) {
+Predicted SeenTip(const SampleSet& samples, const SampleInputs& u, Predicted p) {
   const Eigen::Vector3d p_RC = samples.has_camera ? samples.T_RC.p : samples.centre;
   p.v -= p_RC;
   p.Shift(u, kCameraShift, -1.0);
@@ -123,7 +123,7 @@ Predicted SeenTip(const SampleSet& samples, const ModelInputs& u, Predicted p) {
 
 /// A pose from tags keeps its attitude to the line of sight, which a changed focal length moves
 /// away from the axis (to first order).
-void TurnByFocal(const SampleSet& samples, const ModelInputs& u, const Predicted& p_RE,
+void TurnByFocal(const SampleSet& samples, const SampleInputs& u, const Predicted& p_RE,
                  Predicted& d) {
   const Eigen::Matrix3d& R_RC = samples.T_RC.R;
   const Eigen::Vector3d p_C = R_RC.transpose() * (p_RE.v - samples.T_RC.p);
@@ -139,7 +139,7 @@ void TurnByFocal(const SampleSet& samples, const ModelInputs& u, const Predicted
 
 }  // namespace
 
-SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const ModelInputs& u,
+SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const SampleInputs& u,
                        const ForceOnTip& f_tip, const TimedGeometry& geometry,
                        const GeometryByInputs& by_inputs) {
   SampleResidual out;

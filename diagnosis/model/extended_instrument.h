@@ -6,27 +6,29 @@
 #include <vector>
 
 #include "diagnosis/model/extended_model.h"
-#include "diagnosis/replay/model_input.h"
+#include "diagnosis/replay/sample_input.h"
 #include "diagnosis/samples/sample_set.h"
 #include "estimation/instrument_model.h"
 
 namespace flextip::diagnosis {
 
 /// Made for one run: effects have a memory. Advance and Correct do what diagnosis/geometry and
-/// sensor_model do, the latter backwards.
-class ModelAt : public InstrumentModel {
+/// sensor_prediction do, the latter backwards.
+class ExtendedInstrument : public InstrumentModel {
  public:
   /// Of `base` the instrument, port, gravity and the camera's pose are taken. Throws InputError for
-  /// an effect that is none of the catalogue's.
-  ModelAt(const ExtendedModel& model, const Recording& base);
-  ~ModelAt() override;
+  /// an effect that is neither in the catalogue nor in
+  /// `own`.
+  ExtendedInstrument(const ExtendedModel& model, const Recording& base,
+                     const EffectMakers& own = {});
+  ~ExtendedInstrument() override;
 
   void Advance(TimeNs t_ns, const Measurements& measured, const Eigen::Vector3d& f_tip_N) override;
   const ShaftChange& Shaft() const override { return shaft_; }
   Measurements Correct(const Measurements& measured) const override;
 
   /// Inputs at this instant, delays among them.
-  const ModelInputs& Inputs() const { return inputs_; }
+  const SampleInputs& Inputs() const { return inputs_; }
 
  private:
   struct Acting;  // an effect with its parameters and memory
@@ -41,9 +43,9 @@ class ModelAt : public InstrumentModel {
   TimeNs start_ns_;
   std::vector<Acting> acting_;
   std::vector<InputChange::Column> columns_;  // not used; effects write them
-  ModelInputs inputs_ = ModelInputs::Zero();
+  SampleInputs inputs_ = SampleInputs::Zero();
   ShaftChange shaft_;
-  bool has_friction_ = false, has_tag_offset_ = false;
+  bool needs_port_place_ = false;
   double friction_ = 0.0;  // the last instant's
   EffectRodSolver solver_;
   double s_port_free_m_ = 0.0, ds_port_dfriction_m_ = 0.0;

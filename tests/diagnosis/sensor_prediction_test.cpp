@@ -1,5 +1,5 @@
 // Derivatives of what each sensor says against differences, with every effect large.
-#include "diagnosis/replay/sensor_model.h"
+#include "diagnosis/replay/sensor_prediction.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace flextip::diagnosis {
 namespace {
 
-using namespace model_input;
+using namespace sample_input;
 
 /// A geometry that is linear in the rod's inputs and in time, as Compare is told; no rod's.
 class SensorDerivatives : public testing::Test {
@@ -34,7 +34,7 @@ class SensorDerivatives : public testing::Test {
 
   /// Residuals where input `j` is larger by `h`.
   Rows ResidualsAt(int j, double h) const {
-    ModelInputs u = u_;
+    SampleInputs u = u_;
     u[j] += h;
     TimedGeometry geometry = geometry_;
     Eigen::Vector3d f_tip_N = f_tip_N_;
@@ -46,7 +46,7 @@ class SensorDerivatives : public testing::Test {
   std::mt19937_64 rng_{5};
   SampleSet samples_;
   DiagnosisSample z_;
-  ModelInputs u_;
+  SampleInputs u_;
   Eigen::Vector3d f_tip_N_{0.3, -0.5, 0.2};
   TimedGeometry geometry_;
   GeometryByInputs by_inputs_;
@@ -55,7 +55,7 @@ class SensorDerivatives : public testing::Test {
 TEST_F(SensorDerivatives, OfAllInputs) {
   const RowsByInputs derivatives =
       Compare(samples_, z_, u_, f_tip_N_, geometry_, by_inputs_).by_inputs;
-  for (int j = 0; j < model_input::kCount; ++j) {
+  for (int j = 0; j < sample_input::kCount; ++j) {
     constexpr double kStep = 1e-5;
     const Rows numeric = -(ResidualsAt(j, kStep) - ResidualsAt(j, -kStep)) / (2.0 * kStep);
     EXPECT_GT(numeric.norm(), 1e-3) << "input " << j;

@@ -11,7 +11,7 @@ namespace flextip::diagnosis {
 /// Indices of one sample's inputs. All are changes from the base simulation, so zero is the base;
 /// the first rod_input::kCount are those of the rod in its order (kStiffness is the logarithm of
 /// the stiffness over the nominal one). In R and SI units.
-namespace model_input {
+namespace sample_input {
 using namespace rod_input;
 inline constexpr int kTipCompliance = rod_input::kCount;  ///< E moves by this times the tip force
 inline constexpr int kEmGradient = kTipCompliance + 1;    ///< 3x3, row by row, about the EM centre
@@ -31,9 +31,9 @@ inline constexpr int kEmShift = kEmTurn + 3;           ///< EM frame in R
 inline constexpr int kVisionTurn = kEmShift + 3;       ///< vision's frame in R about the centre
 inline constexpr int kVisionShift = kVisionTurn + 3;
 inline constexpr int kCount = kVisionShift + 3;
-}  // namespace model_input
+}  // namespace sample_input
 
-using ModelInputs = Eigen::Matrix<double, model_input::kCount, 1>;
+using SampleInputs = Eigen::Matrix<double, sample_input::kCount, 1>;
 
 /// One sample's measured values, in rows of fixed places; directions count two (across the measured
 /// one). A sample has those rows whose sensor spoke.
@@ -44,7 +44,7 @@ inline constexpr int kCount = 18;
 }  // namespace row
 
 using Rows = Eigen::Matrix<double, row::kCount, 1>;
-using RowsByInputs = Eigen::Matrix<double, row::kCount, model_input::kCount>;
+using RowsByInputs = Eigen::Matrix<double, row::kCount, sample_input::kCount>;
 
 /// The measured channels, for results: a run of rows with one name and unit.
 struct Channel {
