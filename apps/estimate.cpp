@@ -11,13 +11,13 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
-#include "apps/track/score.h"
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
 #include "pipeline/estimate_recording.h"
 #include "pipeline/sensor_readings.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
+#include "recording/tip_score.h"
 #include "report/pages.h"
 
 namespace flextip {

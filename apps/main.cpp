@@ -23,6 +23,7 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddDiagnose(app, context);
   AddEstimate(app, context);
   AddMap(app, context);
+  AddReport(app, context);
   AddReproduce(app, context);
   AddShape(app, context);
   AddSimulate(app, context);

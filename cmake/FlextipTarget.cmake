@@ -3,6 +3,7 @@
 # flextip_library(NAME SOURCES ... [PUBLIC targets...] [PRIVATE targets...] [COLD]): a library, used
 # and exported as flextip::<name>. PUBLIC targets show in the folder's headers; foreign libraries are
 # PRIVATE. COLD: nothing in it runs often, so it is optimised less.
+include(FlextipUnity)
 set(FLEXTIP_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 # g++ 12 warns of overlapping and overlong copies inside std::string where there are none (GCC bug
 # 105651).
@@ -11,6 +12,20 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 # One setting for libraries and programs, so that they share their precompiled headers.
 add_compile_options(-fPIC)
+set(FLEXTIP_TEST_TIMEOUT_S 300 CACHE STRING "Seconds a test may take")
+
+# ccache where there is one. What it does not look at with precompiled headers is told to it here;
+# g++ says which header it took only with -fpch-preprocess.
+find_program(FLEXTIP_CCACHE ccache)
+if(FLEXTIP_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+    CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+    ${FLEXTIP_CCACHE})
+endif()
+if(CMAKE_CXX_COMPILER_LAUNCHER AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU"
+    AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+  add_compile_options(-fpch-preprocess)
+endif()
 
 # flextip_pch(NAME HEADERS ... LIBS ... [OPTIONS ...]): headers compiled once, for all targets of a kind.
 # The warnings belong to it: -Wpedantic undefines macros, and the headers must agree on all of them.
@@ -33,6 +48,7 @@ function(flextip_options target)
     set(ARG_PCH common)
   endif()
   target_precompile_headers(${target} REUSE_FROM flextip_pch_${ARG_PCH})
+  flextip_unity(${target})
 endfunction()
 
 function(flextip_library name)
@@ -65,5 +81,5 @@ function(flextip_tests name)
     FLEXTIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     FLEXTIP_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
   flextip_options(${target} COLD PCH test)
-  gtest_discover_tests(${target} TEST_PREFIX "${name}." PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(${target} TEST_PREFIX "${name}." PROPERTIES TIMEOUT ${FLEXTIP_TEST_TIMEOUT_S} DISCOVERY_TIMEOUT 60)
 endfunction()

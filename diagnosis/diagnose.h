@@ -99,9 +99,4 @@ struct DiagnosisResult {
 DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                          const DiagnoseOptions& options = {});
 
-/// diagnosis.json (docs/formats.md).
-std::string DiagnosisJson(const DiagnosisResult& result);
-/// residuals.csv: the ResidualTable.
-std::string ResidualsCsv(const DiagnosisResult& result);
-
 }  // namespace flextip::diagnosis

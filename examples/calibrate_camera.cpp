@@ -1,5 +1,5 @@
 // A camera's lens from pictures of a board: calibrate_camera BOARD PICTURE...
-// BOARD is chessboard:9x6:0.025 and its like (docs/calibration_camera.md).
+// BOARD is chessboard:9x6:0.025 and its like (docs/usage/calibrate.md).
 #include <fmt/format.h>
 
 #include "calibration/boards/board_pictures.h"

@@ -85,10 +85,10 @@ SensorReadings NewestReadings(const Recording& r) {
 }
 
 std::optional<Measurements> Gather(const SensorReadings& readings) {
-  if (!readings.wrist) return {};
+  std::optional<Measurements> gathered;
+  if (!readings.wrist) return gathered;
   const WristMeasurement& wrist = readings.wrist->value;
-  std::optional<Measurements> measurements(std::in_place);
-  Measurements& z = *measurements;
+  Measurements& z = gathered.emplace();
   z.p_RW = wrist.p_RW;
   z.wrist_position_noise_m = wrist.position_noise_m;
   z.R_RW = wrist.R_RW;
@@ -104,7 +104,7 @@ std::optional<Measurements> Gather(const SensorReadings& readings) {
   }
   if (readings.strain) z.strain = readings.strain->value;
   if (readings.load) z.load = readings.load->value;
-  return measurements;
+  return gathered;
 }
 
 std::optional<Measurements> MeasurementsAt(const Recording& recording, TimeNs t_ns) {

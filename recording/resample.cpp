@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace flextip {
 namespace {
@@ -47,19 +46,6 @@ std::optional<WristSample> WristAt(const WristStream& stream, TimeNs t_ns,
                 });
 }
 
-std::optional<Eigen::Vector3d> CommandAt(const CommandStream& stream, TimeNs t_ns,
-                                         const ResampleOptions& options) {
-  const auto& series = stream.p_RW;
-  const auto after = std::upper_bound(
-      series.begin(), series.end(), t_ns,
-      [](TimeNs t, const Sample<Eigen::Vector3d>& sample) { return t < sample.t_ns; });
-  if (after == series.begin()) return {};
-  const auto& last = *(after - 1);
-  const auto age = static_cast<double>(t_ns - last.t_ns);
-  if (age > options.max_gap_periods * PeriodNs(stream.rate_hz)) return {};
-  return last.value;
-}
-
 std::optional<EmSample> EmAt(const EmStream& stream, TimeNs t_ns, const ResampleOptions& options) {
   return Lookup(stream.samples, stream.rate_hz, t_ns, options,
                 [](const EmSample& a, const EmSample& b, double u) {
@@ -89,26 +75,6 @@ std::optional<Sample<TipObservation>> TipAt(const VisionStream& stream, TimeNs t
   }
   if (nearest == tips.end() || distance(nearest) > 0.5 * PeriodNs(stream.rate_hz)) return {};
   return *nearest;
-}
-
-std::optional<TimeSpan> CommonSpan(const Recording& recording) {
-  TimeSpan span{std::numeric_limits<TimeNs>::min(), std::numeric_limits<TimeNs>::max()};
-  bool any = false;
-  const auto cut = [&](const auto& series) {
-    if (series.empty()) return;
-    any = true;
-    span.first_ns = std::max(span.first_ns, series.front().t_ns);
-    span.last_ns = std::min(span.last_ns, series.back().t_ns);
-  };
-  if (recording.wrist0) cut(recording.wrist0->samples);
-  if (recording.command0) cut(recording.command0->p_RW);
-  if (recording.em0) cut(recording.em0->samples);
-  if (recording.em1) cut(recording.em1->samples);
-  if (recording.strain0) cut(recording.strain0->moments_Nm);
-  if (recording.load0) cut(recording.load0->f_tip_N);
-  if (recording.vision0) cut(recording.vision0->tips);
-  if (!any || span.first_ns > span.last_ns) return {};
-  return span;
 }
 
 }  // namespace flextip

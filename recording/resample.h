@@ -20,11 +20,6 @@ struct ResampleOptions {
 std::optional<WristSample> WristAt(const WristStream& stream, TimeNs t_ns,
                                    const ResampleOptions& options = {});
 
-/// The command in force: the last one at or before `t_ns`. Empty before the first, and later than
-/// the last by more than the longest gap.
-std::optional<Eigen::Vector3d> CommandAt(const CommandStream& stream, TimeNs t_ns,
-                                         const ResampleOptions& options = {});
-
 std::optional<EmSample> EmAt(const EmStream& stream, TimeNs t_ns,
                              const ResampleOptions& options = {});
 
@@ -46,12 +41,5 @@ std::vector<TimeNs> TimesOf(const Series<T>& series) {
   for (const auto& sample : series) times.push_back(sample.t_ns);
   return times;
 }
-
-/// From the latest first sample to the earliest last sample of the streams present (frames of cam0
-/// aside); empty where there are none or they do not overlap.
-struct TimeSpan {
-  TimeNs first_ns = 0, last_ns = 0;
-};
-std::optional<TimeSpan> CommonSpan(const Recording& recording);
 
 }  // namespace flextip

@@ -12,6 +12,7 @@
 #include "report/pages.h"
 #include "report/report.h"
 #include "report/result_files.h"
+#include "report/summary_parts.h"
 
 namespace flextip::report {
 namespace {
@@ -115,7 +116,7 @@ void AddResiduals(Report& report, const fs::path& file) {
 }  // namespace
 
 void WriteCalibrateReport(const fs::path& folder) {
-  Report report = TitledPage(folder, TitleOf);
+  Report report = TitledPage(folder, TitleOf(CommandOf(folder)));
   const Json summary = Json::parse(ReadBytes(folder / "summary.json"));
   const Json verdict = summary.value("verdict", Json::object());
   if (!verdict.empty()) {
@@ -126,14 +127,14 @@ void WriteCalibrateReport(const fs::path& folder) {
   report.AddWarnings(Warnings(summary, verdict));
   if (fs::exists(folder / "figures.json")) {
     report.AddHeading("Where, and by how much");
-    AddFigureFile(report, folder / "figures.json");
+    report.AddFigureFile(folder / "figures.json");
   }
   auto pictures = PicturesIn(folder, kPictures);
   const auto views = PicturesIn(folder / "overlay", kPictures);
   pictures.insert(pictures.end(), views.begin(), views.end());
   AddPictureFiles(report, "Pictures", pictures);
   report.AddHeading("All numbers");
-  AddSummaryFigures(report, folder);
+  AddSummaryNumbers(report, folder);
   AddSummaryTables(report, folder);
   AddResiduals(report, folder / "residuals.csv");
   report.Write(folder / "report.html");

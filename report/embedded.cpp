@@ -18,7 +18,6 @@
 FLEXTIP_EMBED(flextip_plotly_js, FLEXTIP_PLOTLY_JS);
 FLEXTIP_EMBED(flextip_plotly_flat_js, FLEXTIP_PLOTLY_FLAT_JS);
 FLEXTIP_EMBED(flextip_page_css, FLEXTIP_PAGE_CSS);
-FLEXTIP_EMBED(flextip_page_js, FLEXTIP_PAGE_JS);
 FLEXTIP_EMBED(flextip_figures_js, FLEXTIP_FIGURES_JS);
 
 namespace flextip::report {
@@ -35,7 +34,6 @@ std::string_view PlotlyFlatJs() {
   return Between(flextip_plotly_flat_js_begin, flextip_plotly_flat_js_end);
 }
 std::string_view PageCss() { return Between(flextip_page_css_begin, flextip_page_css_end); }
-std::string_view PageJs() { return Between(flextip_page_js_begin, flextip_page_js_end); }
 std::string_view FiguresJs() { return Between(flextip_figures_js_begin, flextip_figures_js_end); }
 
 }  // namespace flextip::report

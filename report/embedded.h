@@ -10,7 +10,6 @@ namespace flextip::report {
 std::string_view PlotlyJs();
 std::string_view PlotlyFlatJs();
 std::string_view PageCss();    ///< report/page.css
-std::string_view PageJs();     ///< report/page.js
 std::string_view FiguresJs();  ///< report/figures.js
 
 }  // namespace flextip::report

@@ -45,6 +45,10 @@ Json TraceJson(const FigureTrace& trace) {
   } else {
     json["x"] = trace.labels;
   }
+  if (!trace.z.empty()) {
+    FLEXTIP_CHECK(trace.z.size() == trace.y.size(), "as many z as y");
+    json["z"] = Numbers(trace.z);
+  }
   if (!trace.y_error.empty()) json["y_error"] = Numbers(trace.y_error);
   if (!trace.color.empty()) json["color"] = trace.color;
   if (!trace.symbol.empty()) json["symbol"] = trace.symbol;
@@ -75,7 +79,15 @@ Json FigureJson(const Figure& figure) {
       {"fields", Json::array()},   {"traces", Json::array()}};
   for (const auto& field : figure.fields) json["fields"].push_back(FieldJson(field));
   for (const auto& trace : figure.traces) json["traces"].push_back(TraceJson(trace));
+  if (!figure.z_label.empty()) json["z_label"] = figure.z_label;
+  for (const auto& band : figure.bands) {
+    json["bands"].push_back({{"from", band.from}, {"to", band.to}, {"color", band.color}});
+  }
   return json;
+}
+
+std::string Text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -93,11 +105,13 @@ FigureTrace Segments(const std::vector<double>& x, const std::vector<double>& y,
   return trace;
 }
 
+std::string FigureText(const Figure& figure) { return Text(FigureJson(figure)); }
+
 void WriteFigures(const std::filesystem::path& file, const std::vector<Figure>& figures) {
   auto json = Json::array();
   for (const auto& figure : figures) json.push_back(FigureJson(figure));
   std::ofstream out(file, std::ios::binary);
-  out << json.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  out << Text(json) << '\n';
   if (!out.flush()) throw WorkError(file.string() + ": cannot be written");
 }
 

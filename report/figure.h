@@ -1,4 +1,5 @@
-// Figures as data: a command writes figures.json beside its tables, and its page draws that file.
+// Figures as data, the only way to draw on a page: a page adds them, or a command writes
+// figures.json beside its tables and its page draws that file.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +10,14 @@
 
 namespace flextip::report {
 
-/// One curve, set of points or set of bars. A value that is not finite leaves a gap.
+/// One curve, set of points or set of bars; a path in space where `z` is not empty. A value that is
+/// not finite leaves a gap. Lists that are used have the same length.
 struct FigureTrace {
   enum class Kind : std::uint8_t { kLine, kPoints, kBars };
 
   std::string name = {};  ///< in the legend; empty: not in it
   Kind kind = Kind::kLine;
-  std::vector<double> x = {}, y = {};
+  std::vector<double> x = {}, y = {}, z = {};
   std::vector<std::string> labels = {};  ///< in place of `x`: categories
   std::vector<double> y_error = {};      ///< half lengths of error bars; empty: none
   std::string color = {};                ///< as in CSS; empty: the page chooses
@@ -33,15 +35,24 @@ struct FigureField {
   double high = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// A stretch of the x axis behind the curves.
+struct FigureBand {
+  double from = 0.0, to = 0.0;
+  std::string color;
+};
+
 struct Figure {
   std::string name = {};  ///< "fig-2-4a": what files and links call it
   std::string title = {}, caption = {};
-  std::string x_label = {}, y_label = {};  ///< with the unit: "depth (mm)"
+  std::string x_label = {}, y_label = {}, z_label = {};  ///< with the unit: "depth (mm)"
   bool log_x = false, log_y = false;
   bool y_down = false;                   ///< as in a picture
   bool equal_axes = false;               ///< a length is as long in both directions
   std::vector<FigureField> fields = {};  ///< none or one
-  std::vector<FigureTrace> traces = {};  ///< on top of the field
+  std::vector<FigureTrace> traces = {};  ///< on top of the field; all in space, or none
+  std::vector<FigureBand> bands = {};
+
+  bool InSpace() const { return !traces.empty() && !traces.front().z.empty(); }
 };
 
 /// Short line segments, each through its middle (x, y) along (u, v) with the length of (u, v), as
@@ -49,7 +60,10 @@ struct Figure {
 FigureTrace Segments(const std::vector<double>& x, const std::vector<double>& y,
                      const std::vector<double>& u, const std::vector<double>& v);
 
-/// Throws WorkError where the disk refuses.
+/// Returns the figure as JSON, as figures.json lists it (docs/formats.md).
+std::string FigureText(const Figure& figure);
+
+/// Writes figures.json. Throws WorkError where the disk refuses.
 void WriteFigures(const std::filesystem::path& file, const std::vector<Figure>& figures);
 
 }  // namespace flextip::report

@@ -1,16 +1,14 @@
 // Pages whose pictures come from figures.json.
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "core/error.h"
 #include "report/diagnose/parts.h"
-#include "report/page_parts.h"
 #include "report/pages.h"
 #include "report/report.h"
 #include "report/result_files.h"
+#include "report/summary_parts.h"
 
 namespace flextip::report {
 namespace {
@@ -46,27 +44,16 @@ void AddNumbers(Report& report, const fs::path& file) {
 
 }  // namespace
 
-void AddFigureFile(Report& report, const fs::path& file) {
-  const auto figures = nlohmann::json::parse(ReadBytes(file), nullptr, false);
-  if (!figures.is_array()) throw InputError::At(file.string(), 0, "is not a list of figures");
-  report.AddHtml("<div class=\"drawings\">\n");
-  for (const auto& figure : figures) {
-    if (!figure.is_object()) throw InputError::At(file.string(), 0, "holds what is no figure");
-    report.AddFigure(figure.value("title", ""), figure.value("caption", ""), figure.dump());
-  }
-  report.AddHtml("</div>\n");
-}
-
 void WriteReproduceReport(const fs::path& folder) {
   Report report = BeginPage(folder, "The thesis, done again");
   AddNumbers(report, folder / "table.csv");
-  if (fs::exists(folder / "figures.json")) AddFigureFile(report, folder / "figures.json");
+  if (fs::exists(folder / "figures.json")) report.AddFigureFile(folder / "figures.json");
   report.Write(folder / "report.html");
 }
 
 void WriteMapReport(const fs::path& folder) {
   Report report = BeginPage(folder, "Motion errors across the workspace");
-  AddFigureFile(report, folder / "figures.json");
+  report.AddFigureFile(folder / "figures.json");
   AddNumbers(report, folder / "table.csv");
   report.Write(folder / "report.html");
 }

@@ -1,4 +1,4 @@
-// Draws the figures of figures.json, each in the element that holds it.
+// Draws every figure of the page from the JSON inside its element.
 (function () {
   "use strict";
   const COLORS = ["#0072b2", "#d55e00", "#009e73", "#b0578d", "#b88700", "#3a9bd6", "#555f6b"];
@@ -26,6 +26,7 @@
   }
 
   function trace(t, i) {
+    if (t.z) return pathInSpace(t, i);
     const color = t.color || COLORS[i % COLORS.length];
     const out = { name: t.name, showlegend: t.name !== "", x: t.x, y: t.y };
     if (t.kind === "bars") Object.assign(out, { type: "bar", marker: { color: color } });
@@ -36,10 +37,51 @@
     return out;
   }
 
+  function pathInSpace(t, i) {
+    const color = t.color || COLORS[i % COLORS.length];
+    return { type: "scatter3d", mode: t.kind === "points" ? "markers" : "lines", name: t.name, x: t.x, y: t.y, z: t.z,
+      line: { color: color, width: 5, dash: t.dashed ? "dash" : "solid" }, marker: { color: color, size: 3 } };
+  }
+
+  function range(traces, key) {
+    let low = Infinity, high = -Infinity;
+    for (const t of traces) for (const v of t[key]) if (v !== null) { low = Math.min(low, v); high = Math.max(high, v); }
+    return [low, high];
+  }
+
+  // Equal scales on the three axes, without a flat path becoming a slit.
+  function cube(traces) {
+    const ranges = ["x", "y", "z"].map((k) => range(traces, k));
+    const longest = Math.max(...ranges.map((r) => r[1] - r[0])) || 1;
+    const spans = ranges.map((r) => Math.max(r[1] - r[0], 0.25 * longest) * 1.08);
+    const around = (r, s) => [(r[0] + r[1] - s) / 2, (r[0] + r[1] + s) / 2];
+    return { ranges: ranges.map((r, i) => around(r, spans[i])), ratio: spans.map((s) => 1.6 * s / Math.hypot(...spans)) };
+  }
+
+  function spaceLayout(figure) {
+    const box = cube(figure.traces);
+    const side = (label, i) => Object.assign(axis(label), { range: box.ranges[i], showbackground: false });
+    return { font: FONT, paper_bgcolor: "rgba(0,0,0,0)", margin: { l: 0, r: 0, t: 0, b: 0 }, hoverlabel: { font: FONT },
+      showlegend: figure.traces.length > 1, legend: { orientation: "h", y: 1.0, yanchor: "top", x: 0 },
+      modebar: { bgcolor: "rgba(0,0,0,0)", color: "#b9c2cc", activecolor: INK },
+      scene: { domain: { x: [0, 1], y: [0, 0.93] }, xaxis: side(figure.x_label, 0), yaxis: side(figure.y_label, 1), zaxis: side(figure.z_label, 2),
+        aspectmode: "manual", aspectratio: { x: box.ratio[0], y: box.ratio[1], z: box.ratio[2] },
+        camera: { eye: { x: 1.15, y: -1.5, z: 0.8 }, center: { x: 0, y: 0, z: -0.1 } } } };
+  }
+
+  // A single curve needs no legend: the title says what it is.
+  function hasLegend(figure) {
+    return figure.traces.some((t) => t.name !== "") && figure.traces.length + figure.fields.length > 1;
+  }
+
   function layout(figure) {
-    const named = figure.traces.filter((t) => t.name !== "").length;
-    const out = { font: FONT, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", margin: { l: 60, r: 16, t: named > 0 ? 64 : 34, b: 48 },
-      showlegend: named > 0, legend: { orientation: "h", y: 1.01, yanchor: "bottom", x: 0 }, hoverlabel: { font: FONT }, hovermode: "closest",
+    if (figure.traces.some((t) => t.z)) return spaceLayout(figure);
+    const legend = hasLegend(figure);
+    const overTime = figure.x_label.startsWith("time (") && figure.traces.every((t) => t.kind === "line");
+    const bands = (figure.bands || []).map((b) => ({ type: "rect", layer: "below", xref: "x", yref: "paper",
+      x0: b.from, x1: b.to, y0: 0, y1: 1, fillcolor: b.color, opacity: 0.18, line: { width: 0 } }));
+    const out = { font: FONT, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", margin: { l: 60, r: 16, t: legend ? 64 : 34, b: 48 },
+      shapes: bands, showlegend: legend, legend: { orientation: "h", y: 1.01, yanchor: "bottom", x: 0 }, hoverlabel: { font: FONT }, hovermode: overTime ? "x unified" : "closest",
       barmode: "group", modebar: { bgcolor: "rgba(0,0,0,0)", color: "#b9c2cc", activecolor: INK },
       xaxis: axis(figure.x_label, figure.log_x), yaxis: axis(figure.y_label, figure.log_y) };
     if (figure.equal_axes) Object.assign(out.yaxis, { scaleanchor: "x", constrain: "domain" }), out.xaxis.constrain = "domain";

@@ -5,6 +5,10 @@
 
 namespace flextip::report {
 
+/// Makes FOLDER/report.html again, of whatever command summary.json names. Throws InputError where
+/// the folder is no result, its command has no page, or a file that the page stands on is missing.
+void WriteReport(const std::filesystem::path& folder);
+
 // Each reads FOLDER/summary.json and what else is there (docs/formats.md), and writes
 // FOLDER/report.html. What is absent is left out. They throw InputError where a file that is there
 // cannot be read and WorkError where the page cannot be written.

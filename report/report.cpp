@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -10,35 +10,12 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "report/embedded.h"
+#include "report/result_files.h"
 
 namespace flextip::report {
 namespace {
 
 constexpr std::size_t kWords = 40;  // a longer cell of a table is a sentence: its lines break
-
-/// JSON has no word for a number that is not finite; Plotly draws null as a gap.
-nlohmann::json Numbers(const std::vector<double>& values) {
-  auto list = nlohmann::json::array();
-  for (const double v : values) {
-    if (std::isfinite(v)) {
-      list.push_back(v);
-    } else {
-      list.push_back(nullptr);
-    }
-  }
-  return list;
-}
-
-nlohmann::json TraceJson(const PlotTrace& trace) {
-  nlohmann::json json{{"name", trace.name},
-                      {"x", Numbers(trace.x)},
-                      {"y", Numbers(trace.y)},
-                      {"dashed", trace.dashed},
-                      {"markers", trace.markers}};
-  if (!trace.z.empty()) json["z"] = Numbers(trace.z);
-  if (!trace.color.empty()) json["color"] = trace.color;
-  return json;
-}
 
 /// A "<" in JSON could end the script element that holds it.
 std::string WithoutTags(std::string text) {
@@ -48,22 +25,18 @@ std::string WithoutTags(std::string text) {
   return text;
 }
 
-/// What page.js draws.
-std::string PlotJson(const Plot& plot) {
-  nlohmann::json json{{"x_label", plot.x_label},
-                      {"y_label", plot.y_label},
-                      {"z_label", plot.z_label},
-                      {"log_y", plot.log_y},
-                      {"traces", nlohmann::json::array()}};
-  for (const auto& trace : plot.traces) {
-    FLEXTIP_CHECK(trace.x.size() == trace.y.size(), "as many x as y");
-    FLEXTIP_CHECK(trace.z.empty() || trace.z.size() == trace.x.size(), "as many z as x");
-    json["traces"].push_back(TraceJson(trace));
-  }
-  for (const PlotBand& band : plot.bands) {
-    json["bands"].push_back({{"from", band.from}, {"to", band.to}, {"color", band.color}});
-  }
-  return WithoutTags(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+/// Fields and bars, which the bundle for paths in space cannot draw.
+bool IsFlat(const nlohmann::json& figure) {
+  if (!figure.value("fields", nlohmann::json::array()).empty()) return true;
+  const auto traces = figure.value("traces", nlohmann::json::array());
+  return std::any_of(traces.begin(), traces.end(),
+                     [](const auto& trace) { return trace.value("kind", "") == "bars"; });
+}
+
+bool IsInSpace(const nlohmann::json& figure) {
+  const auto traces = figure.value("traces", nlohmann::json::array());
+  return std::any_of(traces.begin(), traces.end(),
+                     [](const auto& trace) { return trace.contains("z"); });
 }
 
 std::string MimeType(const std::string& bytes) {
@@ -137,10 +110,17 @@ std::string Base64(const std::string& bytes) {
 Report::Report(std::string title, std::string subtitle)
     : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
 
-void Report::AddFigures(const std::vector<std::pair<std::string, std::string>>& figures) {
-  if (figures.empty()) return;
+void Report::AddLead(const std::string& says, const std::string& more) {
+  if (says.empty()) return;
+  body_ += fmt::format("<section class=\"verdict\">\n<p class=\"says\">{}</p>\n", EscapeHtml(says));
+  if (!more.empty()) body_ += fmt::format("<p class=\"gains\">{}</p>\n", EscapeHtml(more));
+  body_ += "</section>\n";
+}
+
+void Report::AddNumbers(const std::vector<std::pair<std::string, std::string>>& numbers) {
+  if (numbers.empty()) return;
   body_ += "<dl class=\"figures\">\n";
-  for (const auto& [what, value] : figures) {
+  for (const auto& [what, value] : numbers) {
     body_ +=
         fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", EscapeHtml(what), EscapeHtml(value));
   }
@@ -159,10 +139,6 @@ void Report::AddHeading(const std::string& text) {
   body_ += fmt::format("<h2>{}</h2>\n", EscapeHtml(text));
 }
 
-void Report::AddText(const std::string& text) {
-  body_ += fmt::format("<p>{}</p>\n", EscapeHtml(text));
-}
-
 void Report::AddTable(const Table& table) {
   body_ += "<figure class=\"table\">\n" + Title(table.title) + "<table>\n<thead>" +
            Row(table.header, "th") + "</thead>\n<tbody>\n";
@@ -173,24 +149,40 @@ void Report::AddTable(const Table& table) {
   body_ += "</tbody></table>\n" + Caption(table.caption) + "</figure>\n";
 }
 
-void Report::AddPlot(const Plot& plot) {
-  FLEXTIP_CHECK(!has_figures_, "figures are added once");
-  has_plots_ = true;
-  const bool in_space = !plot.traces.empty() && !plot.traces.front().z.empty();
+void Report::AddDrawing(const std::string& title, const std::string& caption,
+                        const std::string& json, bool in_space) {
+  has_figures_ = true;
+  has_space_ = has_space_ || in_space;
+  FLEXTIP_CHECK(!has_space_ || !has_flat_, "a page draws in space or flat, not both");
   body_ += fmt::format(
-      "<figure class=\"plot\">\n{}<div class=\"canvas{}\"><script type=\"application/json\">{}"
+      "<figure class=\"plot\">\n{}<div class=\"drawing{}\"><script type=\"application/json\">{}"
       "</script></div>\n{}</figure>\n",
-      Title(plot.title), in_space ? " space" : "", PlotJson(plot), Caption(plot.caption));
+      Title(title), in_space ? " space" : "", WithoutTags(json), Caption(caption));
 }
 
-void Report::AddFigure(const std::string& title, const std::string& caption,
-                       const std::string& json) {
-  FLEXTIP_CHECK(!has_plots_, "plots are added once");
-  has_figures_ = true;
-  body_ += fmt::format(
-      "<figure class=\"plot\">\n{}<div class=\"drawing\"><script type=\"application/json\">{}"
-      "</script></div>\n{}</figure>\n",
-      Title(title), WithoutTags(json), Caption(caption));
+void Report::AddFigures(const std::vector<Figure>& figures) {
+  if (figures.size() > 1) body_ += "<div class=\"drawings\">\n";
+  for (const Figure& figure : figures) {
+    for (const auto& trace : figure.traces) {
+      has_flat_ = has_flat_ || trace.kind == FigureTrace::Kind::kBars;
+    }
+    has_flat_ = has_flat_ || !figure.fields.empty();
+    AddDrawing(figure.title, figure.caption, FigureText(figure), figure.InSpace());
+  }
+  if (figures.size() > 1) body_ += "</div>\n";
+}
+
+void Report::AddFigureFile(const std::filesystem::path& file) {
+  const auto figures = nlohmann::json::parse(ReadBytes(file), nullptr, false);
+  if (!figures.is_array()) throw InputError::At(file.string(), 0, "is not a list of figures");
+  body_ += "<div class=\"drawings\">\n";
+  for (const auto& figure : figures) {
+    if (!figure.is_object()) throw InputError::At(file.string(), 0, "holds what is no figure");
+    has_flat_ = has_flat_ || IsFlat(figure);
+    AddDrawing(figure.value("title", ""), figure.value("caption", ""), figure.dump(),
+               IsInSpace(figure));
+  }
+  body_ += "</div>\n";
 }
 
 void Report::AddPictures(
@@ -213,11 +205,10 @@ std::string Report::Html() const {
     html += fmt::format("<p class=\"subtitle\">{}</p>\n", EscapeHtml(subtitle_));
   }
   html += "</header>\n<main>\n" + body_ + "</main>\n";
-  if (has_plots_)
-    html += fmt::format("<script>{}</script>\n<script>\n{}</script>\n", PlotlyJs(), PageJs());
-  if (has_figures_)
-    html +=
-        fmt::format("<script>{}</script>\n<script>\n{}</script>\n", PlotlyFlatJs(), FiguresJs());
+  if (has_figures_) {
+    html += fmt::format("<script>{}</script>\n<script>\n{}</script>\n",
+                        has_space_ ? PlotlyJs() : PlotlyFlatJs(), FiguresJs());
+  }
   return html + "</body>\n</html>\n";
 }
 

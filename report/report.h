@@ -7,31 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "report/figure.h"
+
 namespace flextip::report {
-
-/// One curve: y over x, or a path in space where `z` is not empty. A value that is not finite
-/// leaves a gap. All lists that are used have the same length.
-struct PlotTrace {
-  std::string name = {};
-  std::vector<double> x = {}, y = {}, z = {};
-  std::string color = {};  ///< as in CSS; empty: the page chooses
-  bool dashed = false;
-  bool markers = false;  ///< points instead of a line
-};
-
-/// A stretch of the x axis behind the curves.
-struct PlotBand {
-  double from = 0.0, to = 0.0;
-  std::string color;
-};
-
-struct Plot {
-  std::string title = {}, caption = {};
-  std::string x_label = {}, y_label = {}, z_label = {};  ///< with the unit: "time (s)"
-  std::vector<PlotTrace> traces = {};                    ///< all over x, or all in space
-  bool log_y = false;
-  std::vector<PlotBand> bands = {};
-};
 
 /// A row of texts for each line; cells are shown as they are.
 struct Table {
@@ -40,24 +18,28 @@ struct Table {
   std::vector<std::vector<std::string>> rows = {};  ///< each as long as the header
 };
 
-/// Collects sections in the order they are added and writes them as one page.
+/// Collects sections in the order they are added and writes them as a page.
 class Report {
  public:
   /// `subtitle` stands below the title: the command as typed, the version.
   explicit Report(std::string title, std::string subtitle = "");
 
-  /// Large figures at the head of the page: what it is, its value with unit.
-  void AddFigures(const std::vector<std::pair<std::string, std::string>>& figures);
+  /// Adds the result in a sentence, large and at the head of the page, and more of it below.
+  void AddLead(const std::string& says, const std::string& more = "");
+  /// Adds large numbers: the name of each, its value with unit.
+  void AddNumbers(const std::vector<std::pair<std::string, std::string>>& figures);
   /// A list of remarks in a box that cannot be overlooked; nothing where it is empty.
   void AddWarnings(const std::vector<std::string>& warnings);
   void AddHeading(const std::string& text);
-  void AddText(const std::string& text);
   void AddTable(const Table& table);
   /// As it stands: for parts that a page draws itself. Its texts must be escaped already.
   void AddHtml(const std::string& html) { body_ += html; }
-  void AddPlot(const Plot& plot);
-  /// A figure of figures.json, given as its JSON text. A page has plots or figures, not both.
-  void AddFigure(const std::string& title, const std::string& caption, const std::string& json);
+  /// Adds figures, side by side where there are several and the page is wide. Those of a page are
+  /// all in space or all flat with fields or bars: lines alone go with both.
+  void AddFigures(const std::vector<Figure>& figures);
+  void AddFigure(const Figure& figure) { AddFigures({figure}); }
+  /// Adds a figures.json. Throws InputError where the file is no list of figures.
+  void AddFigureFile(const std::filesystem::path& file);
   /// Pictures side by side, each a PNG or JPEG file's bytes with a caption.
   void AddPictures(const std::vector<std::pair<std::string, std::string>>& bytes_and_captions);
 
@@ -67,8 +49,12 @@ class Report {
   void Write(const std::filesystem::path& path) const;
 
  private:
+  /// `json`: of one figure.
+  void AddDrawing(const std::string& title, const std::string& caption, const std::string& json,
+                  bool in_space);
+
   std::string title_, subtitle_, body_;
-  bool has_plots_ = false, has_figures_ = false;
+  bool has_figures_ = false, has_space_ = false, has_flat_ = false;  ///< flat: fields or bars
 };
 
 /// `text` with the characters that HTML takes for its own replaced.

@@ -1,5 +1,4 @@
-// Reads what the commands write: summary.json, tables of numbers, pictures. The report knows
-// nothing else of the program.
+// Reads the commands' result files: tables of numbers, pictures.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +10,7 @@
 
 namespace flextip::report {
 
-/// A CSV file by columns. The header's leading '#' and spaces around names are dropped. A cell that
-/// is empty or not a number is NaN in `numbers`.
+/// A CSV file by columns. A cell that is empty or no number is NaN in `numbers`.
 struct ResultTable {
   std::vector<std::string> names;
   std::vector<std::vector<double>> numbers;     ///< one list a column
@@ -45,10 +43,5 @@ std::vector<std::filesystem::path> PicturesIn(const std::filesystem::path& folde
 /// The sub-folders of `folder` that hold the file `name`, by name.
 std::vector<std::filesystem::path> FoldersWith(const std::filesystem::path& folder,
                                                const std::string& name);
-
-/// "max_deviation_m" -> "max deviation", "frames_per_second" -> "frames per second".
-std::string SpokenName(const std::string& key);
-/// The number behind `key` in the unit people read: metres as mm, N, px, s.
-std::string SpokenValue(const std::string& key, double value);
 
 }  // namespace flextip::report

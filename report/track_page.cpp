@@ -7,6 +7,7 @@
 
 #include "report/page_parts.h"
 #include "report/pages.h"
+#include "report/summary_parts.h"
 #include "report/thinned_table.h"
 
 namespace flextip::report {
@@ -28,8 +29,8 @@ ThinnedTable ReadFrames(const fs::path& file, const std::vector<ThinnedColumn>& 
 }
 
 /// Where the tip was not seen.
-std::vector<PlotBand> StatusBands(const ThinnedTable& table) {
-  std::vector<PlotBand> bands;
+std::vector<FigureBand> StatusBands(const ThinnedTable& table) {
+  std::vector<FigureBand> bands;
   std::string before;
   for (std::size_t i = 0; i < table.buckets.size(); ++i) {
     const ThinnedBucket& bucket = table.buckets[i];
@@ -45,7 +46,7 @@ std::vector<PlotBand> StatusBands(const ThinnedTable& table) {
   return bands;
 }
 
-bool AddTrace(const ThinnedTable& table, std::size_t column, PlotTrace trace, Plot& plot) {
+bool AddTrace(const ThinnedTable& table, std::size_t column, FigureTrace trace, Figure& plot) {
   table.Trace(column, trace.x, trace.y);
   bool any = false;
   for (const double y : trace.y) any = any || std::isfinite(y);
@@ -55,14 +56,15 @@ bool AddTrace(const ThinnedTable& table, std::size_t column, PlotTrace trace, Pl
 
 /// The path of the tip, and one trace for each status it had.
 void AddPath(Report& report, const ThinnedTable& table) {
-  Plot plot{.title = "Path of the tip as seen",
-            .x_label = "x (mm)",
-            .y_label = "y (mm)",
-            .z_label = "z (mm)"};
-  PlotTrace path{.name = "path", .color = "#0072b2"};
-  PlotTrace ok{.name = "ok", .color = "#009e73", .markers = true};
-  PlotTrace predicted{.name = "predicted", .color = kPredicted, .markers = true};
-  const auto add = [](const ThinnedBucket& bucket, PlotTrace& trace) {
+  Figure plot{.title = "Path of the tip as seen",
+              .x_label = "x (mm)",
+              .y_label = "y (mm)",
+              .z_label = "z (mm)"};
+  FigureTrace path{.name = "path", .color = "#0072b2"};
+  FigureTrace ok{.name = "ok", .kind = FigureTrace::Kind::kPoints, .color = "#009e73"};
+  FigureTrace predicted{
+      .name = "predicted", .kind = FigureTrace::Kind::kPoints, .color = kPredicted};
+  const auto add = [](const ThinnedBucket& bucket, FigureTrace& trace) {
     trace.x.push_back(bucket.columns[0].first);
     trace.y.push_back(bucket.columns[1].first);
     trace.z.push_back(bucket.columns[2].first);
@@ -72,10 +74,10 @@ void AddPath(Report& report, const ThinnedTable& table) {
     if (bucket.first_text == "ok") add(bucket, ok);
     if (bucket.first_text == "predicted") add(bucket, predicted);
   }
-  for (PlotTrace* trace : {&path, &ok, &predicted}) {
+  for (FigureTrace* trace : {&path, &ok, &predicted}) {
     if (!trace->x.empty()) plot.traces.push_back(std::move(*trace));
   }
-  report.AddPlot(plot);
+  report.AddFigure(plot);
 }
 
 /// The values less the first one that is a number.
@@ -99,7 +101,7 @@ void AddTip(Report& report, const fs::path& file) {
   if (table.buckets.empty()) return;
   report.AddHeading("The tip");
   AddPath(report, table);
-  Plot movement{
+  Figure movement{
       .title = "Movement of the tip",
       .caption = std::string("Along the robot's axes, from where it was seen first.") + kBandsSay,
       .x_label = "time (s)",
@@ -109,30 +111,30 @@ void AddTip(Report& report, const fs::path& file) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (AddTrace(table, axis, {.name = kAxes[axis]}, movement)) FromFirst(movement.traces.back().y);
   }
-  report.AddPlot(movement);
-  Plot sure{.title = "How sure the position is",
-            .caption = std::string("Standard deviation of the position, all three axes "
-                                   "together, on a logarithmic scale.") +
-                       kBandsSay,
-            .x_label = "time (s)",
-            .y_label = "standard deviation (mm)",
-            .log_y = true,
-            .bands = StatusBands(table)};
-  if (AddTrace(table, 3, {.name = "standard deviation"}, sure)) report.AddPlot(sure);
+  report.AddFigure(movement);
+  Figure sure{.title = "How sure the position is",
+              .caption = std::string("Standard deviation of the position, all three axes "
+                                     "together, on a logarithmic scale.") +
+                         kBandsSay,
+              .x_label = "time (s)",
+              .y_label = "standard deviation (mm)",
+              .log_y = true,
+              .bands = StatusBands(table)};
+  if (AddTrace(table, 3, {.name = "standard deviation"}, sure)) report.AddFigure(sure);
 }
 
 void AddError(Report& report, const ThinnedTable& table) {
-  Plot plot{.title = "Error of the tip",
-            .caption = std::string("How far the tip was from the truth, and what its covariance "
-                                   "says; on a logarithmic scale.") +
-                       kBandsSay,
-            .x_label = "time (s)",
-            .y_label = "error (mm)",
-            .log_y = true,
-            .bands = StatusBands(table)};
+  Figure plot{.title = "Error of the tip",
+              .caption = std::string("How far the tip was from the truth, and what its covariance "
+                                     "says; on a logarithmic scale.") +
+                         kBandsSay,
+              .x_label = "time (s)",
+              .y_label = "error (mm)",
+              .log_y = true,
+              .bands = StatusBands(table)};
   if (!AddTrace(table, 0, {.name = "error"}, plot)) return;
   AddTrace(table, 1, {.name = "standard deviation", .color = "#555f6b", .dashed = true}, plot);
-  report.AddPlot(plot);
+  report.AddFigure(plot);
 }
 
 void AddFrames(Report& report, const fs::path& file) {
@@ -145,12 +147,12 @@ void AddFrames(Report& report, const fs::path& file) {
   AddError(report, table);
   const auto add = [&](std::size_t column, const char* title, const char* caption,
                        const char* unit) {
-    Plot plot{.title = title,
-              .caption = std::string(caption) + kBandsSay,
-              .x_label = "time (s)",
-              .y_label = unit,
-              .bands = StatusBands(table)};
-    if (AddTrace(table, column, {.name = title}, plot)) report.AddPlot(plot);
+    Figure plot{.title = title,
+                .caption = std::string(caption) + kBandsSay,
+                .x_label = "time (s)",
+                .y_label = unit,
+                .bands = StatusBands(table)};
+    if (AddTrace(table, column, {.name = title}, plot)) report.AddFigure(plot);
   };
   add(2, "Noise", "What the fit of the tags' pixels leaves.", "noise (grey levels)");
   add(3, "Corners' distance", "Of frames that were found by the tags' corners alone.",

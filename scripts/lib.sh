@@ -2,15 +2,15 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# Compiler, libraries and tools as Debian 12 names them.
+# Compiler and libraries of the program, as Debian 12 names them.
 BUILD_PACKAGES=(
   cmake ninja-build g++ libopencv-dev libapriltag-dev libeigen3-dev libceres-dev libcli11-dev
   libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev
 )
-# What the tests and checks need beside these; opencv-doc holds real chessboard pictures.
-# Tests, bench and flextip-reproduce: libgtest-dev, libgmock-dev, libbenchmark-dev, libgeos-dev.
+# More for tests, benchmarks, the thesis's figures and checks; opencv-doc holds real chessboard
+# pictures.
 TEST_PACKAGES=(
-  clang clang-format clang-tidy opencv-doc libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev
+  libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev clang clang-format clang-tidy opencv-doc
 )
 NODE_PACKAGES=(nodejs npm)
 
@@ -51,16 +51,38 @@ install_node_modules() {
   cp package-lock.json "$stamp"
 }
 
-# build PRESET [TARGET...]: configures once, then builds what has changed of the targets, or of all.
+# build PRESET [TARGET...]: configures once, then builds what has changed of the targets, or of all,
+# and says how far it is. The rest is estimated from the steps done: they are much alike.
 build() {
-  local preset=$1 launcher=() targets=()
+  local preset=$1 folder=build/$1 targets=()
   shift
+  if [ "$preset" = program ]; then folder=build/release; fi
   if [ $# -gt 0 ]; then targets=(--target "$@"); fi
-  if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-  if [ ! -f "build/$preset/build.ninja" ]; then
-    say "configuring $preset"
-    cmake --preset "$preset" "${launcher[@]}"
+  if [ ! -f "$folder/build.ninja" ]; then
+    say "configuring $folder"
+    mkdir -p build
+    cmake --preset "$preset" >"$folder.log" 2>&1 || { cat "$folder.log"; die "cmake found no way"; }
   fi
-  say "building $preset"
-  cmake --build --preset "$preset" --parallel "$(nproc)" "${targets[@]}"
+  say "building $folder"
+  NINJA_STATUS='@%f %t %e ' cmake --build "$folder" --parallel "$(nproc)" "${targets[@]}" |
+    progress
+}
+
+# progress: turns ninja's lines "@done all seconds what" into a few, and passes on all others
+# (warnings, errors).
+progress() {
+  local line finished all s next_s=0 left
+  while IFS= read -r line; do
+    if ! [[ $line =~ ^@([0-9]+)\ ([0-9]+)\ ([0-9]+) ]]; then
+      printf '%s\n' "$line"
+      continue
+    fi
+    finished=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} s=${BASH_REMATCH[3]} left=
+    if [ "$s" -lt "$next_s" ] && [ "$finished" -lt "$all" ]; then continue; fi
+    next_s=$((s + 15))
+    if [ "$finished" -ge 5 ] && [ "$finished" -lt "$all" ]; then
+      left=", about $((s * (all - finished) / finished / 60 + 1)) min left"
+    fi
+    printf '    %d of %d steps, %d min %02d s%s\n' "$finished" "$all" $((s / 60)) $((s % 60)) "$left"
+  done
 }

@@ -1,13 +1,7 @@
 #include "apps/common/calibration_input.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <fstream>
 #include <set>
-
-#include "calibration/em/field.h"
-#include "core/error.h"
 
 namespace flextip {
 
@@ -19,65 +13,6 @@ void AddCalibrationOption(CLI::App& command, CalibrationFiles& files) {
           "says; once for each")
       ->allow_extra_args(false)
       ->type_name("FILE");
-}
-
-namespace {
-
-Eigen::Vector3d Three(const UsedCalibration& used, const std::string& name) {
-  const auto& numbers = used.calibration.numbers;
-  const auto found = numbers.find(name);
-  if (found == numbers.end() || found->second.size() != 3) {
-    throw InputError::At(used.file.string(), 0, name + ": expected three numbers with em0.field");
-  }
-  return Eigen::Vector3d(found->second.data());
-}
-
-/// em0's places without the field's distortion; they are in R already.
-void CorrectField(const UsedCalibration& used, Recording& recording,
-                  std::vector<std::string>& warnings) {
-  const auto& numbers = used.calibration.numbers;
-  const auto coefficients = numbers.find("em0.field");
-  if (coefficients == numbers.end()) {
-    throw InputError::At(used.file.string(), 0, "em0.field: missing beside its centre and scale");
-  }
-  const FieldCorrection field{coefficients->second, Three(used, "em0.field_centre_m"),
-                              Three(used, "em0.field_scale_m")};
-  if (!(field.scale_m.minCoeff() > 0)) {
-    throw InputError::At(used.file.string(), 0, "em0.field_scale_m: expected more than 0");
-  }
-  std::size_t outside = 0;
-  auto& samples = recording.em0->samples;
-  for (auto& sample : samples) {
-    outside += !FieldCovers(field, sample.value.p_RS);
-    sample.value.p_RS = ApplyField(field, sample.value.p_RS);
-  }
-  if (outside > 0) {
-    warnings.push_back(
-        fmt::format("{}: {} of {} samples of em0 lie beyond where em0.field is known",
-                    used.file.string(), outside, samples.size()));
-  }
-}
-
-}  // namespace
-
-std::vector<UsedCalibration> UseCalibrations(const CalibrationFiles& files, Recording& recording,
-                                             std::vector<std::string>& warnings) {
-  std::vector<UsedCalibration> used;
-  for (const auto& file : files) {
-    UsedCalibration one{file, ReadCalibration(file), {}};
-    AppliedCalibration applied = ApplyCalibration(file, one.calibration, recording);
-    one.names = std::move(applied.used);
-    if (!applied.em_field.empty()) {
-      CorrectField(one, recording, warnings);
-      one.names.insert(one.names.end(), applied.em_field.begin(), applied.em_field.end());
-    }
-    if (one.names.empty()) {
-      warnings.push_back(fmt::format("{}: nothing in it is part of a recording", file.string()));
-    }
-    warnings.insert(warnings.end(), applied.warnings.begin(), applied.warnings.end());
-    used.push_back(std::move(one));
-  }
-  return used;
 }
 
 nlohmann::json CalibrationsJson(const std::vector<UsedCalibration>& used) {

@@ -34,6 +34,7 @@ void AddConvert(CLI::App& app, AppContext& context);
 void AddDetect(CLI::App& app, AppContext& context);
 void AddEstimate(CLI::App& app, AppContext& context);
 void AddMap(CLI::App& app, AppContext& context);
+void AddReport(CLI::App& app, AppContext& context);
 void AddReproduce(CLI::App& app, AppContext& context);
 void AddShape(CLI::App& app, AppContext& context);
 void AddSimulate(CLI::App& app, AppContext& context);

@@ -29,7 +29,7 @@ InputRead ReadInput(const RecordingInput& input) {
   InputRead read{ReadRecording(input.recording, {.check_frames = false}), {}};
   Recording& recording = read.recording;
   if (!input.tracked.empty()) recording.vision0.reset();
-  read.calibrations = UseCalibrations(input.calibrations, recording, read.warnings);
+  read.calibrations = ApplyCalibrations(input.calibrations, recording, read.warnings);
   if (input.tracked.empty()) return read;
   ReadLog log;
   recording.vision0 = ReadVision(input.tracked / "vision0", log);

@@ -27,17 +27,18 @@ struct Options {
   bool force = false;
 };
 
-/// What is found, in the order of table.csv and for summary.json.
+/// The findings, in the order of table.csv and for summary.json.
 struct Findings {
-  std::string table = "quantity,value,unit,note\n";
+  explicit Findings(const std::vector<std::string>& map_columns) : map(map_columns) {}
+
+  CsvWriter table{{"quantity", "value", "unit", "note"}, false};
   nlohmann::json summary;
   std::vector<report::Figure> figures;
-  std::string map_rows;
+  CsvWriter map;
 
   void Add(const std::string& quantity, double value, const std::string& unit,
            const std::string& note = "") {
-    table += fmt::format("{},{},{},{}\n", quantity,
-                         std::isfinite(value) ? fmt::format("{:.5g}", value) : "", unit, note);
+    table.Add(quantity).AddOrEmpty(value, 5).Add(unit).Add(note).EndRow();
   }
 };
 
@@ -181,7 +182,6 @@ void AnswerPlan(const MapScenario<N>& scenario, Findings& findings, OutputFolder
 /// The maps of all slices, with the worst cases where they are asked for.
 template <int N>
 void ComputeSlices(const MapScenario<N>& scenario, Findings& findings, OutputFolder& output) {
-  findings.map_rows = MapTableHeader<N>(scenario.tolerance.has_value());
   for (std::size_t i = 0; i < scenario.slices.size(); ++i) {
     const auto& [name, slice] = scenario.slices[i];
     const std::string prefix = N == 2 ? "" : fmt::format("slice{}-", i + 1);
@@ -197,7 +197,7 @@ void ComputeSlices(const MapScenario<N>& scenario, Findings& findings, OutputFol
       worst.angle_rad = WorstOverMap(scenario.setup, map, bounds, Measure::kAngle);
     }
     Summarise(scenario.setup, name, map, findings);
-    findings.map_rows += MapTableRows(name, map, worst);
+    AddMapRows(name, map, worst, findings.map);
     std::vector<report::Figure> figures;
     if (HasErrors(scenario.setup)) figures = MapFigures(scenario.setup, name, prefix, map);
     if (scenario.tolerance) {
@@ -210,19 +210,19 @@ void ComputeSlices(const MapScenario<N>& scenario, Findings& findings, OutputFol
 
 template <int N>
 void RunScenario(const MapScenario<N>& scenario, OutputFolder& output, bool quiet) {
-  Findings findings;
+  Findings findings(MapColumns<N>(scenario.tolerance.has_value()));
   ComputeSlices(scenario, findings, output);
   if (scenario.tolerance) AnswerTolerance(scenario, findings, output);
   if (scenario.plan) AnswerPlan(scenario, findings, output);
-  WriteTextFile(output.folder() / "map.csv", findings.map_rows);
-  WriteTextFile(output.folder() / "table.csv", findings.table);
+  WriteTextFile(output.folder() / "map.csv", findings.map.text());
+  WriteTextFile(output.folder() / "table.csv", findings.table.text());
   report::WriteFigures(output.folder() / "figures.json", findings.figures);
   output.WriteSummary(findings.summary);
   report::WriteMapReport(output.folder());
   const auto page = output.name() / "report.html";
   output.Commit();
   if (quiet) return;
-  fmt::print("{}{}\n", findings.table, page.string());
+  fmt::print("{}{}\n", findings.table.text(), page.string());
 }
 
 void RunMap(const Options& options, const AppContext& context) {

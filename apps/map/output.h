@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "recording/text/csv.h"
 #include "report/figure.h"
 #include "workspace/map_scenario.h"
 
@@ -15,13 +16,14 @@ struct WorstValues {
   std::vector<double> angle_rad;
 };
 
+/// Returns the columns of map.csv.
 template <int N>
-std::string MapTableHeader(bool with_worst);
-/// One row for every point that the tip can reach. SI units, angles in degrees as named; a measure
-/// that is not there is left empty.
+std::vector<std::string> MapColumns(bool with_worst);
+/// Adds a row for every point that the tip can reach. SI units, angles in degrees as named; a
+/// measure that is not there is left empty.
 template <int N>
-std::string MapTableRows(const std::string& slice, const WorkspaceMap<N>& map,
-                         const WorstValues& worst);
+void AddMapRows(const std::string& slice, const WorkspaceMap<N>& map, const WorstValues& worst,
+                CsvWriter& csv);
 
 /// ||G||, bound, angle and the two directions of a slice. `prefix` begins the names.
 template <int N>

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/shape/model.h"
+#include "kinematics/shaft_shape.h"
 
 namespace flextip {
 

@@ -13,10 +13,10 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/vector_option.h"
-#include "apps/shape/model.h"
 #include "apps/shape/picture.h"
 #include "apps/shape/table.h"
 #include "core/error.h"
+#include "kinematics/shaft_shape.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
 

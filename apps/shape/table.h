@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/shape/model.h"
+#include "kinematics/shaft_shape.h"
 
 namespace flextip {
 

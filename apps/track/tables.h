@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "apps/track/score.h"
 #include "core/tag_collar.h"
 #include "recording/recording.h"
 #include "recording/text/csv.h"
+#include "recording/tip_score.h"
 #include "vision/tracking/tip_tracker.h"
 
 namespace flextip {

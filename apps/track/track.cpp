@@ -15,56 +15,19 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/stop_signal.h"
-#include "apps/track/input.h"
+#include "apps/track/options.h"
 #include "apps/track/overlay.h"
 #include "apps/track/summary.h"
 #include "apps/track/tables.h"
 #include "core/error.h"
 #include "pipeline/instrument_tracker.h"
+#include "recording/frames/track_input.h"
+#include "recording/tip_score.h"
 #include "report/pages.h"
 #include "vision/tracking/tip_tracker.h"
 
 namespace flextip {
 namespace {
-
-struct TrackOptions {
-  TrackInputOptions input;
-  std::filesystem::path out, truth;
-  TrackerOptions tracker;
-  std::vector<double> black_white;
-  double rate_hz = 0.0;
-  std::string end;          // of the shaft, where its outline is used
-  double diameter_m = 0.0;  // of the shaft; 0: the recording's
-  long max_frames = 0;      // 0: all
-  bool no_model = false, overlay = false, force = false, resume = false;
-
-  std::string InputName() const {
-    if (!input.live.empty()) return input.live;
-    return std::filesystem::weakly_canonical(input.source).string();
-  }
-  /// What a resumed run must have been given as well.
-  std::string RunName() const {
-    std::string name = InputName();
-    for (const auto& file : input.calibrations) name += " with " + file.string();
-    return name;
-  }
-};
-
-void CheckOptions(TrackOptions& options) {
-  if (!options.black_white.empty()) {
-    options.input.range = {options.black_white[0], options.black_white[1]};
-  }
-  if (options.input.range.black >= options.input.range.white) {
-    throw InputError(fmt::format("--black-white: found {},{}, expected the first below the second",
-                                 options.input.range.black, options.input.range.white));
-  }
-  // Recorded frames give the same tables on every machine; live ones do not wait for a search.
-  options.tracker.background_detection = !options.input.live.empty();
-  if (options.rate_hz > 0) options.input.rate_hz = options.rate_hz;
-  if (options.resume && !options.input.live.empty()) {
-    throw InputError("--resume: a live source cannot be seen again");
-  }
-}
 
 // The shaft whose outline carries a tip on. A recording does not say how its shaft ends, and its
 // outer_diameter_m may be that of the part that bends: so only where it was asked for.
@@ -120,7 +83,7 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
   if (tables.sums.frames == 0) {
     throw InputError::At(options.InputName(), 0, "no frame can be read");
   }
-  if (input.is_recording && options.max_frames == 0 && tables.sums.frames < count) {
+  if (options.IsRecording() && options.max_frames == 0 && tables.sums.frames < count) {
     output.Warn(fmt::format("the video ends after {} of {} frames", tables.sums.frames, count));
   }
 }
@@ -141,18 +104,16 @@ void PrintResult(const TrackOptions& options, const nlohmann::json& summary) {
 
 void RunTrack(TrackOptions options, bool quiet) {
   SilenceVideoCodecs();
-  CheckOptions(options);
-  std::vector<std::filesystem::path> inputs{options.input.source, options.truth};
-  std::erase_if(inputs, [](const auto& path) { return path.empty(); });
-  inputs.insert(inputs.end(), options.input.calibrations.begin(), options.input.calibrations.end());
-  OutputFolder output(options.out, "track",
-                      {.force = options.force, .inputs = inputs, .resume = options.resume});
-  TrackInput input = OpenTrackInput(options.input);
+  CheckTrackOptions(options);
+  OutputFolder output(
+      options.out, "track",
+      {.force = options.force, .inputs = options.Files(), .resume = options.resume});
+  TrackInput input = OpenTrackInput(options);
   output.Warn(input.warnings);
   options.tracker.tube = ShaftSeen(options, input);
   std::optional<Series<Eigen::Vector3d>> truth;
-  if (input.is_recording || !options.truth.empty()) {
-    truth = ReadTipTruth(options.input.source, options.truth);
+  if (options.IsRecording() || !options.truth.empty()) {
+    truth = ReadTipTruth(options.source, options.truth);
   }
   TrackTables tables(output.folder(), options.RunName(), output.resumed());
   if (options.resume) {
@@ -163,7 +124,7 @@ void RunTrack(TrackOptions options, bool quiet) {
     if (output.resumed()) output.KeepUnfinished();
   }
   std::optional<StopSignal> stop;
-  if (!options.input.live.empty()) stop.emplace();
+  if (!options.live.empty()) stop.emplace();
   TrackFrames(options, input, truth, output, tables, quiet);
   const TrackSums& sums = tables.sums;
   const int cameras = static_cast<int>(input.frames->Cameras());
@@ -179,85 +140,12 @@ void RunTrack(TrackOptions options, bool quiet) {
   if (!quiet) PrintResult(options, summary);
 }
 
-void AddInputOptions(CLI::App& command, TrackOptions& options) {
-  command
-      .add_option("recording", options.input.source,
-                  "Recording with cam0/ and tags0/; or a folder of pictures or a video, with "
-                  "--camera and --collar")
-      ->type_name("RECORDING");
-  command.add_option("--live", options.input.live, "A device number, URL or file, until Ctrl-C")
-      ->type_name("SOURCE");
-  command.add_option("--camera", options.input.camera, "Camera file: EuRoC, Kalibr, ROS or OpenCV")
-      ->type_name("FILE");
-  command.add_option("--collar", options.input.collar, "Collar file, as a recording's tags0")
-      ->type_name("FILE");
-  command
-      .add_option("--rate", options.rate_hz,
-                  "Of plain pictures or a video; without it names in nanoseconds, the video's rate")
-      ->check(CLI::PositiveNumber)
-      ->type_name("HZ");
-  AddCalibrationOption(command, options.input.calibrations);
-  command.add_option("--frames", options.max_frames, "End after so many")
-      ->check(CLI::PositiveNumber)
-      ->type_name("N");
-  command
-      .add_option("--black-white", options.black_white,
-                  "Values of 16-bit pictures that become 0 and 255; without it 0,65535")
-      ->expected(2)
-      ->delimiter(',')
-      ->type_name("LOW,HIGH");
-}
-
 }  // namespace
 
 void AddTrack(CLI::App& app, AppContext& context) {
   auto* command = app.add_subcommand("track", "Localise tags and the tip in frames");
   auto options = std::make_shared<TrackOptions>();
-  AddInputOptions(*command, *options);
-  command->add_option("-o,--output", options->out, "Folder for the results")->required();
-  command->add_flag("--overlay", options->overlay, "Draw what was found into a video");
-  command->add_option("--truth", options->truth, "Score against this CSV: timestamp [ns],x,y,z")
-      ->type_name("FILE");
-  command
-      ->add_option("--decimate", options->tracker.detector.quad_decimate,
-                   "Search tags at 1/this of the resolution: faster, misses small ones")
-      ->capture_default_str();
-  command->add_option("--threads", options->tracker.detector.threads, "Threads")
-      ->capture_default_str();
-  command->add_flag("--no-model", options->no_model,
-                    "Carry a hidden tip on by its motion alone, not by wrist0 and the shaft");
-  auto* outline =
-      command
-          ->add_option("--outline", options->end,
-                       "Carry a tip whose tags are covered on by the shaft's outline; its end is "
-                       "round or flat")
-          ->check(CLI::IsMember({"round", "flat"}))
-          ->type_name("END");
-  command
-      ->add_option("--diameter", options->diameter_m,
-                   "Of the shaft as it is seen; without it the recording's outer_diameter_m")
-      ->check(CLI::PositiveNumber)
-      ->needs(outline)
-      ->type_name("METRES");
-  command->add_flag("--force", options->force, "Replace the folder of an earlier run");
-  command->add_flag("--resume", options->resume, "Go on where an interrupted run ended");
-  command->footer(
-      "Examples:\n"
-      "a recording (both eyes where it has cam1, the wrist where it has wrist0)\n"
-      "  flextip track RECORDING -o OUT --overlay\n"
-      "a folder of PNG, JPEG or TIFF pictures, here of a 12-bit camera at 50 Hz\n"
-      "  flextip track pictures/ --camera sensor.yaml --collar collar.yaml --rate 50 "
-      "--black-white 0,4095 -o OUT\n"
-      "a video\n"
-      "  flextip track video.mp4 --camera camera_info.yaml --collar collar.yaml -o OUT\n"
-      "a camera that is plugged in, or a stream, until Ctrl-C\n"
-      "  flextip track --live 0 --camera sensor.yaml --collar collar.yaml -o OUT\n"
-      "  flextip track --live rtsp://HOST/STREAM --camera sensor.yaml --collar collar.yaml -o "
-      "OUT\n"
-      "tags that another instrument covers for a while, on a shaft with a round end\n"
-      "  flextip track RECORDING --outline round -o OUT\n"
-      "after an interruption\n"
-      "  flextip track RECORDING -o OUT --resume\n");
+  AddTrackOptions(*command, *options);
   OnRun(*command, context, [options, &context] { RunTrack(*options, context.quiet); });
 }
 

@@ -13,6 +13,7 @@
 #include "bench/tool.h"
 #include "calibration/boards/chessboard.h"
 #include "calibration/uncertainty/projection_uncertainty.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 
@@ -139,7 +140,7 @@ void AddProjections(const Truth& t, const CameraSolution& found, Score& score) {
               static_cast<double>(found.views.size());
     }
     const Eigen::Vector2d error = CameraModel(found.camera).Project(mean).value() - px;
-    score.projection_nees += error.dot(uncertainty->CovariancePx(px, depth_m)->ldlt().solve(error));
+    score.projection_nees += MahalanobisSquared(error, *uncertainty->CovariancePx(px, depth_m));
     ++score.projections;
   }
 }

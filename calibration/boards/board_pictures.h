@@ -11,9 +11,9 @@
 namespace flextip {
 
 struct BoardPictures {
-  std::vector<std::filesystem::path> images;  ///< none: all that `corners` has
-  std::string board;                          ///< as ParseBoardSpec reads it
-  std::filesystem::path corners;  ///< read where it exists, else written; empty: neither
+  std::vector<std::filesystem::path> images = {};  ///< none: all that `corners` has
+  std::string board;                               ///< as ParseBoardSpec reads it
+  std::filesystem::path corners = {};  ///< read where it exists, else written; empty: neither
 };
 
 /// One picture is held at a time. What one picture tells of a charuco board's layout holds for all.

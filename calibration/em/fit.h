@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "calibration/em/field.h"
 #include "calibration/em/pairs.h"
+#include "recording/calibrations/em_field.h"
 
 namespace flextip {
 

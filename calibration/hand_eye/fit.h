@@ -33,7 +33,7 @@ struct HandEyeProblem {
   bool time_offset = false;  ///< wrists then move along their velocities
   bool intrinsics = false;
 
-  /// Of the numbers in hand_eye_chain.h those that are unknown.
+  /// Of the numbers in chain.h those that are unknown.
   std::vector<int> Unknowns() const;
 };
 

@@ -106,7 +106,7 @@ struct HandEyeResult {
 /// Throws InputError for a wrist without samples or a camera that is none. Everything else that
 /// does not work out is a status, or a reason of a view.
 ///
-/// Start: both planar poses of every board, chosen together (hand_eye_start.h). Then maximum
+/// Start: both planar poses of every board, chosen together (start.h). Then maximum
 /// a-posteriori over both frames, the time offset and every wrist pose within its noise, from all
 /// corners; views that do not fit the others are left out, worst first. The noises of corners and
 /// wrist are estimated with it (variance components, Foerstner 1979). Not converged is also what

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/rotation.h"
+#include "recording/calibrations/em_field.h"
 #include "recording/cameras/yaml.h"
 
 namespace flextip {
@@ -55,6 +56,7 @@ class Application {
   void SetEmDistance();
   void SetGages();
   void SetStiffness(const std::string& name);
+  void CorrectField();
 
   CameraStream& Camera(const std::string& name) const {
     return Need(name.starts_with("cam0.") ? recording_.cam0 : recording_.cam1, name);
@@ -73,6 +75,7 @@ class Application {
   const Calibration& found_;
   Recording& recording_;
   AppliedCalibration applied_;
+  std::vector<std::string> field_names_;  // `em0.field` and its like
 };
 
 const std::vector<double>& Application::Numbers(const std::string& name, std::size_t count) const {
@@ -313,7 +316,7 @@ void Application::ApplyNumbers(const std::string& name) {
   }
   if (name == "em0.field" || name == "em0.field_centre_m" || name == "em0.field_scale_m") {
     Need(recording_.em0, name);
-    applied_.em_field.push_back(name);
+    field_names_.push_back(name);
     return;
   }
   if (eye == "intrinsics") {
@@ -349,10 +352,38 @@ void Application::ApplyText(const std::string& name) {
   applied_.used.push_back(name);
 }
 
+/// Takes the field's distortion out of em0's places, which are in R already.
+void Application::CorrectField() {
+  if (!Finds("em0.field")) Refuse("em0.field", "missing beside its centre and scale");
+  const auto three = [&](const std::string& name) -> Eigen::Vector3d {
+    const auto found = found_.numbers.find(name);
+    if (found == found_.numbers.end() || found->second.size() != 3) {
+      Refuse(name, "expected three numbers with em0.field");
+    }
+    return Eigen::Vector3d(found->second.data());
+  };
+  const FieldCorrection field{found_.numbers.at("em0.field"), three("em0.field_centre_m"),
+                              three("em0.field_scale_m")};
+  if (!(field.scale_m.minCoeff() > 0)) Refuse("em0.field_scale_m", "expected more than 0");
+  std::size_t outside = 0;
+  auto& samples = recording_.em0->samples;
+  for (auto& sample : samples) {
+    outside += !FieldCovers(field, sample.value.p_RS);
+    sample.value.p_RS = ApplyField(field, sample.value.p_RS);
+  }
+  applied_.used.insert(applied_.used.end(), field_names_.begin(), field_names_.end());
+  if (outside == 0) return;
+  applied_.warnings.insert(
+      applied_.warnings.begin(),
+      fmt::format("{}: {} of {} samples of em0 lie beyond where em0.field is known", file_.string(),
+                  outside, samples.size()));
+}
+
 AppliedCalibration Application::Run() {
   for (const auto& [name, pose] : found_.poses) ApplyPose(name, pose);
   for (const auto& entry : found_.numbers) ApplyNumbers(entry.first);
   for (const auto& entry : found_.texts) ApplyText(entry.first);
+  if (!field_names_.empty()) CorrectField();
   return std::move(applied_);
 }
 
@@ -361,6 +392,23 @@ AppliedCalibration Application::Run() {
 AppliedCalibration ApplyCalibration(const std::filesystem::path& file,
                                     const Calibration& calibration, Recording& recording) {
   return Application(file, calibration, recording).Run();
+}
+
+std::vector<UsedCalibration> ApplyCalibrations(const std::vector<std::filesystem::path>& files,
+                                               Recording& recording,
+                                               std::vector<std::string>& warnings) {
+  std::vector<UsedCalibration> used;
+  for (const auto& file : files) {
+    UsedCalibration one{file, ReadCalibration(file), {}};
+    AppliedCalibration applied = ApplyCalibration(file, one.calibration, recording);
+    one.names = std::move(applied.used);
+    if (one.names.empty()) {
+      warnings.push_back(fmt::format("{}: nothing in it is part of a recording", file.string()));
+    }
+    warnings.insert(warnings.end(), applied.warnings.begin(), applied.warnings.end());
+    used.push_back(std::move(one));
+  }
+  return used;
 }
 
 void StateRegistrationNoise(const Calibration& calibration, VisionStream& vision) {

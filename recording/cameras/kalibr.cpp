@@ -17,9 +17,9 @@ std::string ChooseCamera(const YamlMap& chain, const std::string& wanted) {
   if (names.size() == 1) return names.front();
   std::string list;
   for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
-  throw chain.Error(names.empty() ? "cam0" : names.front(),
-                    fmt::format("found {} cameras ({}), expected one to be named (--camera NAME)",
-                                names.size(), list));
+  throw chain.Error(
+      names.empty() ? "cam0" : names.front(),
+      fmt::format("found {} cameras ({}), expected the name of one of them", names.size(), list));
 }
 
 void ReadLens(const YamlMap& cam, CameraCalibration& camera) {

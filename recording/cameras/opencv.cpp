@@ -115,7 +115,7 @@ CameraDescription ReadOpenCvCamera(const std::filesystem::path& file,
   d.calibration.width_px = in.Whole(kWidthKeys, choice.width_px);
   d.calibration.height_px = in.Whole(kHeightKeys, choice.height_px);
   if (d.calibration.width_px == 0 || d.calibration.height_px == 0) {
-    throw in.Error("does not state image_width and image_height: give them (--resolution W,H)");
+    throw in.Error("does not state image_width and image_height, and no resolution was given");
   }
   d.comment = in.Text("comment");
   d.camera_name = in.Text("camera_name");

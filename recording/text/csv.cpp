@@ -7,59 +7,58 @@
 #include "recording/text/text.h"
 
 namespace flextip {
-namespace {
-
-void Split(std::string_view line, std::vector<std::string_view>& fields) {
-  fields.clear();
-  for (std::size_t begin = 0;;) {
-    const auto comma = line.find(',', begin);
-    fields.push_back(Trim(line.substr(begin, comma - begin)));
-    if (comma == std::string_view::npos) return;
-    begin = comma + 1;
-  }
-}
-
-}  // namespace
-
 CsvReader::CsvReader(const std::filesystem::path& file, const std::vector<std::string>& columns,
                      ReadLog& log, const CsvOptions& options)
     : file_(file.string()),
       columns_(columns),
       options_(options),
       log_(&log),
-      text_(ReadTextFile(file)) {
-  ReadHeader(options.allow_other_columns);
+      stream_(OpenTextFile(file)) {
+  ReadHeader();
+  FindColumns(options.allow_other_columns);
+}
+
+CsvReader::CsvReader(const std::filesystem::path& file, ReadLog& log, const CsvOptions& options)
+    : file_(file.string()), options_(options), log_(&log), stream_(OpenTextFile(file)) {
+  ReadHeader();
+  for (std::size_t i = 0; i < width_; ++i) {
+    columns_.emplace_back(fields_[i]);
+    place_.push_back(i);
+  }
 }
 
 InputError CsvReader::Error(const std::string& what) const {
   return InputError::At(file_, line_, what);
 }
 
-bool CsvReader::TakeLine(std::string_view& line, bool& terminated) {
-  if (position_ >= text_.size()) return false;
-  const auto end = text_.find('\n', position_);
-  terminated = end != std::string::npos;
-  line = std::string_view(text_).substr(position_, end - position_);
-  position_ = terminated ? end + 1 : text_.size();
+bool CsvReader::TakeLine() {
+  if (stream_.eof() || !std::getline(stream_, text_)) {
+    if (stream_.bad()) throw Error("cannot be read to its end");
+    return false;
+  }
+  terminated_ = !stream_.eof();
   ++line_;
   return true;
 }
 
-void CsvReader::ReadHeader(bool allow_other_columns) {
-  if (text_.starts_with("\xEF\xBB\xBF")) position_ = 3;  // a byte order mark
-  std::string_view line;
-  bool terminated = false;
-  const bool found = TakeLine(line, terminated) && !Trim(line).empty();
+void CsvReader::ReadHeader() {
+  const bool found = TakeLine();
   line_ = 1;
-  if (!found) throw Error("empty, expected a header with the names of the columns");
-  line = Trim(line);
-  if (options_.from_recorder && line.front() != '#') {
-    throw Error(fmt::format("found {}, expected a header that starts with \"#{}\"", Quoted(line),
-                            columns_.front()));
+  if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);  // a byte order mark
+  const std::string_view header = Trim(text_);
+  if (!found || header.empty()) {
+    throw Error("empty, expected a header with the names of the columns");
   }
-  if (line.front() == '#') line.remove_prefix(1);
-  Split(line, fields_);
+  if (options_.from_recorder && header.front() != '#') {
+    throw Error(fmt::format("found {}, expected a header that starts with \"#{}\"", Quoted(header),
+                            columns_.empty() ? "" : columns_.front()));
+  }
+  text_ = header.front() == '#' ? header.substr(1) : header;
+  if (const std::string problem = SplitLine(); !problem.empty()) throw Error(problem);
   width_ = fields_.size();
+}
+
+void CsvReader::FindColumns(bool allow_other_columns) {
   for (const auto& column : columns_) {
     const auto place = std::find(fields_.begin(), fields_.end(), column);
     if (place == fields_.end()) throw Error(fmt::format("column \"{}\" is missing", column));
@@ -76,31 +75,71 @@ void CsvReader::ReadHeader(bool allow_other_columns) {
   }
 }
 
+std::string CsvReader::SplitLine() {
+  fields_.clear();
+  for (std::size_t begin = 0;;) {
+    const auto first = text_.find_first_not_of(" \t\r", begin);
+    std::size_t end = begin;  // past the quotes
+    if (first != std::string::npos && text_[first] == '"') {
+      std::size_t written = first;
+      bool closed = false;
+      for (end = first + 1; end < text_.size() && !closed; ++end) {
+        const bool is_quote = text_[end] == '"';
+        const bool is_doubled = is_quote && end + 1 < text_.size() && text_[end + 1] == '"';
+        closed = is_quote && !is_doubled;
+        if (is_doubled) ++end;
+        if (!closed) text_[written++] = text_[end];
+      }
+      if (!closed) return "a quote is not closed";
+      fields_.push_back(std::string_view(text_).substr(first, written - first));
+    }
+    const auto comma = text_.find(',', end);
+    const auto rest = Trim(std::string_view(text_).substr(end, comma - end));
+    if (end == begin) {
+      fields_.push_back(rest);
+    } else if (!rest.empty()) {
+      return fmt::format("found {} after a closing quote", Quoted(rest));
+    }
+    if (comma == std::string::npos) return "";
+    begin = comma + 1;
+  }
+}
+
+bool CsvReader::OnlyBlanksFollow() {
+  if (stream_.eof()) return true;
+  const auto here = stream_.tellg();
+  stream_ >> std::ws;
+  const bool at_end = stream_.eof();
+  stream_.clear();
+  stream_.seekg(here);
+  return at_end;
+}
+
 // A line that was not ended may have lost digits of its last number too, so it is not trusted even
 // where all its fields are there.
-bool CsvReader::IsTorn(std::size_t fields, bool terminated) const {
-  if (!options_.from_recorder || fields > width_) return false;
-  const bool is_last = text_.find_first_not_of(" \t\r\n", position_) == std::string::npos;
-  return is_last && (!terminated || fields < width_);
+bool CsvReader::IsTorn() {
+  if (!options_.from_recorder || fields_.size() > width_) return false;
+  return (!terminated_ || fields_.size() < width_) && OnlyBlanksFollow();
+}
+
+void CsvReader::SkipTorn() {
+  stream_.setstate(std::ios::eofbit);
+  ++log_->torn_lines;
+  log_->warnings.emplace_back(
+      Error(fmt::format("skipped a torn last line: {} of {} fields{}", fields_.size(), width_,
+                        terminated_ ? "" : ", no line break at its end"))
+          .what());
 }
 
 bool CsvReader::Next() {
-  std::string_view line;
-  bool terminated = false;
-  if (!TakeLine(line, terminated)) return false;
-  if (Trim(line).empty() && text_.find_first_not_of(" \t\r\n", position_) == std::string::npos) {
-    return false;  // nothing but line breaks to the end
-  }
-  Split(line, fields_);
-  if (IsTorn(fields_.size(), terminated)) {
-    position_ = text_.size();
-    ++log_->torn_lines;
-    log_->warnings.emplace_back(
-        Error(fmt::format("skipped a torn last line: {} of {} fields{}", fields_.size(), width_,
-                          terminated ? "" : ", no line break at its end"))
-            .what());
+  if (!TakeLine()) return false;
+  if (Trim(text_).empty() && OnlyBlanksFollow()) return false;
+  const std::string problem = SplitLine();
+  if (IsTorn()) {
+    SkipTorn();
     return false;
   }
+  if (!problem.empty()) throw Error(problem);
   if (fields_.size() != width_) {
     throw Error(fmt::format("found {} fields, expected {}", fields_.size(), width_));
   }
@@ -137,11 +176,15 @@ void CsvWriter::Separate() {
   if (fields_++ > 0) text_ += ',';
 }
 
-CsvWriter& CsvWriter::Add(double value) {
+CsvWriter& CsvWriter::Add(double value, int digits) {
   if (!std::isfinite(value)) throw WorkError("a table to be written holds a NaN or infinite value");
   Separate();
-  text_ += NumberText(value);
+  text_ += digits > 0 ? fmt::format("{:.{}g}", value, digits) : NumberText(value);
   return *this;
+}
+
+CsvWriter& CsvWriter::AddOrEmpty(double value, int digits) {
+  return std::isfinite(value) ? Add(value, digits) : AddEmpty();
 }
 
 CsvWriter& CsvWriter::Add(TimeNs value) {
@@ -151,9 +194,18 @@ CsvWriter& CsvWriter::Add(TimeNs value) {
 }
 
 CsvWriter& CsvWriter::Add(const std::string& text) {
-  FLEXTIP_CHECK(text.find_first_of(",\n\r") == std::string::npos, "no separator within a field");
+  FLEXTIP_CHECK(text.find_first_of("\n\r") == std::string::npos, "no line break within a field");
   Separate();
-  text_ += text;
+  if (text.find_first_of(",\"") == std::string::npos && Trim(text).size() == text.size()) {
+    text_ += text;
+    return *this;
+  }
+  text_ += '"';
+  for (const char c : text) {
+    if (c == '"') text_ += c;
+    text_ += c;
+  }
+  text_ += '"';
   return *this;
 }
 

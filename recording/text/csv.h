@@ -1,8 +1,10 @@
-// Comma-separated tables, read strictly: every error names the file, the line, what was found and
-// what was expected. No quoting: no table of flextip needs a comma inside a field.
+// Comma-separated tables, the only dialect that flextip writes and reads: a header of column names
+// (after a '#' in a recorder's tables), one row a line, fields in quotes where they hold a comma or
+// a quote (RFC 4180 without line breaks in fields). Errors name file, line, found and expected.
 #pragma once
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,14 +24,19 @@ struct CsvOptions {
   bool allow_other_columns = false;  ///< ignore columns that were not asked for
 };
 
-/// Reads a table row by row. Columns are found by their names, in any order. Spaces around names
-/// and fields do not matter.
+/// Reads a table row by row, and holds one row at a time. Columns are found by their names, in any
+/// order. Spaces around names and fields do not matter.
 class CsvReader {
  public:
-  /// Throws InputError for an unreadable file, an absent header, and missing, extra or repeated
-  /// columns.
+  /// Reads `columns` of the table. Throws InputError for an unreadable file, an absent header, and
+  /// missing, extra or repeated columns.
   CsvReader(const std::filesystem::path& file, const std::vector<std::string>& columns,
             ReadLog& log, const CsvOptions& options = {});
+  /// Reads all columns, as in the header. Throws InputError for an unreadable file and an absent
+  /// header.
+  CsvReader(const std::filesystem::path& file, ReadLog& log, const CsvOptions& options = {});
+
+  const std::vector<std::string>& Columns() const { return columns_; }
 
   /// Goes to the next row; false after the last. Throws InputError for a wrong number of fields.
   bool Next();
@@ -46,30 +53,40 @@ class CsvReader {
   InputError Error(const std::string& what) const;
 
  private:
-  bool TakeLine(std::string_view& line, bool& terminated);
-  void ReadHeader(bool allow_other_columns);
-  bool IsTorn(std::size_t fields, bool terminated) const;
+  void ReadHeader();
+  void FindColumns(bool allow_other_columns);
+  bool TakeLine();
+  bool OnlyBlanksFollow();
+  bool IsTorn();
+  void SkipTorn();
+  /// Splits the line into fields. Returns the reason where it cannot; else an empty text.
+  std::string SplitLine();
   InputError FieldError(std::size_t column, const std::string& expected) const;
 
   std::string file_;
   std::vector<std::string> columns_;
   CsvOptions options_;
   ReadLog* log_;
-  std::string text_;
-  std::size_t position_ = 0;  ///< of the next line in text_
+  std::ifstream stream_;
+  std::string text_;         ///< the current line; fields in quotes are unquoted in place
+  bool terminated_ = false;  ///< a line break ended it
   long line_ = 0;
   std::size_t width_ = 0;                 ///< fields in a row
   std::vector<std::size_t> place_;        ///< of each wanted column in a row
   std::vector<std::string_view> fields_;  ///< of the current row, views into text_
 };
 
-/// Builds a table in memory, every number exact.
+/// Builds a table in memory.
 class CsvWriter {
  public:
   explicit CsvWriter(const std::vector<std::string>& columns, bool from_recorder = true);
 
-  CsvWriter& Add(double value);  ///< throws WorkError for NaN and infinities: never written
+  /// Adds the number exactly, or with so many `digits`. Throws WorkError for NaN and infinities.
+  CsvWriter& Add(double value, int digits = 0);
+  /// Adds an empty field where the value is NaN or infinite.
+  CsvWriter& AddOrEmpty(double value, int digits = 0);
   CsvWriter& Add(TimeNs value);
+  /// Adds a text without line breaks, in quotes where it needs them.
   CsvWriter& Add(const std::string& text);
   CsvWriter& AddEmpty(int count = 1);
   void EndRow();  ///< the row must be full

@@ -59,16 +59,21 @@ std::string Quoted(std::string_view text) {
   return quoted + (text.size() > kLongest ? "...\"" : "\"");
 }
 
-std::string ReadTextFile(const std::filesystem::path& file) {
+std::ifstream OpenTextFile(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) {
     throw InputError::At(file.string(), 0, "no such file");
   }
   std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
   if (!std::filesystem::is_regular_file(file, error) || !in) {
     throw InputError::At(file.string(), 0, "cannot be read as a file");
   }
+  return in;
+}
+
+std::string ReadTextFile(const std::filesystem::path& file) {
+  std::ifstream in = OpenTextFile(file);
+  std::ostringstream text;
   if (in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
   if (in.bad() || text.fail()) throw InputError::At(file.string(), 0, "cannot be read to its end");
   return std::move(text).str();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,6 +27,9 @@ std::string_view Trim(std::string_view text);
 
 /// `text` in quotes for a one-line message: long texts cut, control characters replaced.
 std::string Quoted(std::string_view text);
+
+/// Opens a file to be read. Throws InputError where it is missing or no file.
+std::ifstream OpenTextFile(const std::filesystem::path& file);
 
 /// The whole file. Throws InputError where it is missing or unreadable.
 std::string ReadTextFile(const std::filesystem::path& file);

@@ -42,7 +42,7 @@ void AddGainFigures(Report& report, const DiagnosedResult& result) {
     figures.emplace_back("closed loop, largest deviation (mm)",
                          Arrow(1e3 * *loop->max_before_m, 1e3 * *loop->max_after_m));
   }
-  report.AddFigures(figures);
+  report.AddNumbers(figures);
 }
 
 void AddWarningsOnce(Report& report, const DiagnosedResult& result, const RunSummary& summary) {
@@ -76,8 +76,8 @@ void AddWhatIsWrong(Report& report, const DiagnosedResult& result, const ResultT
     const auto pattern = SignaturePlot(residuals, signature);
     if (!pattern) continue;
     report.AddHtml("<div class=\"side\">\n");
-    report.AddPlot(*pattern);
-    if (const auto over_time = TimePlot(residuals, signature)) report.AddPlot(*over_time);
+    report.AddFigure(*pattern);
+    if (const auto over_time = TimePlot(residuals, signature)) report.AddFigure(*over_time);
     report.AddHtml("</div>\n");
     return;
   }
@@ -223,7 +223,7 @@ void AddMemory(Report& report, const DiagnosedResult& result, const ResultTable&
                          list +
                          ". There the sensor's own noise remembers, or the model still misses "
                          "something.";
-  report.AddPlot(memory.plot);
+  report.AddFigure(memory.plot);
 }
 
 void AddWhatWasGiven(Report& report, const DiagnosedResult& result, const RunSummary& summary,

@@ -110,7 +110,7 @@ double Variance(const std::vector<double>& values) {
 }
 
 /// Two dashed lines at y = -+`height` over the range of x.
-PlotTrace Band(const std::string& name, double low, double high, double height) {
+FigureTrace Band(const std::string& name, double low, double high, double height) {
   return {.name = name,
           .x = {low, high, kNan, low, high},
           .y = {height, height, kNan, -height, -height},
@@ -219,20 +219,20 @@ std::size_t TellingComponent(const ResultTable& residuals, const DiagnosedSignat
   return best;
 }
 
-std::optional<Plot> SignaturePlot(const ResultTable& residuals,
-                                  const DiagnosedSignature& signature) {
+std::optional<Figure> SignaturePlot(const ResultTable& residuals,
+                                    const DiagnosedSignature& signature) {
   const auto* x = RegressorColumn(residuals, signature.against);
   const std::size_t i = TellingComponent(residuals, signature);
   const auto unit = RegressorUnit(signature.against);
   const std::string what = ComponentLabel(residuals, signature.channel, i);
-  Plot plot{.title = fmt::format("The strongest pattern: {} against {}", what, unit.name),
-            .caption =
-                "Residual in standard deviations of the channel's noise. Lines: means of 20 "
-                "bins. Between the dashed lines lie 95 % of noise alone.",
-            .x_label = unit.unit.empty() ? unit.name : unit.name + " (" + unit.unit + ")",
-            .y_label = "residual / noise"};
+  Figure plot{.title = fmt::format("The strongest pattern: {} against {}", what, unit.name),
+              .caption =
+                  "Residual in standard deviations of the channel's noise. Lines: means of 20 "
+                  "bins. Between the dashed lines lie 95 % of noise alone.",
+              .x_label = unit.unit.empty() ? unit.name : unit.name + " (" + unit.unit + ")",
+              .y_label = "residual / noise"};
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  std::vector<PlotTrace> means;
+  std::vector<FigureTrace> means;
   for (const auto& [model, color, faint] :
        {std::tuple{kModels[0], kBaseColor, "rgba(213,94,0,0.35)"},
         std::tuple{kModels[1], kExtendedColor, "rgba(0,114,178,0.35)"}}) {
@@ -244,7 +244,11 @@ std::optional<Plot> SignaturePlot(const ResultTable& residuals,
     low = std::min(low, *least);
     high = std::max(high, *most);
     const auto few = Thinned(points), bins = BinMeans(points);
-    plot.traces.push_back({.name = model, .x = few.x, .y = few.y, .color = faint, .markers = true});
+    plot.traces.push_back({.name = model,
+                           .kind = FigureTrace::Kind::kPoints,
+                           .x = few.x,
+                           .y = few.y,
+                           .color = faint});
     means.push_back(
         {.name = std::string(model) + ", mean", .x = bins.x, .y = bins.y, .color = color});
   }
@@ -253,12 +257,12 @@ std::optional<Plot> SignaturePlot(const ResultTable& residuals,
   return plot;
 }
 
-std::optional<Plot> TimePlot(const ResultTable& residuals, const DiagnosedSignature& signature) {
+std::optional<Figure> TimePlot(const ResultTable& residuals, const DiagnosedSignature& signature) {
   const auto* t = residuals.Column("t_s");
   const std::size_t i = TellingComponent(residuals, signature);
-  Plot plot{.title = ComponentLabel(residuals, signature.channel, i) + " over time",
-            .x_label = "time (s)",
-            .y_label = "residual / noise"};
+  Figure plot{.title = ComponentLabel(residuals, signature.channel, i) + " over time",
+              .x_label = "time (s)",
+              .y_label = "residual / noise"};
   for (const auto& [model, color] :
        {std::pair{kModels[0], kBaseColor}, std::pair{kModels[1], kExtendedColor}}) {
     const auto points = Outline(Paired(t, Component(residuals, model, signature.channel, i)));
@@ -289,7 +293,7 @@ Memory ResidualMemory(const ResultTable& residuals, const std::string& model) {
     const std::size_t n = components.front().size(), lags = std::min(kLags, n / 4);
     const auto correlation = Autocorrelation(components, lags);
     const double step = MedianStep(t), band = 1.96 / std::sqrt(double(n));
-    PlotTrace trace{.name = SpokenChannel(channel), .y = correlation};
+    FigureTrace trace{.name = SpokenChannel(channel), .y = correlation};
     for (std::size_t lag = 1; lag <= lags; ++lag) trace.x.push_back(step * double(lag));
     // The largest of 40 lags of white noise stays within twice the band.
     const auto strongest =

@@ -30,15 +30,15 @@ std::size_t TellingComponent(const ResultTable& residuals, const DiagnosedSignat
 
 /// Base and extended residual of that component against the regressor, with the means of 20 bins;
 /// nothing where the table has not what the signature names.
-std::optional<Plot> SignaturePlot(const ResultTable& residuals,
-                                  const DiagnosedSignature& signature);
+std::optional<Figure> SignaturePlot(const ResultTable& residuals,
+                                    const DiagnosedSignature& signature);
 /// The same component over time.
-std::optional<Plot> TimePlot(const ResultTable& residuals, const DiagnosedSignature& signature);
+std::optional<Figure> TimePlot(const ResultTable& residuals, const DiagnosedSignature& signature);
 
 /// Autocorrelation of each channel's residuals with `model`, mean over its components; lags in
 /// seconds, with the band that white noise keeps to (95 %).
 struct Memory {
-  Plot plot = {};
+  Figure plot = {};
   std::vector<std::string> not_white = {};  ///< channels, as spoken, with what is left
 };
 Memory ResidualMemory(const ResultTable& residuals, const std::string& model);

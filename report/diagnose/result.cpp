@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "report/labels.h"
 #include "report/result_files.h"
 
 namespace flextip::report {
@@ -256,9 +257,9 @@ RunSummary ReadRunSummary(const std::filesystem::path& path) {
     summary.warnings = TextsIn(json, "warnings");
     for (const auto& [key, value] : json.items()) {
       if (value.is_number())
-        summary.figures.emplace_back(SpokenName(key), SpokenValue(key, value.get<double>()));
+        summary.figures.emplace_back(Label(key), SpokenValue(key, value.get<double>()));
       if (value.is_boolean())
-        summary.figures.emplace_back(SpokenName(key), value.get<bool>() ? "yes" : "no");
+        summary.figures.emplace_back(Label(key), value.get<bool>() ? "yes" : "no");
     }
     return summary;
   } catch (const Json::exception& e) {

@@ -12,7 +12,7 @@ namespace flextip::reproduction {
 namespace {
 
 /// A controller with its sensors, and what 4.4 gives for it (mm).
-struct Trial {
+struct PressTrial {
   std::string name;
   Ch4Kind kind;
   bool strain = false, expects_tissue = true;
@@ -20,11 +20,11 @@ struct Trial {
   std::vector<PressRun> runs = {};
 };
 
-std::vector<Trial> AllTrials() {
+std::vector<PressTrial> AllTrials() {
   const auto by = [](Ch4Kind kind, bool strain) {
     return fmt::format("{}, {}", Name(kind), strain ? "strain" : "orientations");
   };
-  std::vector<Trial> trials = {
+  std::vector<PressTrial> trials = {
       {Name(Ch4Kind::kStraight), Ch4Kind::kStraight, false, true, 2.6, 0.76}};
   for (const bool strain : {false, true}) {
     for (const Ch4Kind kind : {Ch4Kind::kPrinted, Ch4Kind::kPrintedWithLine, Ch4Kind::kPortForce,
@@ -68,14 +68,14 @@ constexpr std::array<Ch4Kind, 3> kCompared = {Ch4Kind::kStraight, Ch4Kind::kPrin
                                               Ch4Kind::kRod};
 
 struct Results {
-  std::vector<Trial> trials = AllTrials();
+  std::vector<PressTrial> trials = AllTrials();
   std::array<std::array<PressRun, kCompared.size()>, kChanges.size()> changed;
 };
 
 Results RunAll(const ReproduceOptions& options, const ChapterProgress& progress) {
   Results results;
   const int repeats = options.quick ? 1 : 5;
-  for (Trial& trial : results.trials) trial.runs.resize(repeats);
+  for (PressTrial& trial : results.trials) trial.runs.resize(repeats);
   const int trial_jobs = static_cast<int>(results.trials.size()) * repeats;
   const int jobs =
       trial_jobs + (options.quick ? 0 : static_cast<int>(kChanges.size() * kCompared.size()));
@@ -84,7 +84,7 @@ Results RunAll(const ReproduceOptions& options, const ChapterProgress& progress)
   tbb::parallel_for(0, jobs, [&](int job) {
     PressSetup setup;
     if (job < trial_jobs) {
-      Trial& trial = results.trials[job / repeats];
+      PressTrial& trial = results.trials[job / repeats];
       setup.kind = trial.kind;
       setup.strain = trial.strain;
       setup.expects_tissue = trial.expects_tissue;
@@ -104,23 +104,23 @@ Results RunAll(const ReproduceOptions& options, const ChapterProgress& progress)
   return results;
 }
 
-double Mean(const Trial& trial, double PressRun::*member) {
+double Mean(const PressTrial& trial, double PressRun::*member) {
   std::vector<double> values;
   for (const PressRun& run : trial.runs) values.push_back(run.*member);
-  return MeanAndSd(values).mean;
+  return MeanSdOf(values).mean;
 }
 
-double Max(const Trial& trial, double PressRun::*member) {
+double Max(const PressTrial& trial, double PressRun::*member) {
   double largest = 0.0;
   for (const PressRun& run : trial.runs) largest = std::max(largest, run.*member);
   return largest;
 }
 
-double Seconds(const Trial& trial) {
+double Seconds(const PressTrial& trial) {
   return Mean(trial, &PressRun::down_s) + Mean(trial, &PressRun::up_s);
 }
 
-double StraightShare(const Trial& trial) {
+double StraightShare(const PressTrial& trial) {
   double straight = 0.0, all = 0.0;
   for (const PressRun& run : trial.runs) {
     straight += trial.kind == Ch4Kind::kStraight ? 0 : run.straight_instead;
@@ -129,8 +129,8 @@ double StraightShare(const Trial& trial) {
   return straight / all;
 }
 
-void AddTrials(const std::vector<Trial>& trials, std::vector<TableRow>& rows) {
-  for (const Trial& trial : trials) {
+void AddTrials(const std::vector<PressTrial>& trials, std::vector<TableRow>& rows) {
+  for (const PressTrial& trial : trials) {
     const auto unfinished = std::count_if(trial.runs.begin(), trial.runs.end(),
                                           [](const PressRun& run) { return !run.finished; });
     std::string note = unfinished > 0 ? fmt::format("{} of {} trials did not finish; ", unfinished,
@@ -145,13 +145,13 @@ void AddTrials(const std::vector<Trial>& trials, std::vector<TableRow>& rows) {
   }
 }
 
-void AddTimes(const std::vector<Trial>& trials, std::vector<TableRow>& rows) {
+void AddTimes(const std::vector<PressTrial>& trials, std::vector<TableRow>& rows) {
   const auto find = [&](Ch4Kind kind) {
     return *std::find_if(trials.begin(), trials.end(),
-                         [&](const Trial& t) { return t.kind == kind; });
+                         [&](const PressTrial& t) { return t.kind == kind; });
   };
-  const Trial straight = find(Ch4Kind::kStraight), printed = find(Ch4Kind::kPrintedWithLine),
-              rod = find(Ch4Kind::kRod);
+  const PressTrial straight = find(Ch4Kind::kStraight), printed = find(Ch4Kind::kPrintedWithLine),
+                   rod = find(Ch4Kind::kRod);
   rows.push_back(
       {"4.4 seconds a dynamic trial, straight", 2.0, Seconds(straight), "s",
        "the PID's gains are chosen for this and for an upstroke without overshoot, as 4.5.2 says"});
@@ -165,7 +165,7 @@ void AddTimes(const std::vector<Trial>& trials, std::vector<TableRow>& rows) {
   rows.push_back({"4.5.2 share of the trials whose largest deviation is on the way up", 1.0,
                   [&] {
                     double up = 0.0, all = 0.0;
-                    for (const Trial& trial : trials) {
+                    for (const PressTrial& trial : trials) {
                       for (const PressRun& run : trial.runs) {
                         up += run.max_up_m > run.max_down_m;
                         all += 1.0;
@@ -205,7 +205,7 @@ void AddChanges(const Results& results, std::vector<TableRow>& rows) {
 }
 
 /// The trial whose mean squared deviation is the median.
-const PressRun& MedianRun(const Trial& trial) {
+const PressRun& MedianRun(const PressTrial& trial) {
   std::vector<std::size_t> order(trial.runs.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -214,7 +214,7 @@ const PressRun& MedianRun(const Trial& trial) {
   return trial.runs[order[order.size() / 2]];
 }
 
-report::Figure PathsFigure(const std::vector<Trial>& trials) {
+report::Figure PathsFigure(const std::vector<PressTrial>& trials) {
   report::Figure figure;
   figure.name = "fig-4-4";
   figure.title = "Indentation of silicone, down and back (Fig. 4.4)";
@@ -226,7 +226,7 @@ report::Figure PathsFigure(const std::vector<Trial>& trials) {
   const std::vector<std::pair<std::size_t, const char*>> drawn = [&] {
     std::vector<std::pair<std::size_t, const char*>> found;
     for (std::size_t i = 0; i < trials.size(); ++i) {
-      const Trial& t = trials[i];
+      const PressTrial& t = trials[i];
       if (t.kind == Ch4Kind::kStraight) found.emplace_back(i, "#d62728");
       if (t.kind == Ch4Kind::kPrintedWithLine)
         found.emplace_back(i, t.strain ? "#9467bd" : "#1f77b4");
@@ -245,7 +245,7 @@ report::Figure PathsFigure(const std::vector<Trial>& trials) {
   return figure;
 }
 
-report::Figure DepthFigure(const std::vector<Trial>& trials) {
+report::Figure DepthFigure(const std::vector<PressTrial>& trials) {
   report::Figure figure;
   figure.name = "fig-4-4-time";
   figure.title = "Depth of the tip during a trial";
@@ -253,7 +253,7 @@ report::Figure DepthFigure(const std::vector<Trial>& trials) {
       "One trial each. The way down slows as the block pushes back; the integral brings the rest.";
   figure.x_label = "time (s)";
   figure.y_label = "y (mm)";
-  for (const Trial& trial : trials) {
+  for (const PressTrial& trial : trials) {
     if (trial.strain || !trial.expects_tissue || trial.kind == Ch4Kind::kPrinted ||
         trial.kind == Ch4Kind::kPortForce) {
       continue;

@@ -61,7 +61,7 @@ class Press {
     plant_.SetLoad(load);
     shape_ = plant_.Solve(WristAt(state_));
     // At rest, the arm carries what the shaft weighs on it.
-    pid_.emplace(setup.pid, -arm_.Jacobian(state_.angles).transpose() * simulation::ForceOnArm());
+    pid_.emplace(setup.pid, -arm_.Jacobian(state_.angles).transpose() * ForceOnArm());
     goal_angles_ = state_.angles;
   }
 
@@ -80,7 +80,7 @@ class Press {
     p.head<2>() += arm_.Wrist(state.angles);
     return p;
   }
-  Eigen::Vector2d simulation::ForceOnArm() const {
+  Eigen::Vector2d ForceOnArm() const {
     if (!setup_.load_on_arm) return Eigen::Vector2d::Zero();
     return -shape_.f_wrist_N.head<2>();
   }
@@ -150,7 +150,7 @@ class Press {
     const Eigen::Vector2d torque =
         pid_->Torque(goal_angles_ - state_.angles, state_.rates, period_s);
     for (int i = 0; i < kSubsteps; ++i) {
-      arm_.Step(state_, torque, simulation::ForceOnArm(), period_s / kSubsteps);
+      arm_.Step(state_, torque, ForceOnArm(), period_s / kSubsteps);
     }
     simulation::PlantShape next = plant_.Solve(WristAt(state_), t_s_);
     run_.lost = !next.IsUsable();

@@ -141,11 +141,11 @@ class TrialRun {
     const SensorReadings newest = NewestReadings(recording_);
     if (setup_.sense == TipSense::kVision) {
       if (!hidden_) readings.tip = newest.tip;
-      z_ = *Gather(readings);
+      z_ = *flextip::Gather(readings);
       return;
     }
     readings.em0 = newest.em0;
-    z_ = *Gather(readings);
+    z_ = *flextip::Gather(readings);
     if (!UsesClosedForm(setup_)) return;
     z_.tip.emplace();  // the thesis's closed forms take the tip by itself
     z_.tip->status = TipStatus::kOk;

@@ -68,6 +68,44 @@ TEST(SimulateCommand, AFoundModelHelpsTheControllersAndTheEstimate) {
   EXPECT_LT(knowing["tip_rms_error_m"].get<double>(), 0.2 * blind["tip_rms_error_m"].get<double>());
 }
 
+// A port 3.6 mm from where it is registered: one sample cannot tell, a window of them can.
+TEST(SimulateCommand, AWindowOfSamplesFindsThePort) {
+  const TestFolder folder;
+  const auto scenario = folder.Write("s.yaml", R"(
+instrument: {length_m: 0.6, outer_diameter_m: 0.00238, bending_stiffness_Nm2: 0.304}
+port: {position_m: [0.0, 0.0, 0.17]}
+wrist: {start_m: [-0.2457, 0.0, 0.3421], max_speed_m_s: 0.3}
+load: {force_N: [0.25, -0.2, 0.45]}
+effects: {port_offset: {offset_m: [0.0, 0.003, 0.002]}}
+sensors:
+  wrist: {rate_hz: 30, position_noise_m: 0.00005, orientation_noise_rad: 0.0003}
+  tip: {across_noise_m: 0.0001, depth_noise_m: 0.0002, direction_noise_rad: 0.003}
+path:
+  speed_m_s: 0.05
+  waypoints: [{to_m: [0.0, 0.03, 0.0]}, {to_m: [0.0, 0.0, -0.03]}, {to_m: [0.0, -0.03, 0.0]}]
+controllers: rod-track
+)");
+  const auto run = [&](std::vector<std::string> command, const std::string& name) {
+    command.insert(command.end(), {"-o", (folder / name).string()});
+    const auto result = RunProgram(command);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(ReadText(folder / (name + "/summary.json")));
+  };
+  run({"simulate", scenario}, "rec");
+  const std::string recording = (folder / "rec").string();
+  EXPECT_FALSE(run({"estimate", recording, "--port-prior", "0.005"}, "one").contains("window"));
+  const auto summary =
+      run({"estimate", recording, "--port-prior", "0.005", "--window", "20"}, "window");
+  EXPECT_EQ(summary["window"]["status"], "ok");
+  EXPECT_EQ(summary["window"]["samples"], 20);
+  const auto shift = summary["window"]["port_shift_m"].get<std::vector<double>>();
+  // Across the shaft; along it the port is never known.
+  const Eigen::Vector3d along = Eigen::Vector3d(0.2457, 0.0, -0.1721).normalized();
+  Eigen::Vector3d wrong = Eigen::Vector3d(shift[0], shift[1] - 0.003, shift[2] - 0.002);
+  wrong -= along.dot(wrong) * along;
+  EXPECT_LT(wrong.norm(), 0.0006);
+}
+
 TEST(SimulateCommand, RefusesModelsThatMeanNothing) {
   const TestFolder folder;
   const auto out = (folder / "out").string();

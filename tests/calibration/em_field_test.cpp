@@ -1,5 +1,5 @@
 // The correction's formula, as docs/formats.md has it.
-#include "calibration/em/field.h"
+#include "recording/calibrations/em_field.h"
 
 #include <gtest/gtest.h>
 

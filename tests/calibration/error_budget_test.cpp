@@ -6,6 +6,7 @@
 #include <random>
 
 #include "calibration/camera/projection_derivative.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "kinematics/tip_bending.h"
 #include "vision/tags/collar_pose.h"
@@ -126,7 +127,7 @@ class ErrorBudget : public testing::Test {
   Eigen::VectorXd Draw(const Eigen::MatrixXd& covariance) {
     Eigen::VectorXd z(covariance.rows());
     for (double& v : z) v = normal(random);
-    return covariance.llt().matrixL() * z;
+    return Llt(covariance).L() * z;
   }
 
   const CameraCalibration camera = Camera();

@@ -8,6 +8,7 @@
 #include "calibration/stereo/bundle.h"
 #include "calibration/uncertainty/next_view.h"
 #include "core/derivative_check.h"
+#include "core/linear_algebra.h"
 #include "tests/calibration/stereo_scene.h"
 
 namespace flextip {
@@ -83,7 +84,7 @@ TEST(ProjectionUncertainty, IsTheSpreadOfCalibrationsFromOtherNoise) {
       const Eigen::Vector3d ray = model.Unproject(place.px).value();
       const Eigen::Vector2d error = SeenBy(found, truth, ray / ray.z() * place.depth_m) - place.px;
       place.spread += error * error.transpose() / kRuns;
-      mean_nees += error.dot(own->CovariancePx(place.px, place.depth_m)->ldlt().solve(error)) /
+      mean_nees += MahalanobisSquared(error, *own->CovariancePx(place.px, place.depth_m)) /
                    (kRuns * static_cast<double>(places.size()));
     }
   }
@@ -126,7 +127,7 @@ TEST(ProjectionUncertainty, OfTheOtherEyeIsTheSpreadToo) {
       const Eigen::Vector2d error =
           CameraModel(s.cameras[1]).Project(mean / static_cast<double>(s.views.size())).value() -
           px;
-      nees += error.dot(uncertainty->CovariancePx(px, depth_m)->ldlt().solve(error));
+      nees += MahalanobisSquared(error, *uncertainty->CovariancePx(px, depth_m));
     }
   }
   // The two places are not independent: at worst a standard deviation of 2 / sqrt(60).

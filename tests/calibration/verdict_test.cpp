@@ -222,6 +222,7 @@ TEST(StiffnessVerdict, DoubtsAModelThatDoesNotExplainTheShapes) {
 CameraCalibrationResult GoodCamera() {
   CameraCalibrationResult r;
   r.status = CameraCalibrationStatus::kOk;
+  r.solution.camera.distortion = Distortion::kOpenCv;
   r.solution.camera.distortion_coefficients = {0, 0, 0, 0, 0};
   r.solution.noise_px = 0.1;
   r.covariance = 0.01 * Eigen::MatrixXd::Identity(9, 9);

@@ -39,7 +39,7 @@ TEST(Fixtures, RegionsAreLeftTogether) {
 
 TEST(Fixtures, SaysWhereThereIsNoPlaceLeft) {
   const ForbiddenHalfSpace ceiling{{0, 0, -0.01}, -Vector3d::UnitZ()};
-  EXPECT_EQ(Constrain({{kFloor, ceiling}, 0.0, 0.0}, {0, 0, -0.005}, 0.0).status,
+  EXPECT_EQ(Constrain(Fixtures{{kFloor, ceiling}, 0.0, 0.0}, {0, 0, -0.005}, 0.0).status,
             FixtureStatus::kNotClear);
 }
 
@@ -47,7 +47,7 @@ TEST(Fixtures, SaysWhereThereIsNoPlaceLeft) {
 TEST(Fixtures, RegionsComeAfterGuidance) {
   const PathGuidance path({{0, 0, -0.02}, {0.1, 0, -0.02}});
   for (const std::vector<Fixture>& list : {std::vector<Fixture>{path, kFloor}, {kFloor, path}}) {
-    const FixturesOutput output = Constrain({list, 0.0, 0.0}, {0.05, 0.01, 0.01}, 0.0);
+    const FixturesOutput output = Constrain(Fixtures{list, 0.0, 0.0}, {0.05, 0.01, 0.01}, 0.0);
     EXPECT_EQ(output.status, FixtureStatus::kMoved);
     EXPECT_LT((output.p_RE_desired - Vector3d(0.05, 0, 0)).norm(), 1e-12);
   }
@@ -55,7 +55,7 @@ TEST(Fixtures, RegionsComeAfterGuidance) {
 
 TEST(Fixtures, RefuseWhatIsNotFinite) {
   const Vector3d p(0, std::numeric_limits<double>::quiet_NaN(), 0);
-  EXPECT_EQ(Constrain({{kFloor}, 0.0, 0.0}, p, 0.0).status, FixtureStatus::kBadInput);
+  EXPECT_EQ(Constrain(Fixtures{{kFloor}, 0.0, 0.0}, p, 0.0).status, FixtureStatus::kBadInput);
 }
 
 TEST(Fixtures, AllocateNothing) {

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/linear_algebra.h"
+
 namespace flextip {
 namespace {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/linear_algebra.h"
+
 namespace flextip::diagnosis {
 namespace {
 
@@ -33,7 +35,7 @@ TEST(HalfNormal, ProbabilityOfAQuadrant) {
         << rho;
     std::mt19937_64 rng(3);
     std::normal_distribution<double> normal;
-    const Eigen::Matrix2d L = Correlated(rho).llt().matrixL();
+    const Eigen::Matrix2d L = Llt(Correlated(rho)).L();
     const Eigen::Vector2d mean(-1.2, 0.7);
     int inside = 0;
     constexpr int kDraws = 400000;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "apps/diagnose/result_files.h"
 #include "diagnosis/diagnose.h"
 #include "tests/diagnosis/small_recording.h"
 
@@ -111,7 +112,7 @@ TEST_F(ResultTest, ProbabilitiesSumToOneButForWhatIsLeftOut) {
 }
 
 TEST_F(ResultTest, ResidualsHaveAsManyCellsAsColumns) {
-  const auto lines = Lines(ResidualsCsv(*result_));
+  const auto lines = Lines(ResidualsCsv(result_->residuals));
   ASSERT_EQ(lines.size(), 1 + recording_->recording.wrist0->samples.size());
   ASSERT_EQ(lines[0].substr(0, 5), "#t_s,");
   const auto columns = Cells(lines[0]);
@@ -154,7 +155,7 @@ TEST(Result, AbsentMeasurementsAreEmptyCells) {
   result.residuals.columns = {"t_s", "base.a.0", "extended.a.0"};
   result.residuals.rows = {{0.0, 1.5, -0.25}, {0.02, 0.0, 0.0}};
   result.residuals.present = {{true, true, true}, {true, false, false}};
-  EXPECT_EQ(ResidualsCsv(result), "#t_s,base.a.0,extended.a.0\n0,1.5,-0.25\n0.02,,\n");
+  EXPECT_EQ(ResidualsCsv(result.residuals), "#t_s,base.a.0,extended.a.0\n0,1.5,-0.25\n0.02,,\n");
 }
 
 TEST(Result, NamesAreJoinedByPlus) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/derivative_check.h"
+#include "core/linear_algebra.h"
 #include "tests/kinematics/printed_jacobian.h"
 
 namespace flextip {
@@ -27,7 +28,7 @@ PlaneBeamProblem Problem(double wrist_to_port, double load, BeamLoadLaw law, dou
 // The metric (2.6), ||I - J Jhat^-1||, with unit gain.
 double ErrorMetric(const Eigen::Matrix2d& J_true, const Eigen::Matrix2d& J_used) {
   const Eigen::Matrix2d G = Eigen::Matrix2d::Identity() - J_true * J_used.inverse();
-  return G.jacobiSvd().singularValues()[0];
+  return SingularValues(G)[0];
 }
 
 // The bending moment integrated twice from both ends, with no use of (3.1).

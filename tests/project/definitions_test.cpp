@@ -43,7 +43,8 @@ TEST(Definitions, OfFunctionsHaveTheirParametersTypes) {
       ElementsAre("operator*(const Pose &, const Pose &)", "X::operator()(int)"));
   EXPECT_THAT(NamesIn("template <> const char* Name<2>(int index) {}"),
               ElementsAre("Name<2>(int) template"));
-  EXPECT_THAT(NamesIn("template <int N>\ntypename A<N>::M A<N>::Get() const {}\nint main() try {} catch (...) {}"),
+  EXPECT_THAT(NamesIn("template <int N>\ntypename A<N>::M A<N>::Get() const {}\nint main() try {} "
+                      "catch (...) {}"),
               ElementsAre("A<N>::Get() const template"));
 }
 

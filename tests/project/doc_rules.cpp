@@ -101,10 +101,12 @@ std::string LinkComplaint(const ProjectTexts& texts, const std::string& page,
 void AddLongLines(const std::string& path, const std::vector<std::string>& lines,
                   std::vector<std::string>& found) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const auto first = lines[i].find_first_not_of(' ');
-    const bool table = IsPage(path) && first != std::string::npos &&
-                       (lines[i][first] == '|' || lines[i].starts_with("!["));
-    if (table || Characters(lines[i]) <= 100) continue;
+    const auto first = std::min(lines[i].find_first_not_of(' '), lines[i].size());
+    const bool table = IsPage(path) && (lines[i].compare(first, 1, "|") == 0 ||
+                                        lines[i].compare(first, 2, "![") == 0);
+    const bool one_link =
+        lines[i].find("](") != std::string::npos && lines[i].find(' ', first) == std::string::npos;
+    if (table || one_link || Characters(lines[i]) <= 100) continue;
     found.push_back(fmt::format("{}:{}: {} characters", path, i + 1, Characters(lines[i])));
   }
 }

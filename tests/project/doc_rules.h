@@ -18,8 +18,8 @@ ProjectTexts ReadProjectTexts(const std::filesystem::path& root);
 /// `docs/...` in a page or source that names no file.
 std::vector<std::string> BrokenLinks(const ProjectTexts& texts);
 
-/// Returns a line for each line of text above 100 characters, in pages (but for tables, code and
-/// pictures) and C++ files.
+/// Returns a line for each line of text above 100 characters, in pages (but for tables, code,
+/// pictures and links that fill a line) and C++ files.
 std::vector<std::string> LongLines(const ProjectTexts& texts);
 
 /// Returns a line for each message that the tables of `page` quote in their first column, of which

@@ -49,9 +49,10 @@ TEST(DocRules, CountCharactersOutsideTablesAndCode) {
   for (int i = 0; i < 100; ++i) wide += "µ";
   const ProjectTexts texts{
       {"a.md", hundred + "\n" + wide + "\n| " + more + "\n```\n" + more + "\n```\n" + more + "\n"},
+      {"b.md", "  [x](" + more + "),\n[x](" + more + ") y\n"},
       {"core/a.h", "// " + more + "\n"}};
-  EXPECT_THAT(LongLines(texts),
-              ElementsAre("a.md:7: 101 characters", "core/a.h:1: 104 characters"));
+  EXPECT_THAT(LongLines(texts), ElementsAre("a.md:7: 101 characters", "b.md:2: 108 characters",
+                                            "core/a.h:1: 104 characters"));
 }
 
 TEST(DocRules, SeeAMessageThatNobodySays) {

@@ -37,8 +37,8 @@ const std::map<std::string, Names>& Arrows() {
       {"simulation", {"core", "recording", "vision"}},
       {kClosedLoop, With(models, {"pipeline", "diagnosis", "simulation"})},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
-      {"report", {"core"}},
-      {"workspace", {"core", "kinematics", "control", "recording"}},
+      {"report", {"core", "recording"}},
+      {"workspace", {"core", "kinematics", "control", "recording", "report"}},
       {"reproduction", With(libraries, {"apps"})},  // a program: shares apps/common
       {"apps", libraries},
       {"examples", libraries},
@@ -62,7 +62,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
         "tests"}},
       {"geos", {"reproduction"}},
       {"boost/", {"workspace", "reproduction"}},
-      {"nlohmann/", {"report", "diagnosis", "reproduction", "apps", "bench", "testdata", "tests"}},
+      {"nlohmann/", {"report", "reproduction", "apps", "bench", "testdata", "tests"}},
       {"CLI/", {"reproduction", "apps", "bench"}},
   };
   return foreign;

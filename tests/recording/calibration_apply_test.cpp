@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calibration_applied.h"
+#include "recording/calibrations/em_field.h"
 
 namespace flextip {
 namespace {
@@ -66,13 +67,21 @@ TEST(CalibrationApply, EmSamplesAreTurnedIntoTheRobotsFrame) {
   EXPECT_THAT(ErrorOf(WithNumbers("em0.distance_from_tip_m", {0.7}), r), HasSubstr("0.7"));
 }
 
-TEST(CalibrationApply, TheFieldIsLeftToItsOwner) {
-  Recording r = Plain();
-  Calibration c = WithNumbers("em0.field", {1, 2, 3});
-  c.numbers["em0.field_centre_m"] = {0, 0, 0};
+TEST(CalibrationApply, TheFieldCorrectsThePlacesOfTheEmSensor) {
+  const Recording before = Plain();
+  Recording r = before;
+  Calibration c = WithNumbers("em0.field", {1e-3, 0, 0, 0, 2e-3, 0, 0, 0, 3e-3});
+  EXPECT_THAT(ErrorOf(c, r), HasSubstr("em0.field_centre_m: expected three numbers"));
+  c.numbers["em0.field_centre_m"] = {0.1, 0.2, 0.3};
+  c.numbers["em0.field_scale_m"] = {0.5, 0.5, 0.5};
   const auto applied = Apply(c, r);
-  EXPECT_THAT(applied.em_field, ElementsAre("em0.field", "em0.field_centre_m"));
-  EXPECT_TRUE(applied.used.empty());
+  EXPECT_THAT(applied.used, ElementsAre("em0.field", "em0.field_centre_m", "em0.field_scale_m"));
+  const FieldCorrection field{c.numbers["em0.field"], {0.1, 0.2, 0.3}, {0.5, 0.5, 0.5}};
+  for (std::size_t i = 0; i < r.em0->samples.size(); ++i) {
+    const Eigen::Vector3d p = before.em0->samples[i].value.p_RS;
+    EXPECT_EQ(r.em0->samples[i].value.p_RS, ApplyField(field, p));
+    EXPECT_NE(r.em0->samples[i].value.p_RS, p);
+  }
 }
 
 TEST(CalibrationApply, ReadingsBecomeMoments) {

@@ -13,7 +13,7 @@
 namespace flextip {
 namespace {
 
-Calibration Sample() {
+Calibration SampleCalibration() {
   Calibration c;
   c.kind = "hand-eye";
   c.poses["cam0.T_RC"] = {ExpRotation({0.3, -1.2, 0.4}), {0.1, -0.05, 0.2}};
@@ -42,7 +42,7 @@ class CalibrationFile : public testing::Test {
     return text.str();
   }
   std::string ErrorWith(const std::string& from, const std::string& to) {
-    WriteCalibration(file_, Sample());
+    WriteCalibration(file_, SampleCalibration());
     std::string text = Text();
     const auto at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;
@@ -57,7 +57,7 @@ class CalibrationFile : public testing::Test {
 };
 
 TEST_F(CalibrationFile, IsTheSameWhenReadAgain) {
-  const Calibration c = Sample();
+  const Calibration c = SampleCalibration();
   WriteCalibration(file_, c);
   const Calibration read = ReadCalibration(file_);
   EXPECT_EQ(read.kind, c.kind);
@@ -74,7 +74,7 @@ TEST_F(CalibrationFile, IsTheSameWhenReadAgain) {
 }
 
 TEST_F(CalibrationFile, NamesEachNumber) {
-  const Calibration c = Sample();
+  const Calibration c = SampleCalibration();
   const auto names = c.CoordinateNames();
   ASSERT_EQ(names.size(), 17u);
   EXPECT_EQ(names[0], "board.T_WB.w[0]");
@@ -87,7 +87,7 @@ TEST_F(CalibrationFile, NamesEachNumber) {
 }
 
 TEST_F(CalibrationFile, WithoutCovariance) {
-  Calibration c = Sample();
+  Calibration c = SampleCalibration();
   c.covariance.resize(0, 0);
   c.unobservable.clear();
   WriteCalibration(file_, c);
@@ -112,7 +112,7 @@ TEST_F(CalibrationFile, RefusesWhatIsBroken) {
 TEST_F(CalibrationFile, RefusesWhatIsNoCovariance) {
   for (const auto& [row, column, value] :
        {std::tuple{0, 0, -1.0}, std::tuple{3, 4, 1.0}, std::tuple{16, 16, 1e-12}}) {
-    Calibration c = Sample();
+    Calibration c = SampleCalibration();
     c.covariance(row, column) = value;
     WriteCalibration(file_, c);
     EXPECT_THROW(ReadCalibration(file_), InputError) << row << " " << column;

@@ -46,7 +46,8 @@ TEST_F(CameraFormats, ReadsWhatOpenCvsProgramWrites) {
   EXPECT_EQ(d.calibration.distortion, Distortion::kOpenCv);
   EXPECT_EQ(d.calibration.distortion_coefficients.at(4), -0.57843597214487474);
   EXPECT_THAT(d.notes, ElementsAre(HasSubstr("avg_reprojection_error")));
-  EXPECT_THAT(Refusal(With(kOpenCv, "image_width: 640\n", "")), HasSubstr("--resolution"));
+  EXPECT_THAT(Refusal(With(kOpenCv, "image_width: 640\n", "")),
+              HasSubstr("no resolution was given"));
   EXPECT_EQ(Refusal(With(kOpenCv, "image_width: 640\n", ""), {"", 640, 480}),
             "read without an error");
   EXPECT_THAT(Refusal(With(kOpenCv, "camera_matrix", "camera_matrics")),

@@ -130,6 +130,37 @@ TEST(Csv, BrokenFilesFailWithOneLine) {
   }
 }
 
+TEST(Csv, TextsComeBackAsTheyWereWritten) {
+  const TemporaryFolder folder;
+  const std::string texts[] = {"plain",    "a, b", "says \"so\"", "\"", ",",
+                               " spaces ", "",     "\"\",\""};
+  CsvWriter csv({"name, of", "value"});
+  for (const auto& text : texts) csv.Add(text).AddOrEmpty(std::nan("")).EndRow();
+  csv.Add("number").Add(1.0 / 3, 6).EndRow();
+  WriteText(folder / "a.csv", csv.text());
+  EXPECT_THAT(csv.text(), HasSubstr("number,0.333333\n"));
+  ReadLog log;
+  CsvReader read(folder / "a.csv", log);
+  EXPECT_THAT(read.Columns(), ElementsAre("name, of", "value"));
+  for (const auto& text : texts) {
+    ASSERT_TRUE(read.Next());
+    EXPECT_EQ(read.Text(0), text);
+    EXPECT_TRUE(read.Empty(1));
+  }
+  ASSERT_TRUE(read.Next());
+  EXPECT_EQ(read.Number(1), 0.333333);
+  EXPECT_FALSE(read.Next());
+  EXPECT_TRUE(log.warnings.empty());
+}
+
+TEST(Csv, QuotesThatDoNotCloseAreNamed) {
+  const TemporaryFolder folder;
+  WriteText(folder / "a.csv", "#timestamp [ns],x [m]\n1,\"2\n3,4\n");
+  EXPECT_THAT(Failure(folder / "a.csv"), HasSubstr("a.csv:2: a quote is not closed"));
+  WriteText(folder / "a.csv", "#timestamp [ns],x [m]\n1,\"2\"5\n3,4\n");
+  EXPECT_THAT(Failure(folder / "a.csv"), HasSubstr("a.csv:2: found \"5\" after a closing quote"));
+}
+
 TEST(Csv, NeverWritesWhatItWouldNotRead) {
   CsvWriter csv({"a", "b"});
   EXPECT_THROW(csv.Add(std::nan("")), WorkError);

@@ -121,7 +121,7 @@ TEST(Resample, WristHasAnOrientationWhereBothNeighboursDo) {
   EXPECT_FALSE(WristAt(wrist, kStart + 3 * kPeriod)->q_RW);
 }
 
-TEST(Resample, StrainLoadAndCommand) {
+TEST(Resample, StrainAndLoad) {
   StrainStream strain;
   strain.rate_hz = kRate_hz;
   strain.moments_Nm = Sampled(
@@ -129,16 +129,9 @@ TEST(Resample, StrainLoadAndCommand) {
   LoadStream load;
   load.rate_hz = kRate_hz;
   load.f_tip_N = Sampled(4, [](TimeNs t) { return Eigen::Vector3d(0, 1 - Seconds(t), 7); });
-  CommandStream command;
-  command.rate_hz = kRate_hz;
-  command.p_RW = Sampled(4, Position);
   const TimeNs t = kStart + kPeriod + kPeriod / 4;
   EXPECT_LT((*StrainAt(strain, t) - Eigen::Vector4d(1, 2, -3, 4) * 0.025).norm(), 1e-15);
   EXPECT_LT((*LoadAt(load, t) - Eigen::Vector3d(0, 0.975, 7)).norm(), 1e-15);
-  EXPECT_EQ(*CommandAt(command, t), Position(kStart + kPeriod));  // held, not interpolated
-  EXPECT_EQ(*CommandAt(command, kStart + 5 * kPeriod), Position(kStart + 3 * kPeriod));
-  EXPECT_FALSE(CommandAt(command, kStart + 7 * kPeriod));
-  EXPECT_FALSE(CommandAt(command, kStart - 1));
 }
 
 TEST(Resample, TipIsTheNearestFrameWithinHalfAPeriod) {
@@ -165,20 +158,9 @@ TEST(Resample, TipIsTheNearestFrameWithinHalfAPeriod) {
   EXPECT_FALSE(TipAt(VisionStream{}, kStart));
 }
 
-TEST(Resample, CommonSpanIsWhereAllStreamsAre) {
-  const Eigen::Vector3d force(0, 0, 1);
-  Recording recording;
-  EXPECT_FALSE(CommonSpan(recording));
-  recording.em0 = MakeEm();
-  recording.load0 = LoadStream{};
-  recording.load0->f_tip_N = {{kStart + 5, force}, {kStart + 500 * kPeriod, force}};
-  const auto span = CommonSpan(recording);
-  ASSERT_TRUE(span.has_value());
-  EXPECT_EQ(span->first_ns, kStart + 5);
-  EXPECT_EQ(span->last_ns, recording.em0->samples.back().t_ns);
-  recording.load0->f_tip_N = {{1, force}, {2, force}};
-  EXPECT_FALSE(CommonSpan(recording));
-  EXPECT_EQ(TimesOf(recording.load0->f_tip_N), (std::vector<TimeNs>{1, 2}));
+TEST(Resample, TimesAreThoseOfTheSamples) {
+  const Series<int> series{{1, 7}, {2, 8}};
+  EXPECT_EQ(TimesOf(series), (std::vector<TimeNs>{1, 2}));
 }
 
 }  // namespace

@@ -5,9 +5,11 @@
 
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "report/labels.h"
 #include "report/report.h"
 #include "report/result_files.h"
 
@@ -61,7 +63,7 @@ TEST_F(Pages, ShowFiguresWarningsAndTheTableOfControllers) {
   EXPECT_THAT(html, HasSubstr("simulate   (flextip 9.8.7)"));
   EXPECT_THAT(html, HasSubstr("<dt>frames</dt><dd>12</dd>"));
   EXPECT_THAT(html, HasSubstr("the tip was lost twice"));
-  EXPECT_THAT(html, HasSubstr("<th>max deviation</th>"));
+  EXPECT_THAT(html, HasSubstr("<th>largest deviation</th>"));
   EXPECT_THAT(html, HasSubstr("<td>rod-track</td><td>1.23 mm</td><td>0.4 mm</td>"));
 }
 
@@ -74,8 +76,8 @@ TEST_F(Pages, PlotEveryControllersDeviationAndPath) {
   const auto& over_time = plots[0]["traces"];
   ASSERT_EQ(over_time.size(), 2U);
   EXPECT_EQ(over_time[0]["name"], "straight-calculate");  // the poorest model first
-  EXPECT_EQ(over_time[0]["dashed"], true);
-  EXPECT_EQ(over_time[1]["dashed"], false);
+  EXPECT_EQ(over_time[0].value("dashed", false), true);
+  EXPECT_EQ(over_time[1].value("dashed", false), false);
   EXPECT_EQ(over_time[1]["x"], nlohmann::json({0.0, 0.5}));
   EXPECT_EQ(over_time[1]["y"], nlohmann::json({1.0, 3.0}));  // mm
   const auto& paths = plots[1]["traces"];
@@ -155,7 +157,7 @@ TEST_F(Pages, SayWhichFileIsWrong) {
     WriteSimulateReport(folder_);
     FAIL() << "no error";
   } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), HasSubstr("deviation.csv:4: 2 cells, expected 8"));
+    EXPECT_THAT(e.what(), HasSubstr("deviation.csv:4: found 2 fields, expected 8"));
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "report.html"));
   std::filesystem::remove(folder_ / "summary.json");
@@ -175,12 +177,74 @@ TEST(ResultFiles, SpreadAFewPicturesOverAll) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(ResultFiles, SayNumbersInTheUnitsPeopleRead) {
-  EXPECT_EQ(SpokenName("max_deviation_m"), "max deviation");
+TEST(Labels, SayNumbersInTheUnitsPeopleRead) {
+  EXPECT_EQ(Label("max_deviation_m"), "largest deviation");
+  EXPECT_EQ(Label("rms_thing_m"), "rms thing");
+  EXPECT_EQ(Label("ok", "track"), "frames with the tip seen");
+  EXPECT_EQ(Label("ok", "shape"), "shapes solved");
   EXPECT_EQ(SpokenValue("max_deviation_m", 0.00123), "1.23 mm");
   EXPECT_EQ(SpokenValue("rms_reprojection_error_px", 0.19512), "0.195 px");
+  EXPECT_EQ(SpokenValue("noise_grey", 2.5), "2.5 grey levels");
+  EXPECT_EQ(SpokenValue("tip_share_inside_95", 0.9512), "95.1 %");
   EXPECT_EQ(SpokenValue("frames", 900), "900");
-  EXPECT_EQ(SpokenName("frames_per_second"), "frames per second");
+  EXPECT_EQ(Label("frames_per_second"), "frames per second");
+}
+
+TEST_F(Pages, LeadWithTheResult) {
+  Write("summary.json", R"({"command": "simulate", "version": "1", "controllers": {
+    "straight-track": {"max_deviation_m": 0.005, "rms_deviation_m": 0.002},
+    "rod-track": {"max_deviation_m": 0.00031, "rms_deviation_m": 0.00012}}})");
+  WriteSimulateReport(folder_);
+  EXPECT_THAT(Page(), HasSubstr("rod-track keeps the tip within 0.31 mm of the desired path "
+                                "(0.12 mm RMS)."));
+  EXPECT_THAT(Page(), HasSubstr("the worst, straight-track, lets it go 5 mm astray."));
+  Write("summary.json", R"({"command": "track", "version": "1", "frames": 120, "ok": 118,
+    "predicted": 2, "lost": 0, "tip_rms_error_m": 0.0001, "tip_max_error_m": 0.0004,
+    "tip_share_inside_95": 0.951})");
+  WriteTrackReport(folder_);
+  EXPECT_THAT(Page(), HasSubstr("The tip was seen in 118 of 120 frames. In 2 more it was "
+                                "predicted."));
+  EXPECT_THAT(Page(), HasSubstr("0.1 mm off (RMS), 0.4 mm at most; 95.1 %"));
+  EXPECT_LT(Page().find("The tip was seen in"), Page().find("<dl class=\"figures\">"));
+}
+
+TEST_F(Pages, AreMadeAgainByTheCommandOfTheSummary) {
+  Write("deviation.csv", kDeviation);
+  WriteSimulateReport(folder_);
+  const std::string before = Page();
+  std::filesystem::remove(folder_ / "report.html");
+  WriteReport(folder_);
+  EXPECT_EQ(Page(), before);
+}
+
+TEST_F(Pages, AreNotMadeWithoutTheFilesTheyStandOn) {
+  const auto refusal = [&] {
+    try {
+      WriteReport(folder_);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(refusal(), HasSubstr("no deviation.csv, the page needs it"));
+  for (const auto& [command, file] :
+       std::map<std::string, std::string>{{"track", "vision0/data.csv"},
+                                          {"estimate", "state0/data.csv"},
+                                          {"shape", "shapes.csv"},
+                                          {"detect", "tags.csv"},
+                                          {"diagnose", "diagnosis.json"},
+                                          {"map", "figures.json"},
+                                          {"reproduce", "figures.json"}}) {
+    Write("summary.json", R"({"version": "1", "command": ")" + command + "\"}");
+    EXPECT_THAT(refusal(), HasSubstr("no " + file)) << command;
+  }
+  Write("summary.json", R"({"version": "1", "command": "dance"})");
+  EXPECT_THAT(refusal(), HasSubstr("no page is known for the command dance"));
+  Write("summary.json", R"({"version": "1"})");
+  EXPECT_THAT(refusal(), HasSubstr("states no command"));
+  std::filesystem::remove(folder_ / "summary.json");
+  EXPECT_THAT(refusal(), HasSubstr("no summary.json, expected a folder"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "report.html"));
 }
 
 }  // namespace

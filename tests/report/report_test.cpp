@@ -31,8 +31,10 @@ std::vector<nlohmann::json> PlotsOf(const std::string& html) {
 
 /// The page without the plotting library, which has addresses of its own that it does not call.
 std::string WithoutPlotly(std::string html) {
-  const auto at = html.find(PlotlyJs());
-  if (at != std::string::npos) html.erase(at, PlotlyJs().size());
+  for (const auto plotly : {PlotlyJs(), PlotlyFlatJs()}) {
+    const auto at = html.find(plotly);
+    if (at != std::string::npos) html.erase(at, plotly.size());
+  }
   return html;
 }
 
@@ -47,11 +49,12 @@ TEST(Base64, AgreesWithTheStandardsExamples) {  // RFC 4648, section 10
 
 TEST(Report, HasPlotlyInsideAndNothingFromANetwork) {
   Report report("title", "subtitle");
-  report.AddPlot({.title = "p", .traces = {{.name = "t", .x = {1, 2}, .y = {3, 4}}}});
+  report.AddFigure({.title = "p", .traces = {{.name = "t", .x = {1, 2}, .y = {3, 4}}}});
   report.AddPictures({{"\x89PNG", "caption"}});
   const std::string html = report.Html();
   EXPECT_THAT(html, HasSubstr("Plotly.newPlot"));
   EXPECT_GT(PlotlyJs().size(), 1000000U);
+  EXPECT_GT(PlotlyFlatJs().size(), 1000000U);
   const std::string own = WithoutPlotly(html);
   EXPECT_LT(own.size(), 50000U);
   EXPECT_FALSE(
@@ -60,17 +63,17 @@ TEST(Report, HasPlotlyInsideAndNothingFromANetwork) {
 
 TEST(Report, LeavesPlotlyOutWhereNothingIsPlotted) {
   Report report("title");
-  report.AddText("no plot here");
+  report.AddHeading("no plot here");
   EXPECT_LT(report.Html().size(), 50000U);
 }
 
 TEST(Report, KeepsEveryNumberOfAPlot) {
   const double third = 1.0 / 3.0, nan = std::numeric_limits<double>::quiet_NaN();
   Report report("title");
-  report.AddPlot(
+  report.AddFigure(
       {.x_label = "time (s)",
        .traces = {{.name = "a", .x = {0, third, 2}, .y = {1e-17, nan, -5}, .dashed = true}}});
-  report.AddPlot({.traces = {{.name = "b", .x = {1}, .y = {2}, .z = {3}, .color = "red"}}});
+  report.AddFigure({.traces = {{.name = "b", .x = {1}, .y = {2}, .z = {3}, .color = "red"}}});
   const auto plots = PlotsOf(report.Html());
   ASSERT_EQ(plots.size(), 2U);
   EXPECT_EQ(plots[0]["x_label"], "time (s)");
@@ -82,11 +85,22 @@ TEST(Report, KeepsEveryNumberOfAPlot) {
   EXPECT_EQ(plots[1]["traces"][0]["z"][0].get<double>(), 3.0);
 }
 
+TEST(Report, TakesTheLargerPlotlyOnlyForPathsInSpace) {
+  Report flat("title"), space("title");
+  flat.AddFigure({.traces = {{.x = {1}, .y = {2}}}});
+  space.AddFigures(
+      {{.traces = {{.x = {1}, .y = {2}}}}, {.traces = {{.x = {1}, .y = {2}, .z = {3}}}}});
+  EXPECT_THAT(flat.Html(), HasSubstr(std::string(PlotlyFlatJs())));
+  EXPECT_THAT(space.Html(), HasSubstr(std::string(PlotlyJs())));
+  EXPECT_THAT(space.Html(), Not(HasSubstr(std::string(PlotlyFlatJs()))));
+}
+
 TEST(Report, TakesTextForTextAndNotForHtml) {
   Report report("<b>&title", "'sub\"");
   report.AddWarnings({"<img src=x>"});
   report.AddTable({.header = {"<h>"}, .rows = {{"a<b"}}});
-  report.AddPlot({.traces = {{.name = "</script><script>alert(1)</script>", .x = {1}, .y = {1}}}});
+  report.AddFigure(
+      {.traces = {{.name = "</script><script>alert(1)</script>", .x = {1}, .y = {1}}}});
   const std::string html = WithoutPlotly(report.Html());
   EXPECT_THAT(html, HasSubstr("<title>&lt;b&gt;&amp;title</title>"));
   EXPECT_THAT(html, Not(HasSubstr("<img src=x>")));

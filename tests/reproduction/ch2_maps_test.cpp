@@ -6,10 +6,10 @@
 #include <set>
 
 #include "core/linear_algebra.h"
-#include "reproduction/chapter2/maps/figures.h"
 #include "reproduction/chapter2/maps/pictures.h"
 #include "reproduction/chapter2/maps/statistics.h"
 #include "reproduction/chapter2/parts.h"
+#include "workspace/map_figures.h"
 
 namespace flextip::reproduction {
 namespace {

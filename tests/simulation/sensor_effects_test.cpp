@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "simulation/plant/plant.h"
 #include "simulation/sensors/camera_view.h"
@@ -291,7 +292,7 @@ TEST_F(SensorsTest, TipNoiseIsTheStatedCovariance) {
     covariance += (tip.value.p_RE - truth) * (tip.value.p_RE - truth).transpose();
   }
   covariance /= static_cast<double>(tips.size());
-  const Eigen::Matrix3d root = tips[0].value.covariance_m2.llt().matrixL();
+  const Eigen::Matrix3d root = Llt(tips[0].value.covariance_m2).L();
   const Eigen::Matrix3d whitened = root.inverse() * covariance * root.inverse().transpose();
   EXPECT_LT((whitened - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(),
             4.5 * std::sqrt(2.0 / static_cast<double>(tips.size())));

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "tests/vision/optics_reference.h"
 #include "vision/photometric/tag_blur.h"
@@ -108,7 +109,7 @@ double MeanInPicture(const TagCells& tag, const Eigen::Matrix3d& to_tag, const E
                      const Eigen::Matrix2d& spread_m) {
   constexpr int kSteps = 300;
   constexpr double kTail = 4.5;
-  const Eigen::Matrix2d root = spread_m.llt().matrixL();
+  const Eigen::Matrix2d root = Llt(spread_m).L();
   double sum = 0, total = 0;
   for (int i = 0; i < kSteps; ++i) {
     for (int j = 0; j < kSteps; ++j) {

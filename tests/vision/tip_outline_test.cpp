@@ -34,7 +34,7 @@ TipPrediction Drawn(const Pose& truth, const Matrix6& covariance, std::mt19937& 
   std::normal_distribution<double> normal;
   Vector6 z;
   for (double& x : z) x = normal(random);
-  return {MovePose(truth, covariance.llt().matrixL() * z), covariance};
+  return {MovePose(truth, Llt(covariance).L() * z), covariance};
 }
 
 // As seen in the picture: out of it the outline says little.

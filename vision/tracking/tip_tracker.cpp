@@ -108,7 +108,7 @@ void TipTracker::Impl::VisitState(StateText& state) {
   for (int* count : {&predicted_frames, &lost_frames}) state(*count);
   for (double* value : {&noise_sum_px2, &noise_dof}) state(*value);
   if (state.IsThere(outline.has_value()) != outline.has_value()) {
-    throw InputError("saved state: of a run with another --outline");
+    throw InputError("saved state: of a run with another choice of the outline");
   }
   if (outline) state(*outline);
 }

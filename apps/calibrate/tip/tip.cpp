@@ -13,13 +13,13 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
-#include "apps/track/input.h"
 #include "calibration/entries.h"
 #include "calibration/tip/tip_poses.h"
 #include "calibration/verdict/tip.h"
 #include "core/error.h"
 #include "pipeline/instrument_tracker.h"
 #include "recording/frames/frames.h"
+#include "recording/frames/track_input.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
 
@@ -55,10 +55,8 @@ std::string ChooseSensor(const CalibrateTipOptions& options, const Recording& re
 
 TipBody CollarBody(const CalibrateTipOptions& options, OutputFolder& output, bool quiet) {
   SilenceVideoCodecs();
-  TrackInputOptions source;
-  source.source = options.input.recording;
-  source.calibrations = options.input.calibrations;
-  TrackInput input = OpenTrackInput(source);
+  TrackInput input =
+      OpenRecordingToTrack(options.input.recording, {.calibrations = options.input.calibrations});
   output.Warn(input.warnings);
   InstrumentTracker tracker(TrackerSetupOf(input.recording, {}, false));
   Progress progress("frames", input.frames->Count(), quiet, "fps");

@@ -1,9 +1,9 @@
 // The measures as a design tool: tolerances and paths (2.4).
 #include <fmt/format.h>
 
-#include "reproduction/chapter2/maps/figures.h"
 #include "reproduction/chapter2/maps/pictures.h"
 #include "reproduction/chapter2/maps/study.h"
+#include "workspace/map_figures.h"
 
 namespace flextip::reproduction {
 namespace {

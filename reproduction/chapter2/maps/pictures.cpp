@@ -1,6 +1,6 @@
 #include "reproduction/chapter2/maps/pictures.h"
 
-#include "reproduction/chapter2/maps/figures.h"
+#include "workspace/map_figures.h"
 #include "workspace/outline.h"
 
 namespace flextip::reproduction {

@@ -28,7 +28,7 @@ int main() {
   const flextip::ControlOutput output = controller.Step(input);
   if (output.status != flextip::ControlStatus::kOk) return 2;
 
-  flextip::Report report("consumer");
+  flextip::report::Report report("consumer");
   if (report.Html().find("consumer") == std::string::npos) return 3;
   std::printf("flextip %s: tip at %.4f %.4f %.4f m\n", flextip::kVersion, rod.tip.p.x(),
               rod.tip.p.y(), rod.tip.p.z());

@@ -1,18 +1,19 @@
 // flextip diagnose: what the simulation gets wrong, why, and what an extended model gains.
-#include "diagnosis/diagnose.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/common/commands.h"
 #include "apps/common/output.h"
 #include "apps/common/recording_input.h"
+#include "apps/diagnose/result_files.h"
 #include "core/error.h"
+#include "diagnosis/diagnose.h"
 #include "diagnosis/model/catalogue.h"
 #include "diagnosis/model/extended_model.h"
 #include "recording/text/text.h"
@@ -28,30 +29,19 @@ struct Options {
   bool no_closed_loop = false, force = false;
 };
 
-nlohmann::json Deviations(double max_m, double rms_m) {
-  return {{"max_deviation_m", max_m}, {"rms_deviation_m", rms_m}};
-}
-
-nlohmann::json Compared(const simulation::ControllerGain& gain) {
-  return {{"controller", Name(gain.kind)},
-          {"before", Deviations(gain.base.max_m, gain.base.rms_m)},
-          {"after", Deviations(gain.extended.max_m, gain.extended.rms_m)}};
-}
-
-/// The controllers with and without what was found, on a plant that has it.
-void AddClosedLoop(const Recording& recording, const diagnosis::ExtendedModel& model,
-                   OutputFolder& output, nlohmann::ordered_json& json) {
-  const simulation::ClosedLoopGain measured = simulation::MeasureClosedLoopGain(recording, model);
-  if (!measured.warning.empty()) output.Warn(measured.warning);
-  for (const simulation::ControllerGain& gain : measured.controllers) {
-    if (!gain.ran) {
-      output.Warn(fmt::format("closed loop: the simulated instrument lost its equilibrium under {}",
-                              Name(gain.kind)));
-      continue;
-    }
-    json["closed_loop_runs"] += nlohmann::ordered_json(Compared(gain));
-    if (gain.kind == ControllerKind::kRodTrack) json["closed_loop"] = Compared(gain);
+/// Runs the controllers with and without what was found, on a plant that has it; warns of those
+/// that did not come to an end.
+simulation::ClosedLoopGain ClosedLoopGain(const Recording& recording,
+                                          const diagnosis::ExtendedModel& model,
+                                          OutputFolder& output) {
+  simulation::ClosedLoopGain gain = simulation::MeasureClosedLoopGain(recording, model);
+  if (!gain.warning.empty()) output.Warn(gain.warning);
+  for (const simulation::ControllerGain& run : gain.controllers) {
+    if (run.ran) continue;
+    output.Warn(fmt::format("closed loop: the simulated instrument lost its equilibrium under {}",
+                            Name(run.kind)));
   }
+  return gain;
 }
 
 bool IsKnown(const diagnosis::DiagnosisResult& result) {
@@ -94,11 +84,11 @@ void Run(const Options& options, bool quiet) {
   const diagnosis::DiagnosisResult result = diagnosis::Diagnose(
       recording, options.input.recording.string(), {.without = options.without});
   output.Warn(result.warnings);
-  nlohmann::ordered_json json = nlohmann::ordered_json::parse(diagnosis::DiagnosisJson(result));
   const diagnosis::ExtendedModel model = diagnosis::FromResult(result);
-  if (!options.no_closed_loop && IsKnown(result)) AddClosedLoop(recording, model, output, json);
-  WriteTextFile(output.folder() / "diagnosis.json", json.dump(2) + "\n");
-  WriteTextFile(output.folder() / "residuals.csv", diagnosis::ResidualsCsv(result));
+  std::optional<simulation::ClosedLoopGain> gain;
+  if (!options.no_closed_loop && IsKnown(result)) gain = ClosedLoopGain(recording, model, output);
+  WriteTextFile(output.folder() / "diagnosis.json", DiagnosisJson(result, gain ? &*gain : nullptr));
+  WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result.residuals));
   diagnosis::WriteModel(output.folder() / "model.yaml", model);
   nlohmann::json summary = {{"verdicts", result.verdict},
                             {"samples", result.samples},

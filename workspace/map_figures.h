@@ -1,4 +1,4 @@
-// Maps of the measures as figures; also for the command `flextip map`.
+// Maps of the measures as figures of a page.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 #include "report/figure.h"
 #include "workspace/map.h"
 
-namespace flextip::reproduction {
+namespace flextip {
 
 /// What is drawn of every point, in the units of the figures.
 enum class MapQuantity {
@@ -47,4 +47,4 @@ report::FigureTrace TraceInMm(const std::vector<Eigen::Vector2d>& points_m,
 
 double ToDigits(double value, int digits = 5);
 
-}  // namespace flextip::reproduction
+}  // namespace flextip

@@ -1,14 +1,15 @@
-#include <fmt/format.h>
+#include "apps/diagnose/result_files.h"
 
 #include <nlohmann/json.hpp>
 
-#include "diagnosis/diagnose.h"
 #include "diagnosis/model/catalogue.h"
 #include "diagnosis/replay/sample_input.h"
+#include "recording/text/csv.h"
 
-namespace flextip::diagnosis {
+namespace flextip {
 namespace {
 
+using namespace diagnosis;
 using Json = nlohmann::ordered_json;
 
 /// A number, or a list where there are several.
@@ -73,9 +74,19 @@ Json Summaries(const DiagnosisResult& result) {
   return json;
 }
 
+nlohmann::json Deviations(double max_m, double rms_m) {
+  return {{"max_deviation_m", max_m}, {"rms_deviation_m", rms_m}};
+}
+
+nlohmann::json Compared(const simulation::ControllerGain& gain) {
+  return {{"controller", Name(gain.kind)},
+          {"before", Deviations(gain.base.max_m, gain.base.rms_m)},
+          {"after", Deviations(gain.extended.max_m, gain.extended.rms_m)}};
+}
+
 }  // namespace
 
-std::string DiagnosisJson(const DiagnosisResult& result) {
+std::string DiagnosisJson(const DiagnosisResult& result, const simulation::ClosedLoopGain* gain) {
   const bool known = result.verdict != Verdict{"none"} && result.verdict != Verdict{"unknown"};
   Json json;
   json["verdict"] = result.verdict.front();
@@ -108,23 +119,28 @@ std::string DiagnosisJson(const DiagnosisResult& result) {
   json["converged"] = result.converged;
   json["has_load"] = result.has_load;
   json["warnings"] = result.warnings;
+  const auto runs = gain ? gain->controllers : std::vector<simulation::ControllerGain>{};
+  for (const simulation::ControllerGain& run : runs) {
+    if (!run.ran) continue;
+    json["closed_loop_runs"] += Json(Compared(run));
+    if (run.kind == ControllerKind::kRodTrack) json["closed_loop"] = Compared(run);
+  }
   return json.dump(2) + "\n";
 }
 
-std::string ResidualsCsv(const DiagnosisResult& result) {
-  std::string text = "#";
-  for (std::size_t c = 0; c < result.residuals.columns.size(); ++c)
-    text += (c > 0 ? "," : "") + result.residuals.columns[c];
-  text += "\n";
-  for (std::size_t k = 0; k < result.residuals.rows.size(); ++k) {
-    for (std::size_t c = 0; c < result.residuals.columns.size(); ++c) {
-      if (c > 0) text += ",";
-      if (result.residuals.present[k][c])
-        text += fmt::format("{:.6g}", result.residuals.rows[k][c]);
+std::string ResidualsCsv(const ResidualTable& residuals) {
+  CsvWriter csv(residuals.columns);
+  for (std::size_t k = 0; k < residuals.rows.size(); ++k) {
+    for (std::size_t c = 0; c < residuals.columns.size(); ++c) {
+      if (residuals.present[k][c]) {
+        csv.Add(residuals.rows[k][c], 6);
+      } else {
+        csv.AddEmpty();
+      }
     }
-    text += "\n";
+    csv.EndRow();
   }
-  return text;
+  return csv.TakeText();
 }
 
-}  // namespace flextip::diagnosis
+}  // namespace flextip

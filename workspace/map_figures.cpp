@@ -1,10 +1,10 @@
-#include "reproduction/chapter2/maps/figures.h"
+#include "workspace/map_figures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace flextip::reproduction {
+namespace flextip {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -155,4 +155,4 @@ template report::Figure DirectionFigure(const WorkspaceMap<3>&, MapDirection, bo
 template void MarkPorts(report::Figure&, const MapSetup<2>&, const Slice<2>&);
 template void MarkPorts(report::Figure&, const MapSetup<3>&, const Slice<3>&);
 
-}  // namespace flextip::reproduction
+}  // namespace flextip

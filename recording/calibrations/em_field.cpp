@@ -1,4 +1,4 @@
-#include "calibration/em/field.h"
+#include "recording/calibrations/em_field.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "apps/shape/model.h"
+#include "kinematics/shaft_shape.h"
 
 #include "kinematics/beam.h"
 #include "kinematics/plane_beam.h"

@@ -1,4 +1,4 @@
-#include "apps/track/score.h"
+#include "recording/tip_score.h"
 
 #include <algorithm>
 #include <cmath>

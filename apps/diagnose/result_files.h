@@ -1,0 +1,19 @@
+// The files of a diagnosis as text: diagnosis.json and residuals.csv (docs/formats.md).
+#pragma once
+
+#include <string>
+
+#include "diagnosis/diagnose.h"
+#include "simulation/closed_loop/gain.h"
+
+namespace flextip {
+
+/// Returns diagnosis.json. `gain`, where there is one, adds `closed_loop_runs`, each controller
+/// that ran, and `closed_loop`, the rod controller that sees the tip.
+std::string DiagnosisJson(const diagnosis::DiagnosisResult& result,
+                          const simulation::ClosedLoopGain* gain = nullptr);
+
+/// Returns residuals.csv: the ResidualTable, six digits a number; an absent measurement is empty.
+std::string ResidualsCsv(const diagnosis::ResidualTable& residuals);
+
+}  // namespace flextip

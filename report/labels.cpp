@@ -1,0 +1,105 @@
+#include "report/labels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "report/unit_suffix.h"
+
+namespace flextip::report {
+namespace {
+
+constexpr std::array<UnitSuffix, 15> kUnits{{{"_m_N", "mm/N", 1000},
+                                             {"_Nm2", "N m²", 1},
+                                             {"_N_m", "N/m", 1},
+                                             {"_Nm", "N m", 1},
+                                             {"_cm2", "cm²", 1},
+                                             {"_mm", "mm", 1},
+                                             {"_ms", "ms", 1},
+                                             {"_us", "µs", 1},
+                                             {"_px", "px", 1},
+                                             {"_grey", "grey levels", 1},
+                                             {"_rad", "mrad", 1000},
+                                             {"_deg", "°", 1},
+                                             {"_hz", "Hz", 1},
+                                             {"_m", "mm", 1000},
+                                             {"_N", "N", 1}}};
+
+/// Keys of summary.json; "COMMAND KEY" where a key means something else there.
+const std::map<std::string, std::string>& Labels() {
+  static const std::map<std::string, std::string> labels{
+      {"seconds", "time taken"},
+      // track
+      {"track ok", "frames with the tip seen"},
+      {"track predicted", "frames with the tip predicted"},
+      {"track lost", "frames with the tip lost"},
+      {"frames_by_pixels", "frames fitted to the tags' pixels"},
+      {"frames_by_corners", "frames fitted to the tags' corners"},
+      {"tags_per_frame", "tags a frame"},
+      {"noise_grey", "noise of the tags' pixels"},
+      {"rms_reprojection_error_px", "corners to the fit, RMS"},
+      {"scored_frames", "seen frames compared with the truth"},
+      {"scored_frames_predicted", "predicted frames compared with the truth"},
+      {"tip_rms_error_m", "tip error, RMS"},
+      {"tip_max_error_m", "tip error, largest"},
+      {"tip_rms_error_across_m", "tip error across the view, RMS"},
+      {"tip_rms_error_depth_m", "tip error in depth, RMS"},
+      {"tip_mean_nees", "tip error² over its variance (honest: 3)"},
+      {"tip_share_inside_95", "tip errors inside their 95 % ellipsoid"},
+      {"predicted_tip_rms_error_m", "predicted tip's error, RMS"},
+      {"predicted_tip_max_error_m", "predicted tip's error, largest"},
+      {"predicted_tip_mean_nees", "predicted tip's error² over its variance (honest: 3)"},
+      {"predicted_tip_share_inside_95", "predicted tip's errors inside their 95 % ellipsoid"},
+      // simulate
+      {"rendered", "seen through rendered frames"},
+      {"max_deviation_m", "largest deviation"},
+      {"rms_deviation_m", "deviation, RMS"},
+      {"final_error_m", "error at the end"},
+      {"updates", "control steps"},
+      {"steps_limited", "steps cut to their bound"},
+      {"steps_damped", "steps damped near a singularity"},
+      // estimate
+      {"chi2_per_measurement", "residual² over variance, a measurement (noise alone: 1)"},
+      {"scored_samples", "samples compared with the truth"},
+      // shape
+      {"shape ok", "shapes solved"},
+      // map
+      {"without_measures", "points without measures"},
+      {"largest_norm_G", "largest ||G||"}};
+  return labels;
+}
+
+bool IsShare(const std::string& key) { return key.ends_with("share_inside_95"); }
+
+}  // namespace
+
+std::string Label(const std::string& key, const std::string& command) {
+  for (const std::string& wanted : {command + " " + key, key}) {
+    const auto found = Labels().find(wanted);
+    if (found != Labels().end()) return found->second;
+  }
+  std::string name = key;
+  if (const UnitSuffix* unit = SuffixOf(key, kUnits)) {
+    name.resize(name.size() - unit->ending.size());
+  }
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string SpokenValue(const std::string& key, double value) {
+  if (key == "seconds") return fmt::format("{:.3g} s", value);
+  if (IsShare(key)) return fmt::format("{:.1f} %", 100.0 * value);
+  const UnitSuffix* unit = SuffixOf(key, kUnits);
+  if (unit == nullptr) {
+    const bool whole = value == std::floor(value) && std::abs(value) < 1e9;
+    return whole ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
+  }
+  const double shown = value * unit->factor;
+  return std::abs(shown) < 1000 ? fmt::format("{:.3g} {}", shown, unit->shown)
+                                : fmt::format("{:.1f} {}", shown, unit->shown);
+}
+
+}  // namespace flextip::report

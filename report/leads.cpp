@@ -1,0 +1,165 @@
+#include "report/leads.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "report/labels.h"
+#include "report/result_files.h"
+
+namespace flextip::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double Number(const Json& json, const char* key) {
+  const auto it = json.find(key);
+  return it != json.end() && it->is_number() ? it->get<double>() : 0.0;
+}
+
+bool Has(const Json& json, const char* key) { return json.contains(key) && json[key].is_number(); }
+
+std::string Value(const Json& json, const char* key) { return SpokenValue(key, Number(json, key)); }
+
+std::string Count(const Json& json, const char* key) {
+  return fmt::format("{:.0f}", Number(json, key));
+}
+
+/// Controllers by their largest deviation, the best first.
+Lead SimulateLead(const Json& summary) {
+  std::vector<std::pair<std::string, Json>> runs;
+  for (const auto& [name, run] : summary.value("controllers", Json::object()).items()) {
+    if (run.is_object() && Has(run, "max_deviation_m")) runs.emplace_back(name, run);
+  }
+  if (runs.empty()) return {};
+  std::stable_sort(runs.begin(), runs.end(), [](const auto& a, const auto& b) {
+    return Number(a.second, "max_deviation_m") < Number(b.second, "max_deviation_m");
+  });
+  const auto& [best, run] = runs.front();
+  Lead lead{.says = fmt::format("{} keeps the tip within {} of the desired path ({} RMS).", best,
+                                Value(run, "max_deviation_m"), Value(run, "rms_deviation_m"))};
+  if (runs.size() > 1) {
+    const auto& [worst, other] = runs.back();
+    lead.more =
+        fmt::format("It is the best of {} controllers; the worst, {}, lets it go {} astray.",
+                    runs.size(), worst, Value(other, "max_deviation_m"));
+  }
+  return lead;
+}
+
+Lead TrackLead(const Json& summary) {
+  if (!Has(summary, "frames") || !Has(summary, "ok")) return {};
+  Lead lead{.says = fmt::format("The tip was seen in {} of {} frames.", Count(summary, "ok"),
+                                Count(summary, "frames"))};
+  const double predicted = Number(summary, "predicted"), lost = Number(summary, "lost");
+  if (predicted > 0) lead.says += fmt::format(" In {:.0f} more it was predicted.", predicted);
+  if (lost > 0) lead.says += fmt::format(" In {:.0f} it was lost.", lost);
+  if (Has(summary, "tip_rms_error_m")) {
+    lead.more = fmt::format(
+        "Against the truth it was {} off (RMS), {} at most; {} of the errors lie inside their "
+        "95 % ellipsoid.",
+        Value(summary, "tip_rms_error_m"), Value(summary, "tip_max_error_m"),
+        Value(summary, "tip_share_inside_95"));
+  }
+  return lead;
+}
+
+Lead EstimateLead(const Json& summary) {
+  if (!Has(summary, "samples")) return {};
+  const Json statuses = summary.value("statuses", Json::object());
+  Lead lead{.says = fmt::format("Load, port and shape were found at {} of {} samples.",
+                                Count(statuses, "ok"), Count(summary, "samples"))};
+  if (Has(summary, "chi2_per_measurement")) {
+    lead.more =
+        fmt::format("The fit leaves {} of the sensors' variance a measurement; 1 is noise alone.",
+                    Value(summary, "chi2_per_measurement"));
+  }
+  if (Has(summary, "tip_rms_error_m")) {
+    lead.more += fmt::format("{}Against the truth the tip was {} off (RMS).",
+                             lead.more.empty() ? "" : " ", Value(summary, "tip_rms_error_m"));
+  }
+  return lead;
+}
+
+/// The tip and the port's force of a single shape, by its row of shapes.csv.
+std::string SingleShape(const std::filesystem::path& table) {
+  if (!std::filesystem::exists(table)) return "";
+  const ResultTable shapes = ReadResultTable(table);
+  const auto first = [&](const char* column) {
+    const auto* numbers = shapes.Column(column);
+    return numbers == nullptr || numbers->empty() ? std::nan("") : numbers->front();
+  };
+  const double force = std::hypot(first("f_port_on_shaft_N_x"), first("f_port_on_shaft_N_y"),
+                                  first("f_port_on_shaft_N_z"));
+  if (!std::isfinite(force) || !std::isfinite(first("p_tip_m_x"))) return "";
+  return fmt::format("The tip is at ({:.1f}, {:.1f}, {:.1f}) mm; the port pushes with {:.3g} N.",
+                     1e3 * first("p_tip_m_x"), 1e3 * first("p_tip_m_y"), 1e3 * first("p_tip_m_z"),
+                     force);
+}
+
+Lead ShapeLead(const Json& summary, const std::filesystem::path& folder) {
+  if (!Has(summary, "shapes")) return {};
+  if (Number(summary, "shapes") == 1) return {.says = SingleShape(folder / "shapes.csv")};
+  return {.says = fmt::format("{} of {} shapes were solved.", Count(summary, "ok"),
+                              Count(summary, "shapes"))};
+}
+
+Lead DetectLead(const Json& summary) {
+  if (!Has(summary, "tags")) return {};
+  const std::size_t pictures = summary.value("images", Json::array()).size();
+  return {.says = fmt::format("{} {} found in {} {}.", Count(summary, "tags"),
+                              Number(summary, "tags") == 1 ? "tag was" : "tags were", pictures,
+                              pictures == 1 ? "picture" : "pictures")};
+}
+
+Lead MapLead(const Json& summary) {
+  const Json slices = summary.value("slices", Json::array());
+  double area_cm2 = 0.0, norm = 0.0, angle_deg = 0.0;
+  for (const auto& slice : slices) {
+    area_cm2 += Number(slice, "area_cm2");
+    norm = std::max(norm, Number(slice, "largest_norm_G"));
+    angle_deg = std::max(angle_deg, Number(slice, "largest_angle_deg"));
+  }
+  if (!(norm > 0.0)) return {};
+  return {.says = fmt::format("A step of the tip may go up to {:.3g}° astray.", angle_deg),
+          .more = fmt::format("The largest error that a step leaves is {:.3g} times the one it "
+                              "found; {:.4g} cm² of the plane{} can be reached.",
+                              norm, area_cm2, slices.size() == 1 ? "" : "s")};
+}
+
+Lead ReproduceLead(const Json& summary) {
+  double numbers = 0.0, figures = 0.0;
+  for (const auto& chapter : summary.value("chapters", Json::array())) {
+    numbers += Number(chapter, "numbers");
+    figures += Number(chapter, "figures");
+  }
+  if (numbers + figures == 0.0) return {};
+  return {.says = fmt::format("{:.0f} numbers and {:.0f} figures of the thesis, done again.",
+                              numbers, figures)};
+}
+
+}  // namespace
+
+Lead LeadOf(const std::filesystem::path& folder) {
+  const auto file = folder / "summary.json";
+  const Json summary = Json::parse(ReadBytes(file), nullptr, false);
+  if (!summary.is_object()) throw InputError::At(file.string(), 0, "not an object");
+  const std::string command =
+      summary.contains("command") && summary["command"].is_string() ? summary["command"] : "";
+  if (command == "simulate") return SimulateLead(summary);
+  if (command == "track") return TrackLead(summary);
+  if (command == "estimate") return EstimateLead(summary);
+  if (command == "shape") return ShapeLead(summary, folder);
+  if (command == "detect") return DetectLead(summary);
+  if (command == "map") return MapLead(summary);
+  if (command == "reproduce") return ReproduceLead(summary);
+  return {};
+}
+
+}  // namespace flextip::report

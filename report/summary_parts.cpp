@@ -1,0 +1,158 @@
+#include "report/summary_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "report/diagnose/parts.h"
+#include "report/labels.h"
+#include "report/leads.h"
+#include "report/result_files.h"
+
+namespace flextip::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kOpenRows = 15;  // a longer table is folded
+
+Json ReadSummary(const std::filesystem::path& folder) {
+  const auto path = folder / "summary.json";
+  try {
+    auto json = Json::parse(ReadBytes(path));
+    if (!json.is_object()) throw InputError::At(path.string(), 0, "not an object");
+    return json;
+  } catch (const Json::exception& e) {
+    throw InputError::At(path.string(), 0, e.what());
+  }
+}
+
+/// A value as people read it; what is neither number nor text is shown as JSON.
+std::string Shown(const std::string& key, const Json& value) {
+  if (value.is_number()) return SpokenValue(key, value.get<double>());
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  return value.is_null() ? "–" : value.dump();
+}
+
+bool IsScalar(const Json& value) { return value.is_number() || value.is_boolean(); }
+
+std::string TextOf(const Json& summary, const char* key) {
+  return summary.contains(key) ? Shown(key, summary[key]) : std::string();
+}
+
+/// A list or a map whose items are all maps is a table: their keys are its columns.
+bool IsTable(const Json& value) {
+  return value.is_structured() && !value.empty() &&
+         std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_object(); });
+}
+
+std::vector<std::string> ColumnKeys(const Json& items) {
+  std::vector<std::string> keys;
+  for (const auto& item : items) {
+    for (const auto& [key, value] : item.items()) {
+      if (value.is_structured()) continue;
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    }
+  }
+  return keys;
+}
+
+// JSON's keys are in the alphabet's order: what a row is about goes first, words last.
+void PutNameFirst(std::vector<std::string>& keys) {
+  const auto rank = [](const std::string& key) {
+    static const std::vector<std::string> names = {"view",  "image", "left",   "right",
+                                                   "part",  "lens",  "motion", "parameter",
+                                                   "field", "hold",  "pose",   "seconds"};
+    static const std::vector<std::string> words = {"reason", "left_reason", "right_reason"};
+    if (std::find(names.begin(), names.end(), key) != names.end()) return 0;
+    return std::find(words.begin(), words.end(), key) != words.end() ? 2 : 1;
+  };
+  std::stable_sort(keys.begin(), keys.end(),
+                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+}
+
+// Without its unit, which is in every cell, unless another column is called the same.
+std::string ColumnTitle(const std::string& key, const std::vector<std::string>& keys) {
+  if (key == "seconds") return "time";
+  const std::string title = Label(key);
+  const auto alike = std::count_if(keys.begin(), keys.end(),
+                                   [&](const std::string& other) { return Label(other) == title; });
+  if (alike < 2) return title;
+  std::string full = key;
+  std::replace(full.begin(), full.end(), '_', ' ');
+  return full;
+}
+
+void AddJsonTable(Report& report, const std::string& name, const Json& items) {
+  auto keys = ColumnKeys(items);
+  PutNameFirst(keys);
+  Table table;
+  table.title = Label(name);
+  if (items.is_object()) table.header.emplace_back("");
+  for (const auto& key : keys) table.header.push_back(ColumnTitle(key, keys));
+  for (const auto& [label, item] : items.items()) {
+    std::vector<std::string> row;
+    if (items.is_object()) row.push_back(label);
+    for (const auto& key : keys) row.push_back(item.contains(key) ? Shown(key, item[key]) : "–");
+    table.rows.push_back(std::move(row));
+  }
+  if (table.rows.size() <= kOpenRows) return report.AddTable(table);
+  report.AddHtml(FoldedTableHtml(fmt::format("{} ({})", table.title, table.rows.size()),
+                                 table.header, table.rows));
+}
+
+}  // namespace
+
+Report TitledPage(const std::filesystem::path& folder, const std::string& title) {
+  const Json summary = ReadSummary(folder);
+  return Report(title, fmt::format("{}   (flextip {})", TextOf(summary, "command"),
+                                   TextOf(summary, "version")));
+}
+
+std::string CommandOf(const std::filesystem::path& folder) {
+  const std::string command = TextOf(ReadSummary(folder), "command");
+  if (command.empty()) {
+    throw InputError::At((folder / "summary.json").string(), 0, "states no command");
+  }
+  return command;
+}
+
+void AddSummaryNumbers(Report& report, const std::filesystem::path& folder) {
+  std::vector<std::pair<std::string, std::string>> numbers;
+  const Json summary = ReadSummary(folder);
+  const std::string command = TextOf(summary, "command");
+  for (const auto& [key, value] : summary.items()) {
+    if (IsScalar(value)) numbers.emplace_back(Label(key, command), Shown(key, value));
+  }
+  report.AddNumbers(numbers);
+}
+
+void AddSummaryTables(Report& report, const std::filesystem::path& folder) {
+  const Json summary = ReadSummary(folder);
+  for (const auto& [key, value] : summary.items()) {
+    if (key != "warnings" && IsTable(value)) AddJsonTable(report, key, value);
+  }
+}
+
+Report BeginPage(const std::filesystem::path& folder, const std::string& title) {
+  Report report = TitledPage(folder, title);
+  const Lead lead = LeadOf(folder);
+  report.AddLead(lead.says, lead.more);
+  AddSummaryNumbers(report, folder);
+  const Json summary = ReadSummary(folder);
+  std::vector<std::string> warnings;
+  for (const auto& w : summary.value("warnings", Json::array())) warnings.push_back(Shown("", w));
+  report.AddWarnings(warnings);
+  const bool has_tables = std::any_of(summary.items().begin(), summary.items().end(),
+                                      [](const auto& item) { return IsTable(item.value()); });
+  if (has_tables) report.AddHeading("Results");
+  AddSummaryTables(report, folder);
+  return report;
+}
+
+}  // namespace flextip::report

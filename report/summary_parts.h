@@ -1,0 +1,26 @@
+// The parts of a page that come from summary.json.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "report/report.h"
+
+namespace flextip::report {
+
+/// Begins a page with `title`; below it the command and the version.
+Report TitledPage(const std::filesystem::path& folder, const std::string& title);
+
+/// Begins a page as most commands have it: the result in a sentence, numbers, warnings, and a table
+/// for each list or map of alike things (controllers, views, ...).
+Report BeginPage(const std::filesystem::path& folder, const std::string& title);
+
+/// Adds every number of summary.json in large.
+void AddSummaryNumbers(Report& report, const std::filesystem::path& folder);
+/// Adds a table for each list or map of alike things in summary.json.
+void AddSummaryTables(Report& report, const std::filesystem::path& folder);
+
+/// Returns summary.json's `command`. Throws InputError where the file cannot be read as a summary.
+std::string CommandOf(const std::filesystem::path& folder);
+
+}  // namespace flextip::report

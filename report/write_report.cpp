@@ -1,0 +1,68 @@
+// The page of any result folder, by the command that made it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "report/pages.h"
+#include "report/summary_parts.h"
+
+namespace flextip::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CommandPage {
+  const char* command;  ///< or its first word
+  void (*write)(const fs::path& folder);
+  std::vector<const char*> needs = {};  ///< files without which the page would be empty
+};
+
+const std::vector<CommandPage>& Pages() {
+  static const std::vector<CommandPage> pages{
+      {"simulate", WriteSimulateReport},
+      {"track", WriteTrackReport, {"vision0/data.csv", "frames.csv"}},
+      {"estimate", WriteEstimateReport, {"state0/data.csv"}},
+      {"shape", WriteShapeReport, {"shapes.csv"}},
+      {"detect", WriteDetectReport, {"tags.csv"}},
+      {"calibrate", WriteCalibrateReport},
+      {"diagnose", WriteDiagnoseReport, {"diagnosis.json", "residuals.csv"}},
+      {"map", WriteMapReport, {"figures.json", "table.csv"}},
+      {"reproduce", WriteReproduceReport, {"figures.json", "table.csv"}}};
+  return pages;
+}
+
+/// A run's deviation.csv lies in the folder itself or, of several controllers, in one of each.
+bool HasDeviations(const fs::path& folder) {
+  if (fs::exists(folder / "deviation.csv")) return true;
+  return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                     [](const auto& at) { return fs::exists(at.path() / "deviation.csv"); });
+}
+
+}  // namespace
+
+void WriteReport(const fs::path& folder) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError::At(folder.string(), 0, what);
+  };
+  if (!fs::exists(folder / "summary.json")) {
+    refuse("no summary.json, expected a folder that a command of flextip has written");
+  }
+  const std::string command = CommandOf(folder);
+  const std::string first_word = command.substr(0, command.find(' '));
+  const auto page = std::find_if(Pages().begin(), Pages().end(), [&](const CommandPage& candidate) {
+    return candidate.command == first_word;
+  });
+  if (page == Pages().end()) refuse(fmt::format("no page is known for the command {}", command));
+  for (const char* file : page->needs) {
+    if (!fs::exists(folder / file)) refuse(fmt::format("no {}, the page needs it", file));
+  }
+  if (first_word == "simulate" && !HasDeviations(folder)) {
+    refuse("no deviation.csv, the page needs it");
+  }
+  page->write(folder);
+}
+
+}  // namespace flextip::report
