@@ -46,7 +46,7 @@ Json TraceJson(const FigureTrace& trace) {
     json["x"] = trace.labels;
   }
   if (!trace.z.empty()) {
-    assert(trace.z.size() == trace.y.size());
+    FLEXTIP_CHECK(trace.z.size() == trace.y.size(), "as many z as y");
     json["z"] = Numbers(trace.z);
   }
   if (!trace.y_error.empty()) json["y_error"] = Numbers(trace.y_error);

@@ -100,7 +100,7 @@ class Reader {
     scenario_.setup.truth.p_port = Vector(Section(top_, "port"), "position_m");
   }
 
-  BeliefError<N> ReadModelError(const YamlMap& map) {
+  BeliefError<N> ReadBeliefError(const YamlMap& map) {
     BeliefError<N> error;
     if (map.Has("port_m")) error.port_m = Vector(map, "port_m");
     if (map.Has("links_m")) {
@@ -118,7 +118,7 @@ class Reader {
   void ReadErrors() {
     if (!top_.Has("errors")) return;
     const YamlMap map = Section(top_, "errors");
-    scenario_.setup.error = ReadModelError(map);
+    scenario_.setup.error = ReadBeliefError(map);
     const BeliefError<N>& error = scenario_.setup.error;
     const PlanarArm& links = LinksOf(scenario_.setup.truth.arm);
     if (!(links.link1_m + error.links_m[0] > 0.0 && links.link2_m + error.links_m[1] > 0.0))
@@ -175,7 +175,7 @@ class Reader {
     const YamlMap map = Section(top_, "tolerance");
     ToleranceTask<N>& task = scenario_.tolerance.emplace();
     const YamlMap bounds = Section(map, "bounds");
-    task.question.bounds.half_width = ReadModelError(bounds);
+    task.question.bounds.half_width = ReadBeliefError(bounds);
     const auto half_width = task.question.bounds.half_width.AsVector();
     if ((half_width.array() < 0.0).any() || half_width.isZero(0.0))
       throw map.Error("bounds", "expected numbers that are not negative, some of them positive");

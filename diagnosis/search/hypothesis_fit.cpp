@@ -41,12 +41,17 @@ Eigen::VectorXd Plausible(Eigen::VectorXd mode, const ParameterLayout& layout) {
 
 /// Scans the parameters that call for it in round `round`: all in the first one, after that those
 /// of effects that are not fitted anyway.
-void Scan(Replay& replay, ParameterLayout& layout, const Hypothesis& hypothesis, int round) {
+/// Returns whether there was any.
+bool Scan(Replay& replay, ParameterLayout& layout, const Hypothesis& hypothesis, int round) {
+  bool any = false;
   for (const int block : layout.ScannedBlocks()) {
     const auto& present = hypothesis.effects;
     const bool fitted = std::find(present.begin(), present.end(), block) != present.end();
-    if (round == 0 || !fitted) ScanAgain(replay, layout, block);
+    if (round > 0 && fitted) continue;
+    ScanAgain(replay, layout, block);
+    any = true;
   }
+  return any;
 }
 
 }  // namespace
@@ -132,8 +137,7 @@ HypothesisFit FitHypothesis(Replay& replay, ParameterLayout& layout, const Hypot
   fit.hypothesis = hypothesis;
   std::optional<LinearProblem> here;
   for (int round = 0; round < fit_options.rounds; ++round) {
-    const bool scan = round < fit_options.scans;
-    if (scan) Scan(replay, layout, hypothesis, round);
+    const bool scan = round < fit_options.scans && Scan(replay, layout, hypothesis, round);
     if (scan || !here) here = ProblemHere(replay, fit_options.basis, options);
     const bool far = fit_options.scans > 0 && round == 0;
     const Rows may_miss =

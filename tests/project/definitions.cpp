@@ -208,7 +208,8 @@ class Reader {
       return "";
     if (head[open - 1].text == "operator" && open + 2 < head.size()) open += 2;  // operator()()
     std::size_t first = open - 1;
-    while (Has(head, "operator") && head[first].text != "operator") --first;
+    for (std::size_t i = 0; i < open; ++i)
+      if (head[i].text == "operator") first = i;
     first = BeforeTemplateArguments(head, first);
     while (first > 0 && (head[first].text == "::" || head[first - 1].text == "::"))
       first = BeforeTemplateArguments(head, first - 1);

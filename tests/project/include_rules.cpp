@@ -137,6 +137,8 @@ std::string PlantComplaint(const SourceTree& tree, const std::string& path) {
 
 }  // namespace
 
+const std::map<std::string, std::set<std::string>>& IncludeArrows() { return Arrows(); }
+
 std::vector<std::string> IncludeViolations(const SourceTree& tree) {
   std::vector<std::string> violations;
   for (const auto& [path, text] : tree) {

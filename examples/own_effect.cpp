@@ -1,0 +1,47 @@
+// Diagnoses a recording with an effect of one's own beside those of the catalogue: a motor near the
+// EM transmitter swings the EM position.
+//   own_effect RECORDING
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "diagnosis/diagnose.h"
+#include "diagnosis/effects/periodic.h"
+#include "recording/recording_reader.h"
+
+namespace {
+
+using namespace flextip::diagnosis;
+
+/// The search scans the frequency. Amplitude and phase are fitted, the report says how large they
+/// are, and held-out parts of the recording say what the effect gains.
+class EmInterference : public PeriodicEffect {
+ public:
+  EmInterference()
+      : PeriodicEffect("em_interference", "a motor swings the EM position",
+                       {.first_input = sample_input::kEmOffset,
+                        .tolerance = 0.00005,
+                        .typical = 0.001,
+                        .lowest_hz = 0.8,
+                        .highest_hz = 4.0,
+                        .start_hz = 1.0}) {}
+  bool Applies(const SampleSet& samples) const override {
+    return samples.has_em && samples.resolved_in_time && samples.Duration() > 4.0;
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 2) throw flextip::InputError("usage: own_effect RECORDING");
+  const auto read = flextip::ReadRecording(argv[1], {.check_frames = false});
+  DiagnoseOptions options;
+  options.own_effects.push_back([] { return std::make_unique<EmInterference>(); });
+  const DiagnosisResult result = Diagnose(read.recording, argv[1], options);
+  fmt::print("verdict: {}\n", Joined(result.verdict));
+  const auto found = result.presence.find("em_interference");
+  fmt::print("em_interference is present with {:.1f} %\n",
+             found == result.presence.end() ? 0.0 : 100 * found->second);
+} catch (const flextip::InputError& error) {
+  fmt::print(stderr, "{}\n", error.what());
+  return 2;
+}
