@@ -8,9 +8,9 @@
 #include <set>
 #include <thread>
 
-#include "bench/diagnosis_matrix/picture.h"
+#include "bench/diagnosis_matrix/output/picture.h"
+#include "bench/diagnosis_matrix/output/summary.h"
 #include "bench/diagnosis_matrix/run.h"
-#include "bench/diagnosis_matrix/summary.h"
 #include "bench/tool.h"
 #include "core/error.h"
 #include "recording/text/text.h"

@@ -1,5 +1,5 @@
 // Cases in a file and back, and their figures.
-#include "bench/diagnosis_matrix/summary.h"
+#include "bench/diagnosis_matrix/output/summary.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "bench/diagnosis_matrix/summary.h"
+#include "bench/diagnosis_matrix/output/summary.h"
 
 namespace flextip::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/diagnosis_matrix/figures.h"
+#include "bench/diagnosis_matrix/output/figures.h"
 
 namespace flextip::bench {
 

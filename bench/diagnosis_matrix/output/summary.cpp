@@ -1,4 +1,4 @@
-#include "bench/diagnosis_matrix/summary.h"
+#include "bench/diagnosis_matrix/output/summary.h"
 
 #include <fmt/format.h>
 

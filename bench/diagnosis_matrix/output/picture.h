@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/diagnosis_matrix/summary.h"
+#include "bench/diagnosis_matrix/output/summary.h"
 
 namespace flextip::bench {
 

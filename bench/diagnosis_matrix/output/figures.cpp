@@ -1,4 +1,4 @@
-#include "bench/diagnosis_matrix/figures.h"
+#include "bench/diagnosis_matrix/output/figures.h"
 
 #include <algorithm>
 #include <array>
