@@ -10,6 +10,11 @@ set(FLEXTIP_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-co
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   list(APPEND FLEXTIP_WARNINGS -Wno-restrict -Wno-stringop-overflow)
 endif()
+# Several files compiled as one (FlextipUnity.cmake): none of them is the main file any more, and
+# g++ then warns of each type in an anonymous namespace.
+if(FLEXTIP_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND FLEXTIP_WARNINGS -Wno-subobject-linkage)
+endif()
 # One setting for libraries and programs, so that they share their precompiled headers.
 add_compile_options(-fPIC)
 set(FLEXTIP_TEST_TIMEOUT_S 300 CACHE STRING "Seconds a test may take")

@@ -153,7 +153,7 @@ void Report::AddDrawing(const std::string& title, const std::string& caption,
                         const std::string& json, bool in_space) {
   has_figures_ = true;
   has_space_ = has_space_ || in_space;
-  FLEXTIP_CHECK(!has_space_ || !has_flat_, "a page draws in space or flat, not both");
+  FLEXTIP_CHECK(!has_space_ || !has_flat_, "a page has one of the two plotting bundles");
   body_ += fmt::format(
       "<figure class=\"plot\">\n{}<div class=\"drawing{}\"><script type=\"application/json\">{}"
       "</script></div>\n{}</figure>\n",

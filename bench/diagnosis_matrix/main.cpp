@@ -8,7 +8,6 @@
 #include <set>
 #include <thread>
 
-#include "bench/diagnosis_matrix/picture.h"
 #include "bench/diagnosis_matrix/run.h"
 #include "bench/diagnosis_matrix/summary.h"
 #include "bench/tool.h"

@@ -1,4 +1,4 @@
-#include "bench/diagnosis_matrix/picture.h"
+#include "bench/diagnosis_matrix/summary.h"
 
 #include <fmt/format.h>
 

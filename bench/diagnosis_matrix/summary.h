@@ -30,4 +30,8 @@ std::string SummaryJson(const std::vector<MatrixFigure>& figures,
 /// misses.txt: each case whose verdict is not its label, with what makes its recording again.
 std::string Misses(const std::vector<MatrixRecord>& records);
 
+/// Returns the matrix as SVG: panels one below the other, cells shaded by their share of the row
+/// with the count in them. The right answer's cell is framed.
+std::string ConfusionSvg(const std::vector<Confusion>& confusions, const std::string& title);
+
 }  // namespace flextip::bench

@@ -26,6 +26,7 @@ const std::map<std::string, Names>& Arrows() {
                                "recording", "pipeline",   "calibration", "simulation", kClosedLoop,
                                "diagnosis", "report",     "workspace"};
   static const std::map<std::string, Names> arrows{
+      {"cmake", {}},
       {"core", {}},
       {"kinematics", {"core"}},
       {"estimation", {"core", "kinematics"}},
@@ -65,7 +66,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"geos", {"reproduction"}},
       {"boost/", {"workspace", "reproduction"}},
       {"nlohmann/", {"report", "reproduction", "apps", "bench", "testdata", "tests"}},
-      {"CLI/", {"reproduction", "apps", "bench"}},
+      {"CLI/", {"reproduction", "apps", "bench", "testdata"}},
   };
   return foreign;
 }

@@ -171,13 +171,18 @@ report::Figure ResidualFigure(const StrainCalibration& result) {
   return figure;
 }
 
+/// The reason with the option that helps, where there is one.
+std::string ReasonOf(const Calibration::Unobservable& u, const StrainCalibration& result) {
+  const bool gages = u.parameter == "strain0.gage_matrix" && result.insertions_alike;
+  return u.reason + (gages ? " (--stations-apart)" : "");
+}
+
 void Warn(const StrainCalibration& result, OutputFolder& output) {
   for (const auto& h : result.holds) {
     if (!h.used) output.Warn(SpanOf(h.hold, StartOf(result)) + ": " + h.reason);
   }
   for (const auto& u : result.found.unobservable) {
-    const bool gages = u.parameter == "strain0.gage_matrix" && result.insertions_alike;
-    output.Warn(u.parameter + ": " + u.reason + (gages ? " (--stations-apart)" : ""));
+    output.Warn(u.parameter + ": " + ReasonOf(u, result));
   }
   if (result.chi2_per_dof > 2) {
     output.Warn(
@@ -202,7 +207,9 @@ void Run(const Options& options, bool quiet) {
                          {MomentsFigure(result), ResidualFigure(result)});
   }
   nlohmann::json summary = Summary(result);
-  summary["verdict"] = VerdictJson(JudgeStrain(result));
+  CalibrationVerdict verdict = JudgeStrain(result);
+  for (auto& u : verdict.not_found) u.reason = ReasonOf(u, result);
+  summary["verdict"] = VerdictJson(verdict);
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   output.WriteSummary(summary);
   report::WriteCalibrateReport(output.folder());
@@ -212,7 +219,9 @@ void Run(const Options& options, bool quiet) {
     fmt::print("moments to {:.3g} mNm RMS ({:.3g} mNm held out) of {:.3g} mNm\n",
                1e3 * result.rms_Nm, 1e3 * result.heldout_rms_Nm, 1e3 * result.largest_moment_Nm);
   }
-  for (const auto& u : result.found.unobservable) fmt::print("{}: {}\n", u.parameter, u.reason);
+  for (const auto& u : result.found.unobservable) {
+    fmt::print("{}: {}\n", u.parameter, ReasonOf(u, result));
+  }
   if (!result.advice.empty()) fmt::print("next, this would help most: {}\n", result.advice);
   fmt::print("{}\n", (options.input.out / "calibration.yaml").string());
 }
