@@ -26,6 +26,7 @@ const std::map<std::string, Names>& Arrows() {
                                "recording", "pipeline",   "calibration", "simulation", kClosedLoop,
                                "diagnosis", "report",     "workspace"};
   static const std::map<std::string, Names> arrows{
+      {"cmake", {}},
       {"core", {}},
       {"kinematics", {"core"}},
       {"estimation", {"core", "kinematics"}},

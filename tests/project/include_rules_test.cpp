@@ -81,7 +81,7 @@ TEST(IncludeRules, NameFoldersWithoutRules) {
 }
 
 TEST(IncludeRules, KeepTheReportToResultFiles) {
-  EXPECT_THAT(IncludeViolations({{"report/a.cpp", "#include \"recording/recording.h\"\n"}}),
+  EXPECT_THAT(IncludeViolations({{"report/a.cpp", "#include \"diagnosis/diagnose.h\"\n"}}),
               SizeIs(1));
 }
 
