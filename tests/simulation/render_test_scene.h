@@ -84,7 +84,8 @@ inline simulation::LaparoscopeOptions PlainOptions() {
 }
 
 /// A shaft on the arc of a circle of `radius_m` that ends at T_RE, bending toward E's y axis.
-inline simulation::ShaftCurve ArcShaft(const Pose& T_RE, double length_m, double radius_m, double diameter_m) {
+inline simulation::ShaftCurve ArcShaft(const Pose& T_RE, double length_m, double radius_m,
+                                       double diameter_m) {
   simulation::ShaftCurve curve;
   curve.diameter_m = diameter_m;
   curve.T_RE = T_RE;
