@@ -31,9 +31,9 @@ struct Options {
 
 /// Runs the controllers with and without what was found, on a plant that has it; warns of those
 /// that did not come to an end.
-simulation::ClosedLoopGain ClosedLoopGain(const Recording& recording,
-                                          const diagnosis::ExtendedModel& model,
-                                          OutputFolder& output) {
+simulation::ClosedLoopGain MeasureGain(const Recording& recording,
+                                       const diagnosis::ExtendedModel& model,
+                                       OutputFolder& output) {
   simulation::ClosedLoopGain gain = simulation::MeasureClosedLoopGain(recording, model);
   if (!gain.warning.empty()) output.Warn(gain.warning);
   for (const simulation::ControllerGain& run : gain.controllers) {
@@ -86,7 +86,7 @@ void Run(const Options& options, bool quiet) {
   output.Warn(result.warnings);
   const diagnosis::ExtendedModel model = diagnosis::FromResult(result);
   std::optional<simulation::ClosedLoopGain> gain;
-  if (!options.no_closed_loop && IsKnown(result)) gain = ClosedLoopGain(recording, model, output);
+  if (!options.no_closed_loop && IsKnown(result)) gain = MeasureGain(recording, model, output);
   WriteTextFile(output.folder() / "diagnosis.json", DiagnosisJson(result, gain ? &*gain : nullptr));
   WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result.residuals));
   diagnosis::WriteModel(output.folder() / "model.yaml", model);

@@ -24,15 +24,15 @@ struct TrackInput {
 
 /// What every kind of input takes.
 struct TrackInputOptions {
-  GreyRange range;                                  ///< of 16-bit pictures
-  std::vector<std::filesystem::path> calibrations;  ///< calibration.yaml files, in their order
+  GreyRange range = {};                                  ///< of 16-bit pictures
+  std::vector<std::filesystem::path> calibrations = {};  ///< calibration.yaml files, in their order
 };
 
 /// Camera and collar of frames that are no recording.
 struct CameraFiles {
-  std::filesystem::path camera;   ///< EuRoC, Kalibr, ROS or OpenCV
-  std::filesystem::path collar;   ///< as a recording's tags0
-  std::optional<double> rate_hz;  ///< in place of the file's or the names' own times
+  std::filesystem::path camera = {};   ///< EuRoC, Kalibr, ROS or OpenCV
+  std::filesystem::path collar = {};   ///< as a recording's tags0
+  std::optional<double> rate_hz = {};  ///< in place of the file's or the names' own times
 };
 
 /// Opens a recording's frames: both cameras where both have frames, paired by their times. Throws

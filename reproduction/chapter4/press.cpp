@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSteel_kg_m = 0.035;
 constexpr double kStation1_m = 0.15, kStation2_m = 0.5;  // 150 mm from the wrist, 100 from the tip
-const Eigen::Vector3d kGravity(0.0, -9.81, 0.0);
+const Eigen::Vector3d kGravity_P(0.0, -9.81, 0.0);
 // R has its origin at the tip's place on the block before the shaft sags; Fig. 4.4 has the port at
 // (-300, -15) mm from there.
 const Eigen::Vector3d kPort(-0.300, -0.015, 0.0);
@@ -30,8 +30,8 @@ simulation::PlantSetup MakePlantSetup(const PressSetup& setup) {
   simulation::PlantSetup plant;
   plant.instrument = SteelRod();
   plant.p_RP = kPort;
-  plant.weight_N_m = kSteel_kg_m * kGravity;
-  plant.gravity_m_s2 = kGravity;
+  plant.weight_N_m = kSteel_kg_m * kGravity_P;
+  plant.gravity_m_s2 = kGravity_P;
   plant.effects.port_friction.coefficient = setup.port_friction;
   return plant;
 }
@@ -51,7 +51,7 @@ class Press {
         plant_(MakePlantSetup(setup), {50, 50}),
         arm_(Body(setup)),
         rng_(setup.seed),
-        controller_(setup.kind, {SteelRod(), kPort, kGravity, setup.expects_tissue}) {
+        controller_(setup.kind, {SteelRod(), kPort, kGravity_P, setup.expects_tissue}) {
     shape_ = plant_.Solve(WristAt(state_));
     run_.p_start = shape_.T_RE().p;  // the block is brought up to the tip
     simulation::TipLoad load;

@@ -73,6 +73,7 @@ TEST(CalibrateEm, TheSystemIsFoundByWristAndByVision) {
     EXPECT_EQ(summary["samples"], 600);
     EXPECT_NEAR(summary["rms_direction_residual_rad"].get<double>(), 3e-3, 1.5e-3);
     EXPECT_THAT(ReadText(folder / reference / "report.html"), testing::HasSubstr("Errors where"));
+    EXPECT_TRUE(PageIsMadeAgain(folder / reference));
   }
 }
 

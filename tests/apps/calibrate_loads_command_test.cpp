@@ -44,6 +44,7 @@ TEST(CalibrateLoads, GagesThenStiffnessThenAnEstimateThatFits) {
   for (const char* file : {"calibration.yaml", "residuals.csv", "figures.json", "report.html"}) {
     EXPECT_TRUE(std::filesystem::exists(folder / "gages" / file)) << file;
   }
+  EXPECT_TRUE(PageIsMadeAgain(folder / "gages"));
   const std::string gages_yaml = gages + "/calibration.yaml";
   run = RunProgram(
       {"calibrate", "stiffness", masses, "--calibration", gages_yaml, "-o", shaft, "--quiet"});

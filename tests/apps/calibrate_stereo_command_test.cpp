@@ -122,6 +122,7 @@ TEST_F(CalibrateStereoCommand, FindsBothCamerasAndWritesThem) {
   EXPECT_NEAR(summary["baseline_m"].get<double>(), T_C0C1.p.norm(), 1e-12);
   EXPECT_LT(summary["rms_reprojection_error_px"].get<double>(), 0.2);
   EXPECT_THAT(ReadText(folder_ / "out/report.html"), testing::HasSubstr("stereo-pairs"));
+  EXPECT_TRUE(PageIsMadeAgain(folder_ / "out"));
   const cv::FileStorage opencv((folder_ / "out/opencv_stereo.yml").string(), cv::FileStorage::READ);
   cv::Mat T;
   opencv["T"] >> T;

@@ -67,6 +67,7 @@ TEST(CalibrateTip, TheTipOnTheWristIsWritten) {
   const std::string table = ReadText(folder / "out/residuals.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 81);
   EXPECT_THAT(ReadText(folder / "out/report.html"), testing::HasSubstr("around the pivot"));
+  EXPECT_TRUE(PageIsMadeAgain(folder / "out"));
 }
 
 TEST(CalibrateTip, OneAxisIsNotEnough) {

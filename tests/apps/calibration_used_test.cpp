@@ -250,6 +250,7 @@ TEST_F(CalibrationUsed, TheBudgetSaysWhatEachContributes) {
   EXPECT_EQ(summary["not_known"][0]["part"], "stiffness");
   EXPECT_THAT(ReadText(folder_ / "out/budget.csv"), HasSubstr("hand-eye_depth [m]"));
   EXPECT_THAT(ReadText(folder_ / "out/report.html"), HasSubstr("What contributes"));
+  EXPECT_TRUE(PageIsMadeAgain(folder_ / "out"));
 }
 
 TEST_F(CalibrationUsed, TheBudgetNamesWhatIsNotKnownAndWhatIsNotSeen) {

@@ -70,6 +70,7 @@ TEST_F(DiagnoseCommand, WritesItsAnswerAndWhatItRestsOn) {
   const std::string page = ReadText(folder_ / "out/report.html");
   EXPECT_THAT(page, HasSubstr("tag_offset"));
   EXPECT_THAT(page, Not(HasSubstr("src=\"http")));
+  EXPECT_TRUE(PageIsMadeAgain(folder_ / "out"));
   // Not a second time over it, and with --force the same again.
   EXPECT_TRUE(IsRefused(Run(), {"--force"}));
   const ProgramResult again = Run({"--force", "--no-closed-loop", "--quiet"});

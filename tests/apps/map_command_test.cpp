@@ -40,6 +40,7 @@ TEST(MapCommand, WritesMapTableFiguresAndPage) {
   EXPECT_THAT(ReadText(folder / "out/table.csv"), StartsWith("quantity,value,unit,note\n"));
   EXPECT_THAT(ReadText(folder / "out/report.html"),
               HasSubstr("Motion errors across the workspace"));
+  EXPECT_TRUE(PageIsMadeAgain(folder / "out"));
 }
 
 TEST(MapCommand, SaysHowLargeErrorsMayBe) {

@@ -49,5 +49,16 @@ TEST(Program, SaysHowToBuildTheReproductionWhereItIsMissing) {
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
 }
 
+TEST(ReportCommand, RefusesAFolderThatIsNoResult) {
+  const TestFolder folder;
+  folder.Write("empty/notes.txt", "nothing");
+  EXPECT_TRUE(IsRefused(RunProgram({"report", (folder / "empty").string()}),
+                        {"empty", "no summary.json, expected a folder that a command"}));
+  folder.Write("torn/summary.json", R"({"command": "track", "version": "1"})");
+  EXPECT_TRUE(IsRefused(RunProgram({"report", (folder / "torn").string()}),
+                        {"torn", "no vision0/data.csv, the page needs it"}));
+  EXPECT_TRUE(IsRefused(RunProgram({"report", (folder / "none").string()}), {"none"}));
+}
+
 }  // namespace
 }  // namespace flextip

@@ -92,4 +92,15 @@ testing::AssertionResult IsRefused(const ProgramResult& result,
   return testing::AssertionSuccess();
 }
 
+testing::AssertionResult PageIsMadeAgain(const std::filesystem::path& folder) {
+  const std::filesystem::path page = folder / "report.html";
+  const std::string before = ReadText(page);
+  if (before.empty()) return testing::AssertionFailure() << page << " is empty or missing";
+  std::filesystem::remove(page);
+  const ProgramResult run = RunProgram({"report", folder.string()});
+  if (run.exit_code != 0) return testing::AssertionFailure() << run.err;
+  if (ReadText(page) == before) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << page << " differs from the command's own";
+}
+
 }  // namespace flextip

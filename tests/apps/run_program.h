@@ -46,4 +46,7 @@ std::string ReadText(const std::filesystem::path& file);
 testing::AssertionResult IsRefused(const ProgramResult& result,
                                    const std::vector<std::string>& parts);
 
+/// `folder`/report.html comes out of `flextip report` byte for byte as the command left it.
+testing::AssertionResult PageIsMadeAgain(const std::filesystem::path& folder);
+
 }  // namespace flextip

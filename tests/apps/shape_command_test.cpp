@@ -171,6 +171,7 @@ TEST(ShapeCommand, DrawsAPictureAndAPage) {
   ASSERT_EQ(RunProgram(arguments).exit_code, 0);
   EXPECT_THAT(ReadText(plot), StartsWith("\x89PNG"));
   EXPECT_THAT(ReadText(folder / "out/report.html"), HasSubstr("data:image/png;base64,"));
+  EXPECT_TRUE(PageIsMadeAgain(folder / "out"));
   EXPECT_TRUE(IsRefused(RunProgram(arguments), {"--force replaces it"}));
   EXPECT_EQ(RunProgram(With(arguments, {"--force"})).exit_code, 0);
 }

@@ -117,6 +117,7 @@ TEST_F(TrackCommand, PlainPicturesGiveTheRecordingsTips) {
       RunProgram({"track", (folder_ / "rec").string(), "-o", (folder_ / "a").string()});
   ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
   EXPECT_EQ(Summary("a")["ok"], kPictures);
+  EXPECT_TRUE(PageIsMadeAgain(folder_ / "a"));
   std::istringstream last(Rows("a").substr(Rows("a").rfind('\n', Rows("a").size() - 2) + 1));
   double time = 0, x = 0;
   char comma = 0;

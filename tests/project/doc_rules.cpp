@@ -219,4 +219,35 @@ std::vector<std::string> UnknownMessages(const ProjectTexts& texts, const std::s
   return unknown;
 }
 
+std::map<std::string, std::set<std::string>> ArrowTable(const ProjectTexts& texts,
+                                                        const std::string& page) {
+  static const std::regex row(R"(\| `([a-z_/]+)/` \|[^|]*\| ([^|]*) \|[^|]*\|)");
+  static const std::regex aside(R"(\([^)]*\))");
+  static const std::regex name("[a-z_/]+");
+  std::map<std::string, std::set<std::string>> arrows;
+  for (const auto& line : LinesOf(texts.at(page))) {
+    std::smatch cells;
+    if (!std::regex_match(line, cells, row) || cells[2] == "everything") continue;
+    const std::string used = std::regex_replace(cells[2].str(), aside, "");
+    std::set<std::string>& names = arrows[cells[1]];
+    for (const auto& match : Matches(used, "", name)) names.insert(match.str());
+  }
+  return arrows;
+}
+
+std::vector<std::string> UnknownExamples(const ProjectTexts& texts, const std::string& page) {
+  std::set<std::string> examples;
+  for (const auto& [path, text] : texts) {
+    if (path.starts_with("examples/") && IsCode(path)) examples.insert(text);
+  }
+  const std::string &text = texts.at(page), fence = "```", opening = "```cpp\n";
+  std::vector<std::string> unknown;
+  for (auto at = text.find(opening); at != text.npos; at = text.find(opening, at)) {
+    at += opening.size();
+    const std::string block = text.substr(at, text.find(fence, at) - at);
+    if (!examples.contains(block)) unknown.push_back(block.substr(0, block.find('\n')));
+  }
+  return unknown;
+}
+
 }  // namespace flextip

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,13 @@ std::vector<std::string> LongLines(const ProjectTexts& texts);
 /// Returns a line for each message that the tables of `page` quote in their first column, of which
 /// a fixed part is in no string of the project's sources. A "…" stands for what varies.
 std::vector<std::string> UnknownMessages(const ProjectTexts& texts, const std::string& page);
+
+/// Returns the table of folders on `page`: folder -> the folders of its column "may use". Rows that
+/// may use everything, and rows of sub-folders, are left out.
+std::map<std::string, std::set<std::string>> ArrowTable(const ProjectTexts& texts,
+                                                        const std::string& page);
+
+/// Returns the beginning of each C++ block of `page` that is not the whole of a file in examples/.
+std::vector<std::string> UnknownExamples(const ProjectTexts& texts, const std::string& page);
 
 }  // namespace flextip

@@ -2,12 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/project/include_rules.h"
+
 namespace flextip {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Pair;
+using testing::UnorderedElementsAre;
 
 const ProjectTexts& Project() {
   static const ProjectTexts texts = ReadProjectTexts(FLEXTIP_SOURCE_DIR);
@@ -25,6 +29,18 @@ TEST(DocRules, TroubleshootingQuotesMessagesThatAreThere) {
   const std::string page = "docs/troubleshooting.md";
   ASSERT_THAT(Project().at(page), HasSubstr("| `"));
   EXPECT_THAT(UnknownMessages(Project(), page), IsEmpty());
+}
+
+TEST(DocRules, ArchitectureHasTheArrowsThatAreChecked) {
+  auto checked = IncludeArrows();
+  for (const auto& all : {"apps", "bench", "examples", "tests"})
+    checked.erase(all);    // "everything"
+  checked.erase("cmake");  // one empty source
+  EXPECT_EQ(ArrowTable(Project(), "docs/architecture.md"), checked);
+}
+
+TEST(DocRules, TheReadmesExampleIsOneThatRuns) {
+  EXPECT_THAT(UnknownExamples(Project(), "README.md"), IsEmpty());
 }
 
 TEST(DocRules, SeeALinkToNothing) {
@@ -61,6 +77,24 @@ TEST(DocRules, SeeAMessageThatNobodySays) {
       {"apps/a.cpp", "Fail(\"found {} \"\n     \"apples, \\\"two\\\" expected\");\n"},
       {"tests/a.cpp", "\"no pears\""}};
   EXPECT_THAT(UnknownMessages(texts, "docs/t.md"), ElementsAre("\"no pears\" of \"no pears\""));
+}
+
+TEST(DocRules, ReadTheTableOfArrows) {
+  const ProjectTexts texts{{"a.md",
+                            "| folder | job | may use | libraries |\n|---|---|---|---|\n"
+                            "| `core/` | poses, all | – | Eigen |\n"
+                            "| `pipeline/` | it | core, vision (its `data` types) | |\n"
+                            "| `apps/` | it | everything | |\n| `a/b/` | it | core | |\n"}};
+  EXPECT_THAT(ArrowTable(texts, "a.md"),
+              UnorderedElementsAre(Pair("core", IsEmpty()),
+                                   Pair("pipeline", UnorderedElementsAre("core", "vision"))));
+}
+
+TEST(DocRules, SeeAnExampleThatNobodyRuns) {
+  const ProjectTexts texts{
+      {"README.md", "```cpp\nint a;\nint b;\n```\n```cpp\nint c;\n```\n```\nx\n```\n"},
+      {"examples/c.cpp", "int c;\n"}};
+  EXPECT_THAT(UnknownExamples(texts, "README.md"), ElementsAre("int a;"));
 }
 
 }  // namespace

@@ -42,7 +42,9 @@ const std::map<std::string, Names>& Arrows() {
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording", "report"}},
-      {"reproduction", With(libraries, {"apps"})},  // a program: shares apps/common
+      {"reproduction",
+       {"core", "kinematics", "estimation", "control", "pipeline", "recording", "simulation",
+        kClosedLoop, "workspace", "report", "apps"}},
       {"apps", libraries},
       {"examples", libraries},
       {"testdata", {"core", "recording", "simulation", "bench"}},
@@ -139,6 +141,8 @@ std::string PlantComplaint(const SourceTree& tree, const std::string& path) {
 }
 
 }  // namespace
+
+const std::map<std::string, std::set<std::string>>& IncludeArrows() { return Arrows(); }
 
 std::vector<std::string> IncludeViolations(const SourceTree& tree) {
   std::vector<std::string> violations;
