@@ -86,7 +86,7 @@ TEST(DocRules, ReadTheTableOfArrows) {
                             "| `pipeline/` | it | core, vision (its `data` types) | |\n"
                             "| `apps/` | it | everything | |\n| `a/b/` | it | core | |\n"}};
   EXPECT_THAT(ArrowTable(texts, "a.md"),
-              UnorderedElementsAre(Pair("core", IsEmpty()),
+              UnorderedElementsAre(Pair("core", IsEmpty()), Pair("a/b", UnorderedElementsAre("core")),
                                    Pair("pipeline", UnorderedElementsAre("core", "vision"))));
 }
 
