@@ -1,7 +1,6 @@
 #include "core/levenberg_marquardt.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "core/linear_algebra.h"
 
@@ -37,24 +36,6 @@ Eigen::VectorXd DampedStep(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, d
   Eigen::MatrixXd scaled = unit.asDiagonal() * H * unit.asDiagonal();
   scaled.diagonal() *= 1.0 + damping;
   return -unit.cwiseProduct(Ldlt(scaled).Solve(unit.cwiseProduct(g)));
-}
-
-DescentResult MinimiseSquares(
-    const std::function<bool(const Eigen::VectorXd& x, Residuals& at)>& evaluate,
-    Eigen::VectorXd& x, const DescentOptions& options) {
-  Residuals at, there;
-  if (!evaluate(x, at)) return {.cost = HUGE_VAL};
-  Eigen::VectorXd moved;
-  const auto try_step = [&](double damping) -> TrialStep {
-    moved = x + DampedStep(at.J.transpose() * at.J, at.J.transpose() * at.r, damping);
-    if (!moved.allFinite() || !evaluate(moved, there)) return {};
-    return {.cost = there.r.squaredNorm()};
-  };
-  const auto accept = [&] {
-    x = moved;
-    std::swap(at, there);
-  };
-  return Descend(at.r.squaredNorm(), try_step, accept, options);
 }
 
 }  // namespace flextip

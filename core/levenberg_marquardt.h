@@ -45,16 +45,4 @@ DescentResult Descend(double cost, const std::function<TrialStep(double damping)
 /// is the gradient, n.
 Eigen::VectorXd DampedStep(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, double damping);
 
-/// Residuals with their derivatives at one place.
-struct Residuals {
-  Eigen::VectorXd r;  ///< m
-  Eigen::MatrixXd J;  ///< m x n, dr/dx
-};
-
-/// Minimises |r(x)|^2 from `x`, which it moves. `evaluate` returns false where there are no
-/// residuals; `x` must not be such a place, or nothing happens.
-DescentResult MinimiseSquares(
-    const std::function<bool(const Eigen::VectorXd& x, Residuals& at)>& evaluate,
-    Eigen::VectorXd& x, const DescentOptions& options = {});
-
 }  // namespace flextip

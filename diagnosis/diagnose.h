@@ -15,7 +15,7 @@ namespace flextip::diagnosis {
 
 struct DiagnoseOptions {
   std::vector<std::string> without;  ///< effects left out of the catalogue
-  EffectMakers own_effects;          ///< of the user's own, judged like those of the catalogue
+  EffectMakers own_effects = {};     ///< of the user's own, judged like those of the catalogue
   bool measure_gain = true;          ///< fits on parts of the recording, judged on the rest
 };
 

@@ -77,16 +77,16 @@ Eigen::Matrix2d LeverJacobian(const BeamState& state) {
 
 Eigen::Vector2d LeverTip(const BeamState& state) { return Lever(state).p_tip.head<2>(); }
 
-SensorReadings ReadingsOf(const BeamState& state) {
+BeamReadings ReadingsOf(const BeamState& state) {
   const double L = state.length_m;
-  SensorReadings readings;
+  BeamReadings readings;
   readings << state.p_wrist, state.Tip(),
       state.phi + std::atan(BeamSlope(state.F, state.a, L, 0.0)),
       state.phi + std::atan(BeamSlope(state.F, state.a, L, L));
   return readings;
 }
 
-BeamState EstimateBeam(const SensorReadings& readings, double length_m) {
+BeamState EstimateBeam(const BeamReadings& readings, double length_m) {
   const double L = length_m;
   BeamState estimate;
   estimate.length_m = L;

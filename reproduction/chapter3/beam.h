@@ -45,10 +45,10 @@ Eigen::Vector2d LeverTip(const BeamState& state);
 
 /// What the sensors say: wrist x, y and tip x, y (m), angles at wrist and tip (rad); or their
 /// errors.
-using SensorReadings = Eigen::Matrix<double, 6, 1>;
+using BeamReadings = Eigen::Matrix<double, 6, 1>;
 
-SensorReadings ReadingsOf(const BeamState& state);
+BeamReadings ReadingsOf(const BeamState& state);
 /// (3.8)-(3.14). `a` and `F` may be anything, not finite where the two slopes are equal.
-BeamState EstimateBeam(const SensorReadings& readings, double length_m);
+BeamState EstimateBeam(const BeamReadings& readings, double length_m);
 
 }  // namespace flextip::reproduction

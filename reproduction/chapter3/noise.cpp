@@ -22,18 +22,18 @@ bool OnShaft(const BeamState& state) { return state.a > 0.0 && state.a < state.l
 
 /// Climbs from `start` (each axis in parts of its bound) by steps along the axes, halved when none
 /// of them climbs.
-double Climb(FlexionForm form, const BeamState& truth, const SensorReadings& bounds,
-             SensorReadings start, Measure measure) {
-  const SensorReadings right = ReadingsOf(truth);
-  const auto value = [&](const SensorReadings& parts) {
-    const SensorReadings readings = right + parts.cwiseProduct(bounds);
+double Climb(FlexionForm form, const BeamState& truth, const BeamReadings& bounds,
+             BeamReadings start, Measure measure) {
+  const BeamReadings right = ReadingsOf(truth);
+  const auto value = [&](const BeamReadings& parts) {
+    const BeamReadings readings = right + parts.cwiseProduct(bounds);
     return ErrorsOf(form, truth, EstimateBeam(readings, truth.length_m)).*measure;
   };
   double best = value(start);
   for (double step = 0.5; step > 1e-3;) {
     bool climbed = false;
     for (int i = 0; i < 12; ++i) {
-      SensorReadings next = start;
+      BeamReadings next = start;
       next[i / 2] = std::clamp(next[i / 2] + (i % 2 == 0 ? step : -step), -1.0, 1.0);
       const double there = value(next);
       if (!(there > best)) continue;
@@ -48,8 +48,8 @@ double Climb(FlexionForm form, const BeamState& truth, const SensorReadings& bou
 
 }  // namespace
 
-SensorReadings SensorNoiseLevel::Bounds() const {
-  SensorReadings bounds;
+BeamReadings SensorNoiseLevel::Bounds() const {
+  BeamReadings bounds;
   bounds << Eigen::Vector4d::Constant(position_m), Eigen::Vector2d::Constant(angle_rad);
   return bounds;
 }
@@ -67,13 +67,13 @@ EstimateErrors ErrorsOf(FlexionForm form, const BeamState& truth, const BeamStat
 
 WorstErrors WorstOverNoise(FlexionForm form, const BeamState& truth,
                            const SensorNoiseLevel& bound) {
-  const SensorReadings right = ReadingsOf(truth), bounds = bound.Bounds();
+  const BeamReadings right = ReadingsOf(truth), bounds = bound.Bounds();
   const double side = FlexionJacobian(form, truth).determinant();
   WorstErrors result;
-  SensorReadings at[3];
+  BeamReadings at[3];
   bool port_leaves = false, singular = false;
   for (int number = 0; number < 729; ++number) {
-    SensorReadings parts;
+    BeamReadings parts;
     for (int i = 0, rest = number; i < 6; ++i, rest /= 3) parts[i] = rest % 3 - 1;
     const BeamState estimate = EstimateBeam(right + parts.cwiseProduct(bounds), truth.length_m);
     const EstimateErrors errors = ErrorsOf(form, truth, estimate);
@@ -99,11 +99,11 @@ TypicalMetric MetricUnderGaussianNoise(FlexionForm form, const BeamState& truth,
                                        const SensorNoiseLevel& sd, int draws, std::uint64_t seed) {
   std::mt19937_64 rng(seed);
   std::normal_distribution<double> normal;
-  const SensorReadings right = ReadingsOf(truth);
+  const BeamReadings right = ReadingsOf(truth);
   std::vector<double> metrics;
   double squares = 0.0, sum = 0.0;
   for (int i = 0; i < draws; ++i) {
-    const SensorReadings parts = SensorReadings::NullaryExpr([&] { return normal(rng); });
+    const BeamReadings parts = BeamReadings::NullaryExpr([&] { return normal(rng); });
     const BeamState estimate =
         EstimateBeam(right + parts.cwiseProduct(sd.Bounds()), truth.length_m);
     const double metric = ErrorsOf(form, truth, estimate).metric;

@@ -12,7 +12,7 @@ struct SensorNoiseLevel {
   double position_m = 0.0;
   double angle_rad = 0.0;
 
-  SensorReadings Bounds() const;
+  BeamReadings Bounds() const;
 };
 
 /// What an estimate is worth.

@@ -9,7 +9,7 @@ namespace flextip::reproduction {
 /// A rod bent in the plane, the force on its tip square to its chord as the beam's is.
 struct PlaneRodState {
   double depth_m = 0.0;  ///< from port to tip
-  SensorReadings readings = SensorReadings::Zero();
+  BeamReadings readings = BeamReadings::Zero();
   Eigen::Matrix2d J_tip_wrist = Eigen::Matrix2d::Zero();  ///< its force held constant
   BeamState lever;  ///< an unbent shaft through the same wrist and port
 };

@@ -4,10 +4,38 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 namespace flextip {
 namespace {
+
+/// Residuals with their derivatives at one place.
+struct Residuals {
+  Eigen::VectorXd r;
+  Eigen::MatrixXd J;
+};
+
+/// Minimises |r(x)|^2 from `x`, which it moves; `evaluate` returns false where there are none.
+DescentResult MinimiseSquares(
+    const std::function<bool(const Eigen::VectorXd& x, Residuals& at)>& evaluate,
+    Eigen::VectorXd& x, const DescentOptions& options = {}) {
+  Residuals at, there;
+  if (!evaluate(x, at)) return {.cost = HUGE_VAL};
+  Eigen::VectorXd moved;
+  const auto try_step = [&](double damping) -> TrialStep {
+    moved = x + DampedStep(at.J.transpose() * at.J, at.J.transpose() * at.r, damping);
+    if (!moved.allFinite() || !evaluate(moved, there)) return {};
+    return {.cost = there.r.squaredNorm()};
+  };
+  const auto accept = [&] {
+    x = moved;
+    std::swap(at, there);
+  };
+  return Descend(at.r.squaredNorm(), try_step, accept, options);
+}
 
 TEST(LevenbergMarquardt, FindsRosenbrocksMinimum) {
   const auto rosenbrock = [](const Eigen::VectorXd& x, Residuals& at) {

@@ -95,8 +95,8 @@ TEST(ClosedLoop, SensorNoiseIsAsStated) {
   EXPECT_NEAR(std::sqrt(sum / n) / 5e-5, 1.0, 4.0 / std::sqrt(2 * n));
 }
 
-// The goal goes 10 mm down and 6 mm aside; a floor is 6 mm down and a box 4 mm aside. The tip strays
-// from the goal by as much as the control lets it.
+// The goal goes 10 mm down and 6 mm aside; a floor is 6 mm down and a box 4 mm aside. The tip
+// strays from the goal by as much as the control lets it.
 TEST(ClosedLoop, FixturesKeepTheTipOutOfForbiddenRegions) {
   Scenario scenario = ReadScenario(kScenarios + "fixtures.yaml");
   const auto furthest = [&](double& down_m, double& aside_m) {
