@@ -33,6 +33,7 @@ TEST(DocRules, TroubleshootingQuotesMessagesThatAreThere) {
 
 TEST(DocRules, ArchitectureHasTheArrowsThatAreChecked) {
   auto checked = IncludeArrows();
+  checked.erase("cmake");  // one empty source
   const std::size_t libraries = checked.at("apps").size();
   for (auto& [folder, used] : checked) {
     if (used.size() >= libraries) used = {"everything"};
