@@ -34,7 +34,8 @@ std::string Count(const Json& json, const char* key) {
 /// Controllers by their largest deviation, the best first.
 Lead SimulateLead(const Json& summary) {
   std::vector<std::pair<std::string, Json>> runs;
-  for (const auto& [name, run] : summary.value("controllers", Json::object()).items()) {
+  const Json controllers = summary.value("controllers", Json::object());
+  for (const auto& [name, run] : controllers.items()) {
     if (run.is_object() && Has(run, "max_deviation_m")) runs.emplace_back(name, run);
   }
   if (runs.empty()) return {};

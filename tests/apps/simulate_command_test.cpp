@@ -34,7 +34,7 @@ TEST(SimulateCommand, WritesARecordingPerControllerThatEstimateReads) {
   ASSERT_EQ(estimate.exit_code, 0) << estimate.err;
   EXPECT_THAT(ReadText(folder / "state/state0/data.csv"),
               StartsWith("#timestamp [ns],p_RE_x [m],"));
-  for (const char* result : {"out", "state"}) EXPECT_TRUE(PageIsMadeAgain(folder / result));
+  for (const char* page : {"out", "state"}) EXPECT_TRUE(PageIsMadeAgain(folder / page));
 }
 
 /// A plant with an effect, controlled and estimated with and without knowing of it.
