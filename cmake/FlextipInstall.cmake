@@ -1,14 +1,13 @@
-# Installs the libraries, their headers under include/flextip/, and the package flextip.
+# Installs the libraries, their public headers under include/flextip, and the package flextip.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 get_property(libraries GLOBAL PROPERTY FLEXTIP_LIBRARIES)
-get_property(folders GLOBAL PROPERTY FLEXTIP_HEADER_FOLDERS)
-list(REMOVE_DUPLICATES folders)
+include(PublicHeaders)
 install(TARGETS ${libraries} EXPORT flextip-targets)
-foreach(folder IN LISTS folders)
-  cmake_path(GET folder FILENAME name)
-  install(DIRECTORY ${folder}/ DESTINATION include/flextip/${name} FILES_MATCHING PATTERN "*.h")
+foreach(header IN LISTS FLEXTIP_PUBLIC_HEADERS)
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION include/flextip/${folder})
 endforeach()
 install(EXPORT flextip-targets NAMESPACE flextip:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/flextip)
 

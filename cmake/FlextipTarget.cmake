@@ -72,7 +72,6 @@ function(flextip_library name)
   endif()
   if(NOT ARG_INTERNAL)
     set_property(GLOBAL APPEND PROPERTY FLEXTIP_LIBRARIES ${target})
-    set_property(GLOBAL APPEND PROPERTY FLEXTIP_HEADER_FOLDERS ${CMAKE_CURRENT_SOURCE_DIR})
   endif()
 endfunction()
 

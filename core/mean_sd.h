@@ -7,8 +7,8 @@
 namespace flextip {
 
 struct MeanSd {
-  int count = 0;
   double mean = 0.0, sd = 0.0;  ///< `sd` of the sample, with n - 1; 0 for fewer than two numbers
+  int count = 0;
 
   /// Returns the standard error of the mean, 0 without numbers.
   double StandardError() const { return count > 0 ? sd / std::sqrt(count) : 0.0; }
@@ -16,7 +16,8 @@ struct MeanSd {
 
 /// Returns all zeros where there are no numbers.
 inline MeanSd MeanSdOf(const std::vector<double>& values) {
-  MeanSd of{static_cast<int>(values.size())};
+  MeanSd of;
+  of.count = static_cast<int>(values.size());
   if (values.empty()) return of;
   for (const double value : values) of.mean += value / of.count;
   double squares = 0.0;

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "kinematics/effect_shot.h"
 #include "kinematics/load_steps.h"
@@ -59,7 +58,8 @@ int Newton(const ScaledProblem& problem, EffectRodUnknowns& x, EffectShot& shot)
     if (size < kConverged) return i;
     if (i > 4 && size > 0.9 * last) return 0;  // it should converge quadratically by now
     last = size;
-    UnknownVector dx = -Lu(shot.A).Solve(shot.residual);
+    // Of seven unknowns: Eigen's own, which allocates nothing (core/linear_algebra.h has no 7).
+    UnknownVector dx = -shot.A.partialPivLu().solve(shot.residual);
     if (!dx.allFinite()) return 0;
     const double turn = dx.segment<2>(kTurn).norm();
     if (turn > kMaxTurn) dx *= kMaxTurn / turn;
@@ -245,7 +245,7 @@ EffectRodState EffectRodSolver::Solve(const EffectRodProblem& problem,
   y_ = shot.wrist.y;
   z_ = shot.wrist.z;
   inputs_ = inputs;
-  dx_ = -Lu(shot.A).Solve(scaling.ToInputs<kUnknowns>(shot.B));
+  dx_ = -shot.A.partialPivLu().solve(scaling.ToInputs<kUnknowns>(shot.B));
   StateWriter(problem, scaling, shot, x_, dx_).Write(stations, asked, columns.data(), state);
   return state;
 }

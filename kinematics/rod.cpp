@@ -310,9 +310,10 @@ void RodSolver::FillState(const Evaluation& e, RodState& state) {
 }
 
 RodSection RodSolver::Section(double s_m) const {
-  FLEXTIP_CHECK(warm_ && s_m >= 0.0 && s_m <= problem_.length_m, "a place on a solved rod");
+  FLEXTIP_CHECK(warm_ && s_m >= 0.0 && s_m <= (1.0 + 1e-12) * problem_.length_m,
+                "a place on a solved rod");
   const Scaled scaled(problem_);
-  const double sigma = 1.0 - s_m / problem_.length_m;
+  const double sigma = std::max(0.0, 1.0 - s_m / problem_.length_m);  // s_m may be rounded up
   RodFlow<9> flow;
   if (sigma == 0.0) return tip_;
   bool ok = AdvanceTipStretch(x_.t_tip, turn_basis_, scaled.f, scaled.q,

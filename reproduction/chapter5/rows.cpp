@@ -62,7 +62,7 @@ void AddMeasure(const Measure& measure, const std::vector<GroupResult>& results,
     rows.push_back(Row(name + ", mean", thesis.mean, value.mean, measure.unit, NoteOf(i)));
     rows.push_back(Row(name + ", standard deviation", thesis.sd, value.sd, measure.unit));
     ours.push_back(value);
-    theirs.push_back({.count = 10, .mean = thesis.mean, .sd = thesis.sd});
+    theirs.push_back({.mean = thesis.mean, .sd = thesis.sd, .count = 10});
   }
   rows.push_back(
       Row(fmt::format("5.3 {}, largest p of the six differences", measure.name), measure.thesis_p,

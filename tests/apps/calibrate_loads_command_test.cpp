@@ -22,13 +22,13 @@ nlohmann::json SummaryOf(const std::filesystem::path& folder) {
 
 /// Amplified gages on a shaft that is softer than the recording says.
 std::string Masses(const TestFolder& folder) {
-  testing::Bench bench;
+  test_support::Bench bench;
   bench.gains = 200 * Eigen::Matrix4d::Identity();
   bench.gains(1, 0) = -6;
   bench.offset << 12, -30, 4, 55;
   bench.noise.reading = 0.15;
   bench.effects.stiffness_scale = 0.8;
-  const auto masses = testing::AllWays({-0.08, 0.0, 0.08}, {0.15, 0.3});
+  const auto masses = test_support::AllWays({-0.08, 0.0, 0.08}, {0.15, 0.3});
   Recording recording = RecordBench(bench, masses, Hang(bench, masses), 11);
   std::filesystem::create_directories(folder / "masses");
   WriteRecording(folder / "masses", recording);
@@ -78,9 +78,9 @@ TEST(CalibrateLoads, GagesThenStiffnessThenAnEstimateThatFits) {
 // The plant's E I falls by half of its mean from wrist to tip.
 TEST(CalibrateLoads, AnEstimateTakesTheTaperThatWasFound) {
   TestFolder folder;
-  testing::Bench bench;
+  test_support::Bench bench;
   bench.effects.taper = 0.25;  // 1 + 0.25 (1 - 2 s / L)
-  const auto masses = testing::AllWays({-0.08, 0.0, 0.08}, {0.15, 0.3});
+  const auto masses = test_support::AllWays({-0.08, 0.0, 0.08}, {0.15, 0.3});
   const Recording recording = RecordBench(bench, masses, Hang(bench, masses), 11);
   std::filesystem::create_directories(folder / "masses");
   WriteRecording(folder / "masses", recording);
@@ -124,8 +124,8 @@ TEST(CalibrateLoads, CalibrationsThatDoNotFitAreRefused) {
 
 TEST(CalibrateLoads, TheEmFieldIsTakenOut) {
   TestFolder folder;
-  const testing::Bench bench;
-  const auto masses = testing::AllWays({-0.08, 0.0, 0.08}, {0.15});
+  const test_support::Bench bench;
+  const auto masses = test_support::AllWays({-0.08, 0.0, 0.08}, {0.15});
   Recording recording = RecordBench(bench, masses, Hang(bench, masses), 11);
   // Everything seems 5 % further from (0.5, 0, 0) than it is.
   const Eigen::Vector3d centre(0.5, 0, 0);

@@ -9,7 +9,7 @@
 namespace flextip::bench {
 namespace {
 
-enum : int { kStiffness, kLength, kEmLatency, diagnosis::kTipCompliance };
+enum : int { kStiffness, kLength, kEmLatency, kTipCompliance };
 
 /// Four effects of one parameter each; only the last cannot be negative.
 diagnosis::ParameterLayout FourEffects() {
@@ -92,9 +92,9 @@ TEST(MatrixRival, AnotherPairWithATwinIsTheRival) {
 
 TEST(MatrixRival, WhatCannotBeNegativeIsNoRivalWhereItWouldHaveToBe) {
   Toy toy;
-  toy.columns.col(diagnosis::kTipCompliance) = -toy.columns.col(kLength);
+  toy.columns.col(kTipCompliance) = -toy.columns.col(kLength);
   EXPECT_GT(toy.Rival({kStiffness, kLength}).value, kSeparable);
-  toy.columns.col(diagnosis::kTipCompliance) *= -1.0;
+  toy.columns.col(kTipCompliance) *= -1.0;
   const Separation separation = toy.Rival({kStiffness, kLength});
   EXPECT_LT(separation.value, 1.0);
   EXPECT_EQ(separation.rival, "stiffness+tip_compliance");
@@ -104,7 +104,7 @@ TEST(MatrixRival, PairsAreNoRivalsOfASingleEffect) {
   Toy toy;
   toy.columns.col(kLength) = toy.columns.col(kStiffness) + toy.columns.col(kEmLatency);
   EXPECT_GT(toy.Rival({kLength}).value, kSeparable);
-  const Separation pair = toy.Rival({kLength, diagnosis::kTipCompliance});
+  const Separation pair = toy.Rival({kLength, kTipCompliance});
   EXPECT_GT(pair.value, kSeparable);
   EXPECT_NE(pair.rival, "none");
 }

@@ -7,7 +7,7 @@
 #include "core/rotation.h"
 #include "simulation/plant/plant.h"
 
-namespace flextip::testing {
+namespace flextip::test_support {
 namespace {
 
 class Noise {
@@ -132,4 +132,4 @@ std::vector<HungMass> AllWays(const std::vector<double>& wrist_x_m,
   return masses;
 }
 
-}  // namespace flextip::testing
+}  // namespace flextip::test_support

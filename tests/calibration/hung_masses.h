@@ -10,7 +10,7 @@
 #include "simulation/plant/effects.h"
 #include "simulation/plant/shape.h"
 
-namespace flextip::testing {
+namespace flextip::test_support {
 
 struct HungMass {
   Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();
@@ -47,4 +47,4 @@ Recording RecordBench(const Bench& bench, const std::vector<HungMass>& masses,
 std::vector<HungMass> AllWays(const std::vector<double>& wrist_x_m,
                               const std::vector<double>& forces_N);
 
-}  // namespace flextip::testing
+}  // namespace flextip::test_support

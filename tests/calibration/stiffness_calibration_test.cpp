@@ -12,8 +12,8 @@
 namespace flextip {
 namespace {
 
-using testing::AllWays;
-using testing::Bench;
+using test_support::AllWays;
+using test_support::Bench;
 using ::testing::HasSubstr;
 
 /// The recording says 0.304; the shaft is something else.

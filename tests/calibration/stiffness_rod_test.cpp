@@ -58,11 +58,11 @@ TEST_P(StiffnessRodAndTaper, IsTheRodOfKinematics) {
 INSTANTIATE_TEST_SUITE_P(Some, StiffnessRodAndTaper, ::testing::Values(0.0, 0.5, -0.9));
 
 TEST(StiffnessRod, BendsAsThePlantDoes) {
-  testing::Bench bench;
+  test_support::Bench bench;
   bench.effects.taper = 0.3;  // 1 + 0.3 (1 - 2 s / L)
-  const std::vector<testing::HungMass> masses = {{{0.0, 0.01, 0.02}, {0.1, 0.3, -0.4}},
-                                                 {{-0.1, 0.0, 0.0}, {0.0, -0.3, 0.1}},
-                                                 {{0.08, 0.0, -0.02}, {0.0, 0.5, 0.5}}};
+  const std::vector<test_support::HungMass> masses = {{{0.0, 0.01, 0.02}, {0.1, 0.3, -0.4}},
+                                                      {{-0.1, 0.0, 0.0}, {0.0, -0.3, 0.1}},
+                                                      {{0.08, 0.0, -0.02}, {0.0, 0.5, 0.5}}};
   const auto shapes = Hang(bench, masses);
   TaperedRodSolver solver;
   double by_taper_m = 0;

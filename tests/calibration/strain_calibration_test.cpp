@@ -12,9 +12,9 @@
 namespace flextip {
 namespace {
 
-using testing::AllWays;
-using testing::Bench;
-using testing::HungMass;
+using test_support::AllWays;
+using test_support::Bench;
+using test_support::HungMass;
 
 /// Amplifiers in millivolts, each with its gain and some cross-talk.
 Bench GageBench() {

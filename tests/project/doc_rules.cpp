@@ -221,13 +221,13 @@ std::vector<std::string> UnknownMessages(const ProjectTexts& texts, const std::s
 
 std::map<std::string, std::set<std::string>> ArrowTable(const ProjectTexts& texts,
                                                         const std::string& page) {
-  static const std::regex row(R"(\| `([a-z]+)/` \|[^|]*\| ([^|]*) \|[^|]*\|)");
+  static const std::regex row(R"(\| `([a-z_/]+)/` \|[^|]*\| ([^|]*) \|[^|]*\|)");
   static const std::regex aside(R"(\([^)]*\))");
-  static const std::regex name("[a-z]+");
+  static const std::regex name("[a-z_/]+");
   std::map<std::string, std::set<std::string>> arrows;
   for (const auto& line : LinesOf(texts.at(page))) {
     std::smatch cells;
-    if (!std::regex_match(line, cells, row) || cells[2] == "everything") continue;
+    if (!std::regex_match(line, cells, row)) continue;
     const std::string used = std::regex_replace(cells[2].str(), aside, "");
     std::set<std::string>& names = arrows[cells[1]];
     for (const auto& match : Matches(used, "", name)) names.insert(match.str());

@@ -27,8 +27,8 @@ std::vector<std::string> LongLines(const ProjectTexts& texts);
 /// a fixed part is in no string of the project's sources. A "…" stands for what varies.
 std::vector<std::string> UnknownMessages(const ProjectTexts& texts, const std::string& page);
 
-/// Returns the table of folders on `page`: folder -> the folders of its column "may use". Rows that
-/// may use everything, and rows of sub-folders, are left out.
+/// Returns the table of folders on `page`: folder -> the names in its column "may use", without
+/// what stands in brackets.
 std::map<std::string, std::set<std::string>> ArrowTable(const ProjectTexts& texts,
                                                         const std::string& page);
 

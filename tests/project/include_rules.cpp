@@ -26,6 +26,7 @@ const std::map<std::string, Names>& Arrows() {
                                "recording", "pipeline",   "calibration", "simulation", kClosedLoop,
                                "diagnosis", "report",     "workspace"};
   static const std::map<std::string, Names> arrows{
+      {"cmake", {}},
       {"core", {}},
       {"kinematics", {"core"}},
       {"estimation", {"core", "kinematics"}},
@@ -35,11 +36,15 @@ const std::map<std::string, Names>& Arrows() {
       {"pipeline", models},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
-      {kClosedLoop, With(models, {"pipeline", "diagnosis", "simulation"})},
+      {kClosedLoop,
+       {"core", "recording", "vision", "estimation", "control", "pipeline", "diagnosis",
+        "simulation"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording", "report"}},
-      {"reproduction", With(libraries, {"apps"})},  // a program: shares apps/common
+      {"reproduction",
+       {"core", "kinematics", "estimation", "control", "pipeline", "recording", "simulation",
+        kClosedLoop, "workspace", "report", "apps"}},
       {"apps", libraries},
       {"examples", libraries},
       {"testdata", {"core", "recording", "simulation", "bench"}},

@@ -33,8 +33,9 @@ TEST(IncludeRules, KeepTheModelsOutOfThePlant) {
                                  {"kinematics/rod.h", ""}}),
               SizeIs(2));  // against an arrow, and a model within reach
   EXPECT_THAT(
-      IncludeViolations({{"simulation/closed_loop/loop.cpp", "#include \"kinematics/rod.h\"\n"}}),
-      SizeIs(1));
+      IncludeViolations({{"simulation/closed_loop/loop.cpp", "#include \"kinematics/rod.h\"\n"},
+                         {"kinematics/rod.h", ""}}),
+      SizeIs(1));  // against an arrow; the loop may reach the models through estimation
 }
 
 TEST(IncludeRules, KeepTheModelsOutOfThePlantThroughOtherHeaders) {
@@ -81,7 +82,7 @@ TEST(IncludeRules, NameFoldersWithoutRules) {
 }
 
 TEST(IncludeRules, KeepTheReportToResultFiles) {
-  EXPECT_THAT(IncludeViolations({{"report/a.cpp", "#include \"recording/recording.h\"\n"}}),
+  EXPECT_THAT(IncludeViolations({{"report/a.cpp", "#include \"diagnosis/diagnose.h\"\n"}}),
               SizeIs(1));
 }
 

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
@@ -85,6 +87,31 @@ TEST(Diagnosis, IsSeenToNameAnEffect) {
       {"diagnosis/search/b.cpp", "// \"sag\"\nint block = layout.Find(\"sag\");"},
       {"diagnosis/model/c.cpp", "const char* text = \"sagging\";"}};
   EXPECT_THAT(EffectsNamed(tree), ElementsAre("diagnosis/search/b.cpp:2: \"sag\""));
+}
+
+/// Returns the headers of cmake/PublicHeaders.cmake.
+std::set<std::string> PublicHeaders() {
+  std::ifstream file(std::filesystem::path(FLEXTIP_SOURCE_DIR) / "cmake/PublicHeaders.cmake");
+  std::set<std::string> headers;
+  static const std::regex header(R"(^  ([\w/]+\.h)\)?$)");
+  for (std::string line; std::getline(file, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, header)) headers.insert(match[1]);
+  }
+  return headers;
+}
+
+TEST(PublicHeaders, IncludeOnlyOneAnother) {
+  const SourceTree tree = ReadSourceTree(FLEXTIP_SOURCE_DIR);
+  const std::set<std::string> headers = PublicHeaders();
+  ASSERT_TRUE(headers.contains("core/pose.h"));
+  static const std::regex include(R"re(#include "([^"]+)")re");
+  for (const std::string& path : headers) {
+    ASSERT_TRUE(tree.contains(path)) << path;
+    const std::string& text = tree.at(path);
+    for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end; ++match)
+      EXPECT_TRUE(headers.contains((*match)[1])) << path << " includes " << (*match)[1];
+  }
 }
 
 }  // namespace

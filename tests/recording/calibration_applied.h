@@ -6,7 +6,7 @@
 #include "recording/calibrations/apply.h"
 #include "sample_recording.h"
 
-namespace flextip::testing {
+namespace flextip::test_support {
 
 inline AppliedCalibration Apply(const Calibration& c, Recording& recording) {
   return ApplyCalibration("found.yaml", c, recording);
@@ -54,4 +54,4 @@ inline Recording Plain() {
   return r;
 }
 
-}  // namespace flextip::testing
+}  // namespace flextip::test_support

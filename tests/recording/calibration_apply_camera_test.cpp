@@ -8,13 +8,13 @@
 namespace flextip {
 namespace {
 
-using testing::Apply;
+using test_support::Apply;
+using test_support::ErrorOf;
+using test_support::kPose;
+using test_support::Plain;
+using test_support::WithNumbers;
 using ::testing::ElementsAre;
-using testing::ErrorOf;
 using ::testing::HasSubstr;
-using testing::kPose;
-using testing::Plain;
-using testing::WithNumbers;
 
 TEST(CalibrationApply, SetsTheLens) {
   Recording r = Plain();
@@ -74,7 +74,7 @@ TEST(CalibrationApply, TheModelNamedIsTheModel) {
 
 // Written from one camera, read and put into a recording that has another lens.
 TEST(CalibrationApply, EveryLensComesThroughAFile) {
-  const testing::TemporaryFolder folder;
+  const test_support::TemporaryFolder folder;
   const std::vector<std::pair<Distortion, int>> lenses = {{Distortion::kRadialTangential, 4},
                                                           {Distortion::kEquidistant, 4},
                                                           {Distortion::kOpenCv, 5},

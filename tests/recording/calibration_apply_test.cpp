@@ -10,13 +10,13 @@
 namespace flextip {
 namespace {
 
-using testing::Apply;
+using test_support::Apply;
+using test_support::ErrorOf;
+using test_support::kPose;
+using test_support::Plain;
+using test_support::WithNumbers;
 using ::testing::ElementsAre;
-using testing::ErrorOf;
 using ::testing::HasSubstr;
-using testing::kPose;
-using testing::Plain;
-using testing::WithNumbers;
 
 TEST(CalibrationApply, TheTipIsWhereItWasFoundOnTheCollar) {
   const Recording before = Plain();

@@ -11,7 +11,7 @@
 #include "recording/cameras/camera_formats.h"
 #include "tests/recording/sample_recording.h"
 
-namespace flextip::testing {
+namespace flextip::test_support {
 
 class CameraFormats : public ::testing::Test {
  protected:
@@ -70,4 +70,4 @@ inline CameraDescription Awkward(Distortion distortion, std::size_t terms) {
   return d;
 }
 
-}  // namespace flextip::testing
+}  // namespace flextip::test_support

@@ -5,11 +5,11 @@
 namespace flextip {
 namespace {
 
-using flextip::testing::Awkward;
-using flextip::testing::CameraFormats;
-using flextip::testing::ExpectSameLens;
-using flextip::testing::Names;
-using flextip::testing::ReadText;
+using flextip::test_support::Awkward;
+using flextip::test_support::CameraFormats;
+using flextip::test_support::ExpectSameLens;
+using flextip::test_support::Names;
+using flextip::test_support::ReadText;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

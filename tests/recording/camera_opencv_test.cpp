@@ -6,8 +6,8 @@
 namespace flextip {
 namespace {
 
-using flextip::testing::Awkward;
-using flextip::testing::CameraFormats;
+using flextip::test_support::Awkward;
+using flextip::test_support::CameraFormats;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 

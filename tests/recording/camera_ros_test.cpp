@@ -4,8 +4,8 @@
 namespace flextip {
 namespace {
 
-using flextip::testing::CameraFormats;
-using flextip::testing::Names;
+using flextip::test_support::CameraFormats;
+using flextip::test_support::Names;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

@@ -12,8 +12,8 @@
 namespace flextip {
 namespace {
 
-using flextip::testing::TemporaryFolder;
-using flextip::testing::WriteText;
+using flextip::test_support::TemporaryFolder;
+using flextip::test_support::WriteText;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 

@@ -10,10 +10,10 @@
 namespace flextip {
 namespace {
 
-using flextip::testing::ReadText;
-using flextip::testing::TemporaryFolder;
-using flextip::testing::WriteSample;
-using flextip::testing::WriteText;
+using flextip::test_support::ReadText;
+using flextip::test_support::TemporaryFolder;
+using flextip::test_support::WriteSample;
+using flextip::test_support::WriteText;
 
 std::string Damaged(std::string text, std::mt19937& generator) {
   const auto random = [&](std::size_t n) {

@@ -12,15 +12,15 @@
 namespace flextip {
 namespace {
 
-using flextip::testing::kHeight;
-using flextip::testing::kSamples;
-using flextip::testing::kWidth;
-using flextip::testing::Line;
-using flextip::testing::ReadText;
-using flextip::testing::ReplaceLine;
-using flextip::testing::TemporaryFolder;
-using flextip::testing::WriteSample;
-using flextip::testing::WriteText;
+using flextip::test_support::kHeight;
+using flextip::test_support::kSamples;
+using flextip::test_support::kWidth;
+using flextip::test_support::Line;
+using flextip::test_support::ReadText;
+using flextip::test_support::ReplaceLine;
+using flextip::test_support::TemporaryFolder;
+using flextip::test_support::WriteSample;
+using flextip::test_support::WriteText;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -100,7 +100,7 @@ TEST(Frames, DroppedOnesAreCountedAndSkipped) {
   EXPECT_EQ(result.recording.cam0->filenames.size(), kSamples - 1u);
   EXPECT_EQ(result.recording.cam0->filenames[2].value, "3.png");
 
-  Recording gap = flextip::testing::MakeRecording();
+  Recording gap = flextip::test_support::MakeRecording();
   gap.cam0->filenames.erase(gap.cam0->filenames.begin() + 2);
   WriteRecording(folder.path(), gap);
   result = ReadRecording(folder.path());
@@ -121,7 +121,7 @@ TEST(Frames, OnlyTheCalibrationMayBeThere) {
 }
 
 Recording WithVideo(const std::vector<int>& frames) {
-  Recording recording = flextip::testing::MakeRecording();
+  Recording recording = flextip::test_support::MakeRecording();
   recording.cam1.reset();
   auto& camera = *recording.cam0;
   camera.filenames.clear();

@@ -9,11 +9,11 @@
 namespace flextip {
 namespace {
 
-using flextip::testing::Line;
-using flextip::testing::Replace;
-using flextip::testing::ReplaceLine;
-using flextip::testing::TemporaryFolder;
-using flextip::testing::WriteSample;
+using flextip::test_support::Line;
+using flextip::test_support::Replace;
+using flextip::test_support::ReplaceLine;
+using flextip::test_support::TemporaryFolder;
+using flextip::test_support::WriteSample;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -142,7 +142,7 @@ TEST_P(RejectsColumns, MissingExtraAndRenamed) {
   EXPECT_THAT(Failure(folder.path()), HasSubstr(name + ":5: found "));
   ReplaceLine(file, 5, row);
 
-  flextip::testing::WriteText(file, header + "\n");
+  flextip::test_support::WriteText(file, header + "\n");
   EXPECT_THAT(Failure(folder.path()), HasSubstr(name + ":1: no samples"));
   std::filesystem::remove(file);
   EXPECT_THAT(Failure(folder.path()), HasSubstr(name + ": no such file"));
@@ -269,7 +269,7 @@ TEST(RejectsFolder, ThatIsNoRecording) {
   const TemporaryFolder folder;
   EXPECT_THAT(Failure(folder / "none"), HasSubstr("none: no such folder"));
   EXPECT_THAT(Failure(folder.path()), HasSubstr("recording.yaml: no such file"));
-  flextip::testing::WriteText(folder / "recording.yaml", "");
+  flextip::test_support::WriteText(folder / "recording.yaml", "");
   EXPECT_THAT(Failure(folder.path()), HasSubstr("recording.yaml:1: expected a mapping"));
   WriteSample(folder.path());
   for (const char* sensor : {"wrist0", "em1", "cam0", "tags0", "vision0"}) {
@@ -298,8 +298,8 @@ TEST(CarriesOn, WithATornLastLineInAnyStream) {
     const TemporaryFolder folder;
     WriteSample(folder.path());
     const auto file = folder.path() / sensor / "data.csv";
-    const std::string text = flextip::testing::ReadText(file);
-    flextip::testing::WriteText(file, text.substr(0, text.size() - 3));
+    const std::string text = flextip::test_support::ReadText(file);
+    flextip::test_support::WriteText(file, text.substr(0, text.size() - 3));
     const auto result = ReadRecording(folder.path());
     EXPECT_EQ(result.torn_lines, 1) << sensor;
     EXPECT_THAT(result.warnings, ::testing::ElementsAre(HasSubstr(fmt::format(

@@ -12,12 +12,12 @@
 namespace flextip {
 namespace {
 
-using flextip::testing::kSamples;
-using flextip::testing::MakeRecording;
-using flextip::testing::MakeTruth;
-using flextip::testing::ReadText;
-using flextip::testing::TemporaryFolder;
-using flextip::testing::WriteSample;
+using flextip::test_support::kSamples;
+using flextip::test_support::MakeRecording;
+using flextip::test_support::MakeTruth;
+using flextip::test_support::ReadText;
+using flextip::test_support::TemporaryFolder;
+using flextip::test_support::WriteSample;
 
 std::uint64_t Bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 
@@ -223,10 +223,11 @@ TEST(CameraFile, EveryModelComesBackAlone) {
 
 TEST(CameraFile, MayLackItsRegistration) {
   const TemporaryFolder folder;
-  flextip::testing::WriteText(folder / "camera.yaml",
-                              "camera_model: pinhole\nresolution: [640, 480]\n"
-                              "intrinsics: [500, 501, 320, 240]\ndistortion_model: equidistant\n"
-                              "distortion_coefficients: [0, 0, 0, 0]\nT_BS: 3\n");
+  flextip::test_support::WriteText(
+      folder / "camera.yaml",
+      "camera_model: pinhole\nresolution: [640, 480]\n"
+      "intrinsics: [500, 501, 320, 240]\ndistortion_model: equidistant\n"
+      "distortion_coefficients: [0, 0, 0, 0]\nT_BS: 3\n");
   ReadLog log;
   const auto camera = ReadCameraCalibration(folder / "camera.yaml", &log);
   EXPECT_TRUE(camera.T_RC.Matrix().isIdentity(0.0));

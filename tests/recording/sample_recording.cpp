@@ -12,7 +12,7 @@
 
 #include "recording/recording_writer.h"
 
-namespace flextip::testing {
+namespace flextip::test_support {
 namespace {
 
 constexpr TimeNs kStart = 1'700'000'000'000'000'000;
@@ -190,4 +190,4 @@ int Replace(const std::filesystem::path& file, const std::string& from, const st
   return static_cast<int>(line) + 1;
 }
 
-}  // namespace flextip::testing
+}  // namespace flextip::test_support

@@ -7,7 +7,7 @@
 #include "recording/recording.h"
 #include "recording/truth.h"
 
-namespace flextip::testing {
+namespace flextip::test_support {
 
 class TemporaryFolder {
  public:
@@ -42,4 +42,4 @@ std::string Line(const std::filesystem::path& file, int line);
 /// Replaces `from`, which must be in the file, by `to`; the number of the line it was in.
 int Replace(const std::filesystem::path& file, const std::string& from, const std::string& to);
 
-}  // namespace flextip::testing
+}  // namespace flextip::test_support

@@ -31,7 +31,7 @@ std::size_t Rows(const std::filesystem::path& file) {
 /// Reads the recording in `path`, and writes and reads it again without a change.
 void ExpectReadsWhole(const std::filesystem::path& path) {
   SCOPED_TRACE(path.string());
-  const flextip::testing::TemporaryFolder folder;
+  const flextip::test_support::TemporaryFolder folder;
   const auto result = ReadRecording(path);
   const auto& r = result.recording;
   EXPECT_THAT(result.warnings, IsEmpty());
@@ -50,8 +50,8 @@ void ExpectReadsWhole(const std::filesystem::path& path) {
   WriteRecording(folder / "once", r);
   WriteRecording(folder / "twice", ReadRecording(folder / "once").recording);
   for (const char* file : {"recording.yaml", "wrist0/data.csv", "vision0/data.csv"}) {
-    EXPECT_EQ(flextip::testing::ReadText(folder / "once" / file),
-              flextip::testing::ReadText(folder / "twice" / file));
+    EXPECT_EQ(flextip::test_support::ReadText(folder / "once" / file),
+              flextip::test_support::ReadText(folder / "twice" / file));
   }
 }
 

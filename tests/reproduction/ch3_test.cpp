@@ -81,7 +81,7 @@ TEST(Ch3Noise, NoDrawIsWorseThanTheWorst) {
     EXPECT_GE(worst.worst.metric, worst.corners.metric);
     EstimateErrors seen;
     for (int i = 0; i < 5000; ++i) {
-      const SensorReadings parts = SensorReadings::NullaryExpr([&] { return part(rng); });
+      const BeamReadings parts = BeamReadings::NullaryExpr([&] { return part(rng); });
       const BeamState estimate =
           EstimateBeam(ReadingsOf(truth) + parts.cwiseProduct(level.Bounds()), kL);
       const EstimateErrors errors = ErrorsOf(FlexionForm::kTipForce, truth, estimate);

@@ -70,8 +70,8 @@ inline TagCollar HexagonCollar() {
 }
 
 /// No texture, no blur, no noise, linear.
-inline LaparoscopeOptions PlainOptions() {
-  LaparoscopeOptions options;
+inline simulation::LaparoscopeOptions PlainOptions() {
+  simulation::LaparoscopeOptions options;
   options.tissue.point_R = {0, 0, 0.2};
   options.tissue.normal_R = {0, 0, -1};
   options.tissue.texture_contrast = options.tissue.relief_m = options.tissue.wetness = 0;
@@ -84,8 +84,9 @@ inline LaparoscopeOptions PlainOptions() {
 }
 
 /// A shaft on the arc of a circle of `radius_m` that ends at T_RE, bending toward E's y axis.
-inline ShaftCurve ArcShaft(const Pose& T_RE, double length_m, double radius_m, double diameter_m) {
-  ShaftCurve curve;
+inline simulation::ShaftCurve ArcShaft(const Pose& T_RE, double length_m, double radius_m,
+                                       double diameter_m) {
+  simulation::ShaftCurve curve;
   curve.diameter_m = diameter_m;
   curve.T_RE = T_RE;
   constexpr int kPieces = 60;
@@ -98,7 +99,7 @@ inline ShaftCurve ArcShaft(const Pose& T_RE, double length_m, double radius_m, d
 }
 
 /// A shaft far out of the picture.
-inline ShaftCurve HiddenShaft() {
+inline simulation::ShaftCurve HiddenShaft() {
   Pose behind;
   behind.p = {0, 0, -5};
   return ArcShaft(behind, 0.3, 10, 0.005);
