@@ -85,21 +85,12 @@ EmSolution StartOf(const EmSolution& start, const EmDesign& design) {
 
 /// Without noise of its own: the turn and shift that fit best (Umeyama 1991).
 Pose ClosedForm(const std::vector<EmPair>& pairs, double distance_m) {
-  const auto count = static_cast<double>(pairs.size());
-  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = from;
-  for (const EmPair& pair : pairs) {
-    from += pair.T_FS.p / count;
-    to += (pair.p_RE - distance_m * pair.t_RE) / count;
+  Eigen::Matrix3Xd from(3, pairs.size()), to(3, pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    from.col(i) = pairs[i].T_FS.p;
+    to.col(i) = pairs[i].p_RE - distance_m * pairs[i].t_RE;
   }
-  Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
-  for (const EmPair& pair : pairs) {
-    cross += (pair.p_RE - distance_m * pair.t_RE - to) * (pair.T_FS.p - from).transpose() / count;
-  }
-  const Svd svd(cross);
-  Eigen::Matrix3d U = svd.U;
-  if ((U * svd.V.transpose()).determinant() < 0) U.col(2) *= -1.0;
-  const Eigen::Matrix3d R_RF = U * svd.V.transpose();
-  return {R_RF, to - R_RF * from};
+  return Pose::FromMatrix(Eigen::umeyama(from, to, false));
 }
 
 }  // namespace

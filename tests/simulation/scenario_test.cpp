@@ -31,8 +31,10 @@ std::string PressText() {
   return s;
 }
 
-/// What reading says of the scenario with `from` replaced by `to`.
-std::string Complaint(const std::string& from, const std::string& to) {
+/// Returns the message of reading the scenario with `from` replaced by `to`, empty for none. A
+/// message about the scenario itself names its file; with `other_file` that of another.
+std::string Complaint(const std::string& from, const std::string& to,
+                      const std::string& other_file = "") {
   std::string text = PressText();
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -43,7 +45,7 @@ std::string Complaint(const std::string& from, const std::string& to) {
   try {
     ReadScenario(file);
   } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), HasSubstr(file.string()));
+    EXPECT_THAT(e.what(), HasSubstr(other_file.empty() ? file.string() : other_file));
     EXPECT_THAT(e.what(), testing::Not(HasSubstr("\n")));
     return e.what();
   }
@@ -90,8 +92,9 @@ TEST(Scenario, FixturesAndDirectionsRead) {
 }
 
 /// The press with `fixture` as its only one.
-std::string FixtureComplaint(const std::string& fixture) {
-  return Complaint("controllers: all", "fixtures:\n  - " + fixture + "\ncontrollers: all");
+std::string FixtureComplaint(const std::string& fixture, const std::string& other_file = "") {
+  return Complaint("controllers: all", "fixtures:\n  - " + fixture + "\ncontrollers: all",
+                   other_file);
 }
 
 TEST(Scenario, SaysWhatIsWrongWithFixtures) {
@@ -106,7 +109,7 @@ TEST(Scenario, SaysWhatIsWrongWithFixtures) {
               HasSubstr("zero vector"));
   EXPECT_THAT(FixtureComplaint("half_space: {point_m: [0, 0, 0], norml: [0, 0, 1]}"),
               HasSubstr("norm"));
-  EXPECT_THAT(FixtureComplaint("mesh: {file: none.obj}"), HasSubstr("none.obj"));
+  EXPECT_THAT(FixtureComplaint("mesh: {file: none.obj}", "none.obj"), HasSubstr("no such file"));
   EXPECT_THAT(FixtureComplaint("guidance: {points: [{at_m: [0, 0, 0]}]}"), HasSubstr("two points"));
 }
 
@@ -130,7 +133,7 @@ std::string MeshComplaint(const std::string& text) {
   try {
     ReadMesh(file);
   } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), HasSubstr(file.string()));
+    EXPECT_THAT(e.what(), HasSubstr(other_file.empty() ? file.string() : other_file));
     return e.what();
   }
   return "";
