@@ -86,9 +86,10 @@ EmSolution StartOf(const EmSolution& start, const EmDesign& design) {
 /// Without noise of its own: the turn and shift that fit best (Umeyama 1991).
 Pose ClosedForm(const std::vector<EmPair>& pairs, double distance_m) {
   Eigen::Matrix3Xd from(3, pairs.size()), to(3, pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    from.col(i) = pairs[i].T_FS.p;
-    to.col(i) = pairs[i].p_RE - distance_m * pairs[i].t_RE;
+  Eigen::Index i = 0;
+  for (const EmPair& pair : pairs) {
+    from.col(i) = pair.T_FS.p;
+    to.col(i++) = pair.p_RE - distance_m * pair.t_RE;
   }
   return Pose::FromMatrix(Eigen::umeyama(from, to, false));
 }
