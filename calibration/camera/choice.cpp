@@ -115,16 +115,10 @@ std::optional<std::size_t> ChooseLens(std::vector<LensCandidate>& candidates) {
   const auto usable = [&](std::size_t i) {
     return candidates[i].heldout && candidates[i].reason.empty();
   };
-  // A lens whose distortion turns back on itself is no measure for the others: it is the best only
-  // where all do.
-  const auto better = [&](std::size_t i, std::size_t than) {
-    if (candidates[i].folds.empty() != candidates[than].folds.empty()) {
-      return candidates[i].folds.empty();
-    }
-    return candidates[i].heldout->rms_px < candidates[than].heldout->rms_px;
-  };
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (usable(i) && (!best || better(i, *best))) best = i;
+    if (usable(i) && (!best || candidates[i].heldout->rms_px < candidates[*best].heldout->rms_px)) {
+      best = i;
+    }
   }
   if (!best) return {};
   const auto worse_by = [&](std::size_t i) {

@@ -27,7 +27,8 @@ Eigen::MatrixXd GaugeOf(const EmDesign& design) {
   }
   const int side = design.basis.order;
   for (int k = 0; k < design.basis.Count(); ++k) {
-    const Eigen::Vector3d place(k / (side * side), k / side % side, k % side);
+    const int x = k / (side * side), y = k / side % side, z = k % side;
+    const Eigen::Vector3d place(x, y, z);
     const Eigen::Vector3d u = 2.0 / (side - 3) * (place.array() - 1.0) - 1.0;
     G.block<3, 3>(0, 3 * k).setIdentity();
     G.block<3, 3>(3, 3 * k) = Skew(u.cwiseProduct(design.scale_m / design.scale_m.maxCoeff()));

