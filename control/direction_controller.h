@@ -18,11 +18,12 @@ struct TipJacobians {
   Eigen::Matrix3d direction = Eigen::Matrix3d::Zero();  ///< d d_RE / d p_RW (rad/m), rank 2 at most
 };
 
-/// From the exact rod's derivatives, the load following the tip by `stiffness` = df/dp (N/m).
+/// Returns the Jacobians by the exact rod's derivatives; the load follows the tip by `stiffness` =
+/// df/dp (N/m).
 TipJacobians TipJacobiansOf(const ShaftRodState& rod, const Eigen::Matrix3d& stiffness);
 
-/// The direction's Jacobian as the thesis proposes (3.5): the shape does not change, it only turns
-/// with the chord from wrist to tip. `J_tip_wrist` of any model; m, in R.
+/// Returns the direction's Jacobian as the thesis proposes (3.5): the shape stays, and turns with
+/// the chord from wrist to tip. `J_tip_wrist` of any model; m, in R.
 Eigen::Matrix3d DirectionByRegistration(const Eigen::Matrix3d& J_tip_wrist,
                                         const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_RE,
                                         const Eigen::Vector3d& d_RE);

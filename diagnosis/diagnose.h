@@ -21,7 +21,7 @@ struct DiagnoseOptions {
 
 /// Effects together, in alphabetical order; {"none"} and {"unknown"} are answers too.
 using Verdict = std::vector<std::string>;
-/// "a" or "a+b".
+/// Returns "a" or "a+b".
 std::string Joined(const Verdict& verdict);
 
 struct HypothesisProbability {

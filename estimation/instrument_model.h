@@ -20,7 +20,7 @@ class InstrumentModel {
   virtual void Advance(TimeNs t_ns, const Measurements& measured,
                        const Eigen::Vector3d& f_tip_N) = 0;
   virtual const ShaftChange& Shaft() const = 0;
-  /// What sensors without their own effects would have said. Latencies are left as they are.
+  /// Returns the readings of sensors without their own effects. Latencies stay.
   virtual Measurements Correct(const Measurements& measured) const = 0;
 
  protected:

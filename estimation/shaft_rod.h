@@ -11,7 +11,7 @@
 
 namespace flextip {
 
-/// Whether `effects` leave the rod plain (y_wrist alone does nothing).
+/// Returns whether `effects` leave the rod plain (y_wrist alone does nothing).
 bool IsPlain(const RodEffects& effects);
 
 struct ShaftProblem {
@@ -45,7 +45,8 @@ struct ShaftRodState {
 /// Allocates nothing; starts from the last equilibrium.
 class ShaftRod {
  public:
-  /// At most kMaxShaftStations `stations`; one beyond an end of the shaft is that end.
+  /// Solves for at most kMaxShaftStations `stations`; a station beyond an end of the shaft is that
+  /// end.
   ShaftRodState Solve(const ShaftProblem& problem, std::span<const RodStation> stations = {});
 
   void Reset();

@@ -47,7 +47,7 @@ class WindowEstimator {
 
   WindowEstimate Update(const Measurements& measurements, const ShaftChange& change = {});
 
-  /// Forget the past.
+  /// Forgets the past.
   void Reset();
 
  private:

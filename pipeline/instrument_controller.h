@@ -59,7 +59,7 @@ struct ControllerCommand {
 /// commands, bit for bit. Without pictures it allocates nothing once it runs.
 class InstrumentController {
  public:
-  /// `model`: what was found of instrument and sensors (diagnosis); null: as their data say.
+  /// Takes the `model` of instrument and sensors that a diagnosis found; null: as their data say.
   /// `tracker` sees the tip where a cycle is given pictures. Throws InputError where
   /// `options.direction` comes without a rod kind.
   explicit InstrumentController(const InstrumentControllerOptions& options,
@@ -69,9 +69,9 @@ class InstrumentController {
   /// Runs one cycle. Throws InputError only for pictures of the wrong size.
   ControllerCommand Step(const ControllerInputs& inputs);
 
-  /// What the tracker said of the last pictures; empty before the first.
+  /// Returns the tracker's result for the last pictures; empty before the first.
   const std::optional<TipTrack>& Track() const { return track_; }
-  /// What the window said last; null without a window.
+  /// Returns the window's last estimate; null without a window.
   const WindowEstimate* Window() const { return estimator_.Window(); }
 
  private:

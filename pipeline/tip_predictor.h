@@ -37,7 +37,7 @@ class TipPredictor {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-  /// `p_RP`: the port as registered. All in R.
+  /// Takes the port as registered, `p_RP`. All in R (m).
   TipPredictor(const Instrument& instrument, const Eigen::Vector3d& p_RP,
                const Eigen::Vector3d& gravity_m_s2, const TipPredictorOptions& options = {});
 
@@ -47,8 +47,8 @@ class TipPredictor {
   /// measured, it stays where it was seen, and nothing is known of it before.
   std::optional<TipPrediction> Predict(TimeNs t_ns, const std::optional<Measurements>& measured);
 
-  /// What the frames so far have left. The solvers start afresh after it, whether it is written or
-  /// read: so both go on alike.
+  /// Visits the state that the frames so far have left. The solvers start afresh after writing and
+  /// after reading: so both runs go on alike.
   void VisitState(StateText& state);
 
   /// Learns from a tip that was seen; `covariance` of (dw, dp) in R as in TipPrediction.
@@ -89,7 +89,7 @@ class TipPredictor {
   void LearnDrift();
   std::optional<RodTip> SolveRod(const Measurements& z, const Eigen::Vector3d& p_RP,
                                  const Eigen::Vector3d& f_tip_N);
-  /// `sees_load`: the sensors narrow the load down.
+  /// Predicts the tip from the sensors. `sees_load`: the sensors narrow the load down.
   std::optional<TipPrediction> FromSensors(const Measurements& z, bool& sees_load);
   std::optional<TipPrediction> FromSight(TimeNs t_ns, const Measurements& z);
 

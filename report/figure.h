@@ -55,8 +55,8 @@ struct Figure {
   bool InSpace() const { return !traces.empty() && !traces.front().z.empty(); }
 };
 
-/// Short line segments, each through its middle (x, y) along (u, v) with the length of (u, v), as
-/// one trace with gaps: a plot of directions whose sign means nothing.
+/// Returns short line segments as a single trace with gaps, each through its middle (x, y) along
+/// (u, v) with the length of (u, v): a plot of directions whose sign means nothing.
 FigureTrace Segments(const std::vector<double>& x, const std::vector<double>& y,
                      const std::vector<double>& u, const std::vector<double>& v);
 

@@ -30,7 +30,7 @@ struct PointMeasures {
   AngleError<N> angle;
 };
 
-/// Where the tip's position is known and only the Jacobian is wrong, as in 2.3.2.
+/// Measures a place where the tip's position is known and only the Jacobian is wrong, as in 2.3.2.
 template <int N>
 PointMeasures<N> MeasureAt(const MapSetup<N>& setup, TrueShaft<N>& shaft, const VectorN<N>& p_tip);
 
@@ -44,7 +44,7 @@ enum class MotionFault {
   kStray,
 };
 
-/// Of a motion along v (not zero).
+/// Returns the error of a motion along v (not zero).
 template <int N>
 double DirectionError(const MatrixN<N>& A, const VectorN<N>& v, MotionFault fault);
 

@@ -17,12 +17,12 @@ struct PlanOptions {
   double spacing_m = 0.005;
 };
 
-/// In the map's slice. The matrices A between the map's points are interpolated; where one of the
-/// four around a place is missing no path may go.
+/// Returns the cost in the map's slice. Interpolates the matrices A between the map's points; no
+/// path goes where one of the four around a place is missing.
 template <int N>
 PathCost MotionCost(const WorkspaceMap<N>& map, const PlanOptions& options);
 
-/// The cheapest path between two places of the slice, anywhere in the map.
+/// Returns the cheapest path between two places of the slice, anywhere in the map.
 template <int N>
 Path PlanMotion(const WorkspaceMap<N>& map, const Eigen::Vector2d& start,
                 const Eigen::Vector2d& goal, const PlanOptions& options);
@@ -51,8 +51,8 @@ struct Followed {
   double mean_deviation_m = 0.0;      ///< over the distance that the tip went
 };
 
-/// Quasi-static steps (2.3) along a path in space, with the tip's position known: each cycle moves
-/// the joints by k J_hat^-1 (x_d - x), and the next goal follows once the last is reached.
+/// Follows a path in space by quasi-static steps (2.3), with the tip's position known: each cycle
+/// moves the joints by k J_hat^-1 (x_d - x), and the next goal follows once the last is reached.
 template <int N>
 Followed<N> FollowPath(const MapSetup<N>& setup, const std::vector<VectorN<N>>& path,
                        const FollowOptions& options);

@@ -35,8 +35,8 @@ struct Tolerance {
   std::size_t points = 0;    ///< how many were looked at
 };
 
-/// By bisection to 1e-4 of the scale; a point that passes at one scale is not looked at again below
-/// it. Uses all cores.
+/// Finds the scale by bisection to 1e-4 of it; a point that passes at a scale is not looked at
+/// again below that. Uses all cores.
 template <int N>
 Tolerance<N> FindTolerance(const MapSetup<N>& setup, const WorkspaceMap<N>& map,
                            const ToleranceQuestion<N>& question);

@@ -32,7 +32,7 @@ struct EmSolution {
   Eigen::MatrixXd covariance = {};
 };
 
-/// Corrected sensor less reference (m), in R.
+/// Returns the corrected sensor less the reference (m), in R.
 Eigen::Vector3d EmError(const EmPair& pair, const EmSolution& solution);
 /// Its length in stated standard deviations.
 double EmSigmas(const EmPair& pair, const EmSolution& solution);
@@ -55,12 +55,13 @@ struct EmStep {
 EmStep SolveStep(const EmDesign& design, const Eigen::MatrixXd& H, const Eigen::VectorXd& g,
                  const Eigen::VectorXd& coefficients, bool with_covariance);
 
-/// Least squares with `weights` from `start` (its distance is kept where it is not free).
+/// Fits by least squares with `weights` from `start`, whose distance is kept where the distance is
+/// not free.
 EmSolution FitEm(const std::vector<EmPair>& pairs, const std::vector<double>& weights,
                  const EmDesign& design, const EmSolution& start);
 
-/// The closed-form registration (Arun 1987) with the sensor `distance_m` behind the tip, then least
-/// absolute residuals with the distance free.
+/// Fits the registration in closed form (Arun 1987) with the sensor `distance_m` behind the tip,
+/// then by least absolute residuals with the distance free.
 EmSolution RobustEm(const std::vector<EmPair>& pairs, double distance_m);
 
 }  // namespace flextip

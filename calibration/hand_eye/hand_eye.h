@@ -113,8 +113,8 @@ struct HandEyeResult {
 /// half of the views disagree with, and what fits only with the other mount; `message` says so.
 HandEyeResult CalibrateHandEye(const HandEyeInput& input, const HandEyeOptions& options = {});
 
-/// The result under the names of docs/formats.md. `board` is "board", or "tags0" for the collar, of
-/// which T_WE is found.
+/// Returns the result under the names of docs/formats.md. `board` is "board", or "tags0" for the
+/// collar, which gives T_WE.
 Calibration HandEyeCalibration(const HandEyeResult& result, const std::string& board = "board");
 
 }  // namespace flextip

@@ -45,8 +45,9 @@ struct TipBudget {
   Eigen::Vector3d depth_R = Eigen::Vector3d::UnitX();  ///< from the camera to the tip, unit
   std::vector<BudgetPart> parts;
   Eigen::Vector3d bend_R = Eigen::Vector3d::Zero();  ///< of the tip against the rigid shaft (m)
-  /// Of all parts in the total. They are taken for independent: a hand-eye calibration made with
-  /// the same lens has taken up some of the lens's error, and the truth is then less than this.
+  /// Returns the covariance (m^2) of all parts in the total, taken for independent. A hand-eye
+  /// calibration made with the same lens has taken up some of the lens's error; the true covariance
+  /// is then less.
   Eigen::Matrix3d TotalCovariance() const;
 };
 
@@ -56,7 +57,7 @@ struct DepthAndAcross {
 };
 DepthAndAcross SplitByDepth(const Eigen::Matrix3d& covariance_R, const Eigen::Vector3d& depth_R);
 
-/// The budget of a tip that was found by the corners of `tags`. Empty where these give no pose.
+/// Returns the budget of a tip found by the corners of `tags`. Empty where these give no pose.
 std::optional<TipBudget> BudgetOfTip(const CameraCalibration& camera, const TagCollar& collar,
                                      const std::vector<TagDetection>& tags,
                                      const ChainCovariance& chain,

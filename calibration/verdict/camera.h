@@ -31,7 +31,7 @@ struct JudgedStereo {
   CalibrationVerdict verdict;
 };
 
-/// The same of two cameras, left and right; their views are pairs in their order.
+/// Calibrates and judges two cameras, left and right; their views are pairs in their order.
 JudgedStereo CalibrateAndJudge(const std::array<CornersFile, 2>& eyes,
                                const StereoOptions& options = {});
 

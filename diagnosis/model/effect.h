@@ -112,7 +112,7 @@ class Effect {
   virtual std::optional<ScannedParameter> Scanned(const SampleSet&) const { return {}; }
   /// Returns the two shapes at `now`, by which amplitudes move the scanned inputs.
   virtual Eigen::Vector2d ScanShapes(double value, const Instant& now) const;
-  /// The value about which the scanned parameter is fitted.
+  /// Returns the value about which the scanned parameter is fitted.
   virtual double ScanCentre() const { return 0.0; }
   virtual void SetScanCentre(double /*value*/) {}
 

@@ -16,9 +16,8 @@ namespace flextip::diagnosis {
 /// sensor_prediction do, the latter backwards.
 class ExtendedInstrument : public InstrumentModel {
  public:
-  /// Of `base` the instrument, port, gravity and the camera's pose are taken. Throws InputError for
-  /// an effect that is neither in the catalogue nor in
-  /// `own`.
+  /// Takes instrument, port, gravity and the camera's pose from `base`. Throws InputError for an
+  /// effect that is neither in the catalogue nor in `own`.
   ExtendedInstrument(const ExtendedModel& model, const Recording& base,
                      const EffectMakers& own = {});
   ~ExtendedInstrument() override;

@@ -20,7 +20,8 @@ struct ExtendedModel {
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< which EM gradients are about
   TimeNs start_ns = 0;                                 ///< t = 0 of phases and drifts
 
-  /// Of effects or those within tolerance; null where it is not there.
+  /// Returns the fit of an effect beyond or within tolerance; null where the model does not have
+  /// the effect.
   const EffectFit* Find(const std::string& effect) const;
 };
 

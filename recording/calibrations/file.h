@@ -30,8 +30,8 @@ struct Calibration {
   };
   std::vector<Unobservable> unobservable;
 
-  /// `NAME.w[0..2]`, `NAME.p[0..2]` for each pose, then `NAME` or `NAME[i]` for the numbers; each
-  /// kind in alphabetical order of the names.
+  /// Returns `NAME.w[0..2]`, `NAME.p[0..2]` for each pose, then `NAME` or `NAME[i]` for the
+  /// numbers; each kind in alphabetical order of the names.
   std::vector<std::string> CoordinateNames() const;
   /// Rows and columns of `covariance` that belong to one entry: the first one's place, and how
   /// many. Throws InputError where there is no such entry.
@@ -39,7 +39,7 @@ struct Calibration {
     int first = 0, count = 0;
   };
   Range RangeOf(const std::string& name) const;
-  /// That entry's block of `covariance`; empty where that is.
+  /// Returns that entry's block of `covariance`; empty where the covariance is.
   Eigen::MatrixXd CovarianceOf(const std::string& name) const;
 };
 
@@ -50,7 +50,7 @@ void AddLens(const std::string& camera, const CameraCalibration& lens, Calibrati
 /// of another size, order or sign.
 Calibration ReadCalibration(const std::filesystem::path& file);
 
-/// Every number exact. Throws WorkError where the disk refuses, or where there are NaNs.
+/// Writes every number exactly. Throws WorkError where the disk refuses, or where there are NaNs.
 void WriteCalibration(const std::filesystem::path& file, const Calibration& calibration);
 
 }  // namespace flextip

@@ -13,14 +13,14 @@ struct GreyRange {
   double black = 0.0, white = 65535.0;
 };
 
-/// The picture in blue, green, red with 8 bits. Throws InputError naming the file where it is
+/// Reads a picture in blue, green, red with 8 bits. Throws InputError naming the file where it is
 /// missing, empty, cut off or no picture, and for pixels of other than 8 or 16 bits.
 Image ReadImageFile(const std::filesystem::path& file);
 
-/// The same with one channel where the file has one.
+/// Reads the same, with a single channel where the file has a single channel.
 Image ReadGreyOrColour(const std::filesystem::path& file, const GreyRange& range = {});
 
-/// A copy with three channels.
+/// Returns a copy with three channels.
 Image ToColour(const Image& image);
 
 /// Keeps the video library's own messages off stderr. Before the first video is opened.

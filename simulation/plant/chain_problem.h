@@ -79,10 +79,10 @@ struct ChainState {
   double contact = 0.0;                         ///< force of the second contact
 };
 
-/// All that acts on the shaft but the wrist: the force on the arm.
+/// Returns the force on the arm (N, in R): all that acts on the shaft but the wrist.
 Eigen::Vector3d ForceOnArm(const ChainProblem& problem, const ChainState& state);
 
-/// Where the true wrist is.
+/// Returns the true wrist's place (m, in R).
 inline Eigen::Vector3d TrueWrist(const ChainProblem& problem, const ChainState& state) {
   if (problem.wrist_compliance == 0.0) return Eigen::Vector3d::Zero();
   return problem.wrist_compliance * ForceOnArm(problem, state);

@@ -87,7 +87,7 @@ struct Hazards {
   std::vector<OtherInstrument> others;
   std::vector<int> mirrored_tags;  ///< ids that the printer mirrored, left for right
 
-  /// Of the lens and all that is out of focus.
+  /// Returns the blur (px, standard deviation) of the lens and of all defocus.
   double BlurAt(int frame, double lens_sigma_px) const {
     double squared = lens_sigma_px * lens_sigma_px;
     for (const Defocus& d : defocus) squared += std::pow(d.SigmaAt(frame), 2);

@@ -13,7 +13,7 @@ namespace flextip::simulation {
 /// first, after the last it is the last.
 class PoseHistory {
  public:
-  /// In increasing time; an entry at the last one's time replaces it.
+  /// Adds a pose. Times increase; a pose at the last time replaces the last.
   void Add(TimeNs t_ns, const Pose& pose);
   /// Needs an entry.
   Pose At(TimeNs t_ns) const;
