@@ -30,7 +30,7 @@ Eigen::Matrix3d DirectionByRegistration(const Eigen::Matrix3d& J_tip_wrist,
 
 enum class DirectionPriority {
   kWeighted,       ///< one compromise, by the two tolerances
-  kPositionFirst,  ///< the position but along `free_axis`; the direction in what is left
+  kPositionFirst,  ///< the position but along `free_axis`; the direction in the rest
 };
 
 struct DirectionOptions {
@@ -70,8 +70,8 @@ struct DirectionOutput {
 /// One controller. A step takes and returns fixed-size data, allocates nothing and is bounded.
 ///
 /// Place and direction are five conditions, the pinned wrist has three axes: with all of the place
-/// held nothing is left for the direction. What can be had is a compromise, or the direction in
-/// exchange for a part of the place that does not matter.
+/// held nothing is left for the direction. Possible are a compromise, or the direction in exchange
+/// for a part of the place that does not matter.
 class DirectionController {
  public:
   explicit DirectionController(const DirectionOptions& options) : options_(options) {}

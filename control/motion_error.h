@@ -1,10 +1,10 @@
-// How far a Jacobian controller's motion misses the desired one: the measures of the thesis's
-// chapter 2, fast enough for every cycle of a control loop.
+// The difference between a Jacobian controller's motion and the desired motion: the measures of the
+// thesis's chapter 2, fast enough for every cycle of a control loop.
 //
-// J is the true Jacobian, J_hat the one the controller inverts, k its gain (2.1). The tip moves by
-// A dx_d with A = k J J_hat^-1 (2.2), and G = I - A maps the desired motion to what is left (2.5).
-// J and J_hat are N x N with N = 2 or 3, both from the same joints or wrist (any unit) to the same
-// frame. Directions are unit vectors of dx_d in that frame; their sign means nothing.
+// J is the true Jacobian, J_hat the Jacobian that the controller inverts, k its gain (2.1). The tip
+// moves by A dx_d with A = k J J_hat^-1 (2.2), and G = I - A maps the desired motion to the rest
+// (2.5). J and J_hat are N x N with N = 2 or 3, both from the same joints or wrist (any unit) to
+// the same frame. Directions are unit vectors of dx_d in that frame; their sign means nothing.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,5 +1,5 @@
-// Virtual fixtures: what keeps a desired tip position out of a forbidden region, or draws it to a
-// path, before a controller is given it (thesis 5.2.6; Abbott and Okamura 2003, Marayong 2003).
+// Virtual fixtures: they keep a desired tip position out of a forbidden region, or draw it to a
+// path, before the controller gets it (thesis 5.2.6; Abbott and Okamura 2003, Marayong 2003).
 #pragma once
 
 #include <Eigen/Dense>
@@ -19,7 +19,7 @@ const char* Name(FixtureStatus status);
 /// Everything in R.
 struct FixtureOutput {
   FixtureStatus status = FixtureStatus::kBadInput;
-  Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();  ///< what to give the controller
+  Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();  ///< for the controller
   double depth_m = 0.0;  ///< of the input in the region; negative: its distance from it
   Eigen::Vector3d normal =
       Eigen::Vector3d::Zero();  ///< unit, out of the region, at the nearest place

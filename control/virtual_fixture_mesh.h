@@ -33,8 +33,8 @@ class ForbiddenMesh {
   /// mesh is not closed with all triangles turned the same way.
   explicit ForbiddenMesh(TriangleMesh mesh, bool forbidden_outside = false);
 
-  /// As the functions of that name in virtual_fixture.h. In hollows the margin may take several
-  /// moves; there are eight at most.
+  /// Constrains as the functions of that name in virtual_fixture.h. In hollows the margin may take
+  /// several moves; there are eight at most.
   FixtureOutput Constrain(const Eigen::Vector3d& p, double margin_m = 0.0) const noexcept;
 
   /// Returns the nearest place by a tree of boxes; at worst looks at every triangle. `p` finite.

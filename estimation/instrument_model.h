@@ -1,5 +1,5 @@
 // A found model as estimation and the closed loop use it. Implemented where the model is known
-// (diagnosis/), so that neither needs to know what effects there are.
+// (diagnosis/), so that neither needs to know the effects.
 #pragma once
 
 #include <Eigen/Dense>
@@ -10,8 +10,8 @@
 
 namespace flextip {
 
-/// The instrument and its sensors as they are at one instant after the other: what rubs or has play
-/// remembers where it came from.
+/// The instrument and its sensors at each instant in turn: friction and play remember earlier
+/// motion.
 class InstrumentModel {
  public:
   virtual ~InstrumentModel() = default;

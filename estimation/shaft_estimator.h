@@ -23,8 +23,8 @@ struct EstimatorOptions {
   Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();
   double port_prior_m = kPortRegistration_m;  ///< standard deviation per axis of p_RP
   double force_prior_units = 4.0;  ///< standard deviation of the tip force in units of EI / L^2
-  /// False: only what a system without tip tracking has (orientations, strain, load, no tip or EM
-  /// position), for the controllers that calculate the tip.
+  /// False: only the measurements of a system without tip tracking (orientations, strain, load, no
+  /// tip or EM position), for the controllers that calculate the tip.
   bool use_positions = true;
   bool estimate_tissue = true;  ///< df_tip/dp_tip from how the load changed with the tip
 };

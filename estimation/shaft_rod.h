@@ -32,7 +32,7 @@ struct ShaftRodState {
   bool has_axes = false;  ///< y and dy of the sections are there: the rod is not plain
   ShaftSection wrist;     ///< where it truly is
   ShaftSection end;       ///< of the shaft
-  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();  ///< the tip: the end and what gives way there
+  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();  ///< the tip: the end and its yield there
   RodDerivative dp_RE = RodDerivative::Zero();
   std::array<ShaftSection, kMaxShaftStations> stations;
   double s_port_m = 0.0;

@@ -12,7 +12,7 @@ namespace flextip {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// Where the wrist was and what pushed, in RodParameters' units: wrist, force.
+/// The wrist's place and the force, in RodParameters' units: wrist, force.
 struct WindowSample {
   Measurements measurements;
   ShaftProblem shaft;
@@ -27,8 +27,8 @@ class WindowPort {
  public:
   WindowPort(int samples, double prior_m, bool use_positions);
 
-  /// Adds a sample and, where there is no room, drops the older one of the two whose wrists are
-  /// nearest each other: what is left is spread.
+  /// Adds a sample and, where there is no room, drops the older of the two whose wrists are nearest
+  /// each other: the rest stays spread.
   void Add(const WindowSample& sample);
 
   /// Fits by Gauss-Newton over the shift and every sample's own unknowns, which are eliminated

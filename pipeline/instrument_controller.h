@@ -32,7 +32,7 @@ struct InstrumentControllerOptions {
   bool straight_at_registered_port = false;
 };
 
-/// What one cycle is given. Fixed size but for the pictures, which stay the caller's.
+/// The inputs of a cycle. Fixed size but for the pictures, which stay the caller's.
 struct ControllerInputs {
   TimeNs t_ns = 0;                         ///< of the cycle; not before the last one
   SensorReadings sensors;                  ///< the newest sample of each stream; a tip counts once
@@ -42,7 +42,7 @@ struct ControllerInputs {
   std::optional<Eigen::Vector3d> d_RE_desired;  ///< the tip's direction, any length
 };
 
-/// What one cycle says. Fixed size; all in R.
+/// The result of a cycle. Fixed size; all in R.
 struct ControllerCommand {
   TimeNs t_ns = 0;
   ControlStatus status = ControlStatus::kNoWrist;
@@ -52,7 +52,7 @@ struct ControllerCommand {
   Measurements measurements;                               ///< gathered, seen and corrected
   ShaftEstimate estimate;
   std::optional<Eigen::Vector3d> p_RE_measured;  ///< the tip as the controller was given it
-  FixturesOutput goal;                           ///< what was wanted, kept by the fixtures
+  FixturesOutput goal;                           ///< the wish, kept by the fixtures
 };
 
 /// The whole cycle. A function of its inputs and its own state: the same inputs give the same

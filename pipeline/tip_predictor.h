@@ -17,8 +17,8 @@ namespace flextip {
 struct TipPredictorOptions {
   double force_prior_units = 0.5;  ///< sd of an unknown tip force, in EI / L^2
   double port_prior_m = kPortRegistration_m;
-  /// The load's own wandering, a random walk: sd in EI / L^2 after one second. What the seen tips
-  /// say of it takes over, but for a floor.
+  /// The load's own wandering, a random walk: sd in EI / L^2 after one second. The wandering that
+  /// the seen tips show takes over, but for a floor.
   double force_drift_units = 0.1, least_force_drift_units = 0.03;
   /// Sd of the tip's way by the model's error, over the way itself.
   double way_error = 0.05;
@@ -28,11 +28,11 @@ struct TipPredictorOptions {
   double direction_error_rad = 0.005;  ///< of a shaft that is not quite straight
 };
 
-/// Before the tip was seen: what the other sensors say (ShaftEstimator; the unloaded shaft with a
-/// wide covariance where they do not see the load). After it: the last seen pose carried on by how
-/// far the model has moved since, with the port and the load that the seen tip told, joined by the
-/// covariances with what the other sensors say where those see the load. The carried pose is sharp
-/// at first and loses to load drift and distance.
+/// Before the tip was seen: the tip by the other sensors (ShaftEstimator; the unloaded shaft with a
+/// wide covariance where they do not see the load). Afterwards: the last seen pose carried on by
+/// the model's motion since, with the port and the load that the seen tip told. Where the other
+/// sensors see the load, their tip is joined by the covariances. The carried pose is sharp at first
+/// and loses to load drift and distance.
 class TipPredictor {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;

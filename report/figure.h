@@ -42,7 +42,7 @@ struct FigureBand {
 };
 
 struct Figure {
-  std::string name = {};  ///< "fig-2-4a": what files and links call it
+  std::string name = {};  ///< "fig-2-4a": in files and links
   std::string title = {}, caption = {};
   std::string x_label = {}, y_label = {}, z_label = {};  ///< with the unit: "depth (mm)"
   bool log_x = false, log_y = false;

@@ -32,7 +32,7 @@ class Report {
   void AddWarnings(const std::vector<std::string>& warnings);
   void AddHeading(const std::string& text);
   void AddTable(const Table& table);
-  /// As it stands: for parts that a page draws itself. Its texts must be escaped already.
+  /// Adds HTML unchanged: for parts that a page draws itself. Its texts must be escaped already.
   void AddHtml(const std::string& html) { body_ += html; }
   /// Adds figures, side by side where there are several and the page is wide. Those of a page are
   /// all in space or all flat with fields or bars: lines alone go with both.
@@ -40,7 +40,7 @@ class Report {
   void AddFigure(const Figure& figure) { AddFigures({figure}); }
   /// Adds a figures.json. Throws InputError where the file is no list of figures.
   void AddFigureFile(const std::filesystem::path& file);
-  /// Pictures side by side, each a PNG or JPEG file's bytes with a caption.
+  /// Adds pictures side by side, each a PNG or JPEG file's bytes with a caption.
   void AddPictures(const std::vector<std::pair<std::string, std::string>>& bytes_and_captions);
 
   /// Returns the whole page.

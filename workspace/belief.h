@@ -1,4 +1,4 @@
-// What a controller believes that is not so, and the Jacobian it inverts therefore.
+// A controller's wrong beliefs, and the Jacobian that it inverts therefore.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// Paths of the tip that trade length against motion errors (thesis 2.4), and what a controller
-// makes of them.
+// Paths of the tip that trade length against motion errors (thesis 2.4), and a controller's motion
+// along them.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace flextip {
 
-/// A metre costs 1 + weight * DirectionError: what matters is the error of the direction
-/// travelled, not the worst of all directions.
+/// A metre costs 1 + weight * DirectionError: the error of the direction travelled counts, not the
+/// worst of all directions.
 struct PlanOptions {
   MotionFault fault = MotionFault::kStray;
   double weight = 1.0;

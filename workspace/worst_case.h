@@ -19,7 +19,7 @@ struct ErrorBounds {
 
 template <int N>
 struct WorstError {
-  double value = 0.0;         ///< of the measure; see FindWorst for what infinite and pi mean
+  double value = 0.0;         ///< of the measure; see FindWorst for infinite and pi
   BeliefError<N> error = {};  ///< of the set, added to the setup's
 };
 

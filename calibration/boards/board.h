@@ -1,4 +1,4 @@
-// Flat boards to calibrate from: what they are, and where they are seen in a picture.
+// Flat boards to calibrate from: their description, and their corners in a picture.
 #pragma once
 
 #include <Eigen/Dense>

@@ -9,7 +9,7 @@
 
 namespace flextip {
 
-/// What was seen of one board by one camera.
+/// The corners of a board in a camera's pictures.
 struct CornersFile {
   std::string board;  ///< as ParseBoardSpec reads it
   int width_px = 0, height_px = 0;

@@ -1,4 +1,4 @@
-// Which lens model: the one that predicts views it has not seen.
+// The choice of the lens model, by its prediction of held-out views.
 #pragma once
 
 #include <optional>

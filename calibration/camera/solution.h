@@ -1,4 +1,4 @@
-// A camera's lens, its board and where that was, all at once: what bundle adjustment ends with.
+// The result of bundle adjustment: a camera's lens, its board and the board's places together.
 #pragma once
 
 #include <Eigen/Dense>
@@ -34,8 +34,8 @@ struct BoardWarp {
 struct BoardShape {
   std::map<int, Eigen::Vector3d> offset_B;  ///< by corner id, from where the warped board has it, m
   double sd_m = 0.0;  ///< prior standard deviation of each coordinate; 0: the board as described
-  /// The root of the mean squared coordinate that the offsets and their own uncertainty speak for:
-  /// the `sd_m` that the views themselves would have chosen is the one that equals it.
+  /// The root of the mean squared coordinate of the offsets, their own uncertainty included. The
+  /// views would choose an `sd_m` that equals this value.
   double scatter_m = 0.0;
 
   Eigen::Vector3d Of(int id) const {
@@ -68,7 +68,7 @@ struct SolvedView {
 ///     for flat, 0,
 ///   - for each view (dw, dp), 6 numbers (rad, m): its T_CB becomes (exp([dw]x) R, p + dp).
 /// A projection that moves with the poses (mrcal's: the lens and the views may trade off against
-/// each other) has a Jacobian over all of them; `Covariance()` is what it is to be multiplied with.
+/// each other) has a Jacobian over all of them, to be multiplied with `Covariance()`.
 struct CameraSolution {
   CameraCalibration camera;
   BoardWarp warp;

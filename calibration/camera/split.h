@@ -7,9 +7,10 @@
 
 namespace flextip {
 
-/// How far two lenses put the same points of the world apart, over the part of the picture where
-/// corners were seen: at the median distance of the boards, after the best rigid motion of one
-/// camera against the other (what a lens does not tell from the pose is no difference).
+/// The distance between the places where two lenses put the same points of the world, over the part
+/// of the picture where corners were seen. It holds at the median distance of the boards, after the
+/// best rigid motion of the first camera against the second: a lens's part that looks like a pose
+/// is no difference.
 struct ProjectionDifference {
   double rms_px = 0.0, max_px = 0.0;
 };

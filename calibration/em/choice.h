@@ -1,4 +1,4 @@
-// Which field the data call for, by how well it says what it was not fitted to.
+// The choice of the field, by its prediction of data left out of the fit.
 #pragma once
 
 #include <string>

@@ -8,9 +8,9 @@
 
 namespace flextip {
 
-/// What is free beside the registration: the sensor's distance from the tip, a field over a box.
-/// So that field and registration do not mean the same, the field neither shifts nor turns its box:
-/// a polynomial has no constant and a symmetric linear part, a spline's coefficients no mean and no
+/// The free parameters beside the registration: the sensor's distance from the tip, a field over a
+/// box. To stay separate from the registration, the field neither shifts nor turns its box: a
+/// polynomial has no constant and a symmetric linear part, a spline's coefficients no mean and no
 /// mean turn about its middle.
 struct EmDesign {
   bool free_distance = true;
@@ -34,7 +34,7 @@ struct EmSolution {
 
 /// Returns the corrected sensor less the reference (m), in R.
 Eigen::Vector3d EmError(const EmPair& pair, const EmSolution& solution);
-/// Its length in stated standard deviations.
+/// Returns the error's length in stated standard deviations.
 double EmSigmas(const EmPair& pair, const EmSolution& solution);
 
 /// Whitened errors at a solution and their derivative by the design's parameters, three rows a pair

@@ -1,6 +1,6 @@
 // A recording with known loads on the tip (hung masses, a load cell) as a list of holds: spans in
-// which one load is stated and the wrist stands still. What is averaged over a hold loses its
-// noise; what is stated of its load is wrong once.
+// which the stated load is constant and the wrist stands still. The mean over a hold loses the
+// sensors' noise; the error of the stated load counts once.
 #pragma once
 
 #include <Eigen/Dense>

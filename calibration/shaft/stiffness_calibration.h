@@ -40,7 +40,7 @@ struct StiffnessHoldResult {
   std::string reason;  ///< why not
 };
 
-/// What is left at like insertions.
+/// Residuals at like insertions.
 struct InsertionResidual {
   double inserted_m = 0.0;  ///< beyond the port, mean
   int holds = 0;

@@ -34,7 +34,7 @@ struct StrainCalibration {
   double largest_moment_Nm = 0.0;
   std::vector<StrainHoldResult> holds;
   bool insertions_alike = false;  ///< why the gages are not known: `stations_apart` would do
-  Calibration found;              ///< what calibration.yaml gets
+  Calibration found;              ///< for calibration.yaml
   std::string advice;             ///< which further load would help most
 };
 

@@ -10,7 +10,7 @@
 
 namespace flextip {
 
-/// One hold: what the gages read and what the load says.
+/// One hold: the gages' readings, and the moments by the load.
 struct GageSample {
   Eigen::Vector4d readings = Eigen::Vector4d::Zero(), m_Nm = Eigen::Vector4d::Zero();
   Eigen::Vector4d reading_sd = Eigen::Vector4d::Ones();    ///< of `readings`
@@ -41,7 +41,7 @@ struct GageFitOptions {
 /// 30 times the typical value.
 GageFit FitGages(const std::vector<GageSample>& samples, const GageFitOptions& options);
 
-/// What the fit leaves of one sample, and the covariance that should have.
+/// The residual of a sample, and its expected covariance.
 struct GageResidual {
   Eigen::Vector4d readings;
   Eigen::Matrix4d covariance;

@@ -1,5 +1,5 @@
-// Two cameras fixed to each other, their board and where that was: what stereo bundle adjustment
-// ends with.
+// The result of stereo bundle adjustment: two cameras fixed to each other, their board and the
+// board's places.
 #pragma once
 
 #include <Eigen/Dense>
@@ -10,7 +10,7 @@
 
 namespace flextip {
 
-/// One moment. `eyes` hold what each camera saw; one that saw nothing has no corners.
+/// One moment. `eyes` hold each camera's corners; a camera that saw nothing has none.
 struct StereoView {
   std::size_t index = 0;  ///< among all pairs given
   Pose T_C0B;

@@ -11,7 +11,7 @@
 
 namespace flextip {
 
-/// What was seen at one moment; an eye may have seen no board (its sighting's `reason` says why).
+/// The sightings of one moment; an eye may have seen no board (its sighting's `reason` says why).
 struct StereoPair {
   std::array<BoardView, 2> eyes;
 };

@@ -12,16 +12,16 @@
 
 namespace flextip {
 
-/// What is known of the calibrations' errors; empty: not known, and not in the budget.
+/// The known covariances of the calibrations; empty: not known, and not in the budget.
 struct ChainCovariance {
   Eigen::MatrixXd lens;        ///< of fu, fv, cu, cv (px), then the coefficients
   Eigen::MatrixXd hand_eye;    ///< 6x6, of (dw, dp) of T_RC (rad, m)
   Eigen::MatrixXd tip_offset;  ///< 3x3, of the tip in E (m)
 };
 
-/// What bends the shaft between collar and tip. With the force measured (`load0`) the tracker
-/// corrects the bend, and what is left is how well force and stiffness are known; else it takes the
-/// shaft for rigid, and is off by all of it.
+/// The bend of the shaft between collar and tip. With the force measured (`load0`) the tracker
+/// corrects the bend; the errors of force and stiffness remain. Else the tracker takes the shaft
+/// for rigid, and is off by all of the bend.
 struct TipBending {
   Eigen::Vector3d f_R = Eigen::Vector3d::Zero();         ///< force on the tip (N)
   Eigen::Vector3d weight_N_m = Eigen::Vector3d::Zero();  ///< of the shaft per length, in R

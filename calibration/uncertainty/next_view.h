@@ -20,8 +20,8 @@ struct NextView {
   std::string words;                       ///< "hold the board in the upper left, ..."
 };
 
-/// Places of the board of which all corners would be seen: in nine parts of the picture and at
-/// four distances, facing the camera and tilted four ways.
+/// Returns places of the board at which all corners would be seen: in nine parts of the picture and
+/// at four distances, facing the camera and tilted four ways.
 std::vector<Pose> CandidateViews(const CameraSolution& solution,
                                  const std::vector<Eigen::Vector3d>& x_B);
 

@@ -13,11 +13,11 @@ namespace flextip {
 
 /// Calibrate again from corners with other noise: lens, camera and boards come out a little
 /// different, together. A point that stands still in the world, that is relative to the boards, is
-/// then expected at another pixel; how far is what counts for measuring, and not how well each
-/// parameter alone is known (a longer focal length with the boards further away sees the same).
-/// As the boards do not move alike, the mean over them is the world, as in mrcal ("mean-pcam",
-/// https://mrcal.secretsauce.net/uncertainty.html). Of that mean only a small turn and shift
-/// (w, t) are needed: a point x_C of the world is at x_C + w x x_C + t in the new camera.
+/// then expected at another pixel. The distance to that pixel counts for measuring, not the
+/// uncertainty of each parameter alone (a longer focal length with the boards further away sees the
+/// same). As the boards do not move alike, the mean over them is the world, as in mrcal
+/// ("mean-pcam", https://mrcal.secretsauce.net/uncertainty.html). Of that mean only a small turn
+/// and shift (w, t) are needed: a point x_C of the world is at x_C + w x x_C + t in the new camera.
 class ProjectionUncertainty {
  public:
   /// Returns the uncertainty of a calibrated camera. Empty where the views do not determine the
@@ -60,7 +60,7 @@ struct UncertaintyMap {
   std::vector<double> x_px, y_px;  ///< of the grid's columns and rows
   Eigen::MatrixXd sd_px;           ///< rows x columns; NaN where the lens model sees nothing
   Eigen::MatrixXd sd_mm;           ///< across, in the plane z = depth_m; empty at infinity
-  double MeanPx() const;           ///< over what is seen
+  double MeanPx() const;           ///< over the places seen
   double LargestPx() const;
   double CentrePx() const;
   double MeanMm() const;

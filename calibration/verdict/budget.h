@@ -14,7 +14,7 @@ struct UnknownPart {
   std::string part, reason;
 };
 
-/// Returns what to improve first: the largest part of the total, in words.
+/// Returns the part to improve first: the largest of the total, in words.
 std::string BudgetAdvice(const std::vector<BudgetPartSize>& parts);
 
 /// Judges `parts` as SummariseBudgets gives them, over `frames` frames.

@@ -1,4 +1,4 @@
-// Calibrations of one camera and of two, judged: from corners to what a page says of them.
+// Calibrations of one camera and of two, judged: from corners to the verdict of the page.
 #pragma once
 
 #include <array>

@@ -53,7 +53,7 @@ class InputChange {
     Derivative(j, input, factor);
   }
   void Add(int input, double value) { inputs_[input] += value; }
-  /// Returns the input as the effects before this one left it.
+  /// Returns the input as the earlier effects left it.
   double Input(int input) const { return inputs_[input]; }
   void Derivative(int j, int input, double value) {
     if (value != 0.0) columns_.push_back({first_ + j, input, value});

@@ -1,5 +1,4 @@
-// What a diagnosis found, as something that can be kept in a file and used: model.yaml
-// (docs/formats.md).
+// The result of a diagnosis as a model to keep in a file and use: model.yaml (docs/formats.md).
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,4 +1,5 @@
-// calibration.yaml: what a calibration found, with its covariance and what it could not find.
+// calibration.yaml: the values that a calibration found, their covariance, and the values not
+// found.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,8 +13,8 @@
 
 namespace flextip {
 
-/// What a calibration found. Names are places of a recording (docs/formats.md): `cam0.T_RC`,
-/// `strain0.gage_matrix`, `instrument.bending_stiffness_Nm2`.
+/// The values that a calibration found. Names are places of a recording (docs/formats.md):
+/// `cam0.T_RC`, `strain0.gage_matrix`, `instrument.bending_stiffness_Nm2`.
 struct Calibration {
   std::string kind;                                    ///< "hand-eye", "tip", "em", ...
   std::map<std::string, Pose> poses;                   ///< by name
@@ -24,7 +25,7 @@ struct Calibration {
   /// one being (exp([dw]x) R, p + dp). Empty where it is not known.
   Eigen::MatrixXd covariance;
 
-  /// What the data could not tell.
+  /// The parameters that the data could not tell.
   struct Unobservable {
     std::string parameter, reason;
   };

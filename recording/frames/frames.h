@@ -29,7 +29,7 @@ void SilenceVideoCodecs();
 /// Throws WorkError where the disk refuses.
 void WritePng(const std::filesystem::path& file, const Image& image);
 
-/// A video written frame by frame. What was not closed by Finish is of no use.
+/// A video written frame by frame. A file not closed by Finish is of no use.
 class VideoFile {
  public:
   VideoFile(const std::filesystem::path& file, double rate_hz);
@@ -43,7 +43,7 @@ class VideoFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The codecs write what they dislike straight to stderr; whoever calls them says it in one line.
+/// The codecs write their complaints straight to stderr; the caller reports them in one line.
 class QuietStderr {
  public:
   QuietStderr();

@@ -1,5 +1,5 @@
 // One reader and one writer for each sensor's folder. `folder` is RECORDING/wrist0 and so on;
-// readers throw InputError with file and line, and log what they had to skip.
+// readers throw InputError with file and line, and log skipped data.
 #pragma once
 
 #include <filesystem>

@@ -41,7 +41,7 @@ class CsvReader {
   /// Goes to the next row; false after the last. Throws InputError for a wrong number of fields.
   bool Next();
 
-  /// Fields of the current row; `column` counts as in the constructor's `columns`.
+  /// Returns a field of the current row; `column` counts as in the constructor's `columns`.
   std::string_view Text(std::size_t column) const;
   bool Empty(std::size_t column) const { return Text(column).empty(); }
   /// Returns a finite number. Throws InputError for anything else.

@@ -60,7 +60,7 @@ class ChainGeometry {
   ChainJoint joints_[3];  // without taper
 };
 
-/// Positions of the chain's nodes, true wrist to tip: n1 + n2 + 1 of them.
+/// Returns the positions of the chain's nodes, true wrist to tip: n1 + n2 + 1 of them.
 std::vector<Eigen::Vector3d> ChainNodes(const ChainProblem& problem, const ChainState& state);
 
 }  // namespace flextip::simulation

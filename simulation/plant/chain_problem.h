@@ -1,6 +1,6 @@
-// What the chain of chain.h is made of, what acts on it, and its state. Everything is in units of
-// the shaft's length L and of EI / L^2. The origin is the wrist where the arm would hold it without
-// force; the chain itself starts at the true wrist, which a yielding arm moves away from there.
+// The parts of the chain of chain.h, its loads, and its state. Everything is in units of the
+// shaft's length L and of EI / L^2. The origin is the wrist's place by the arm without force. The
+// chain itself starts at the true wrist, which a yielding arm moves away from the origin.
 #pragma once
 
 #include <Eigen/Dense>
@@ -16,7 +16,7 @@ struct ChainForce {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
 };
 
-/// What the port does besides holding the shaft sideways.
+/// The port's actions besides holding the shaft sideways.
 struct ChainPort {
   double compliance = 0.0;  ///< the port moves by this times the lateral force on it
   double play = 0.0;        ///< radius of the hole

@@ -1,4 +1,4 @@
-// What the plant is made of, and the chain it becomes.
+// The parts of the plant, and its chain.
 #pragma once
 
 #include <Eigen/Dense>

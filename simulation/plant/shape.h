@@ -1,4 +1,4 @@
-// One equilibrium of the plant: the shaft's shape and what acts on it.
+// One equilibrium of the plant: the shaft's shape and its loads.
 #pragma once
 
 #include <Eigen/Dense>
@@ -32,8 +32,8 @@ class PlantShape {
   Eigen::Vector3d f_wrist_N = Eigen::Vector3d::Zero();
   Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
 
-  // What effects change (plant_effects.h).
-  /// What encoders say; the true wrist is T_RW().p.
+  // Changed by effects (simulation/plant/effects.h).
+  /// The wrist by the encoders; the true wrist is T_RW().p.
   Eigen::Vector3d p_RW_measured = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();     ///< true centre of the port
   Eigen::Vector3d t_port = Eigen::Vector3d::UnitX();  ///< the shaft's tangent there

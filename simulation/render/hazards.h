@@ -1,4 +1,5 @@
-// What hides an instrument from the camera, or makes it hard to read: each in frames of its own.
+// Hazards that hide an instrument from the camera, or make it hard to read: each in frames of its
+// own.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,5 +1,4 @@
-// The laparoscope: what its camera sees of the shaft, the tag collar and the tissue, as 8-bit
-// video.
+// The laparoscope: its camera's view of the shaft, the tag collar and the tissue, as 8-bit video.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,4 +1,4 @@
-// What a pose was a moment ago, for sensors whose samples are stamped late.
+// A pose's recent past, for sensors whose samples are stamped late.
 #pragma once
 
 #include <deque>
@@ -15,7 +15,7 @@ class PoseHistory {
  public:
   /// Adds a pose. Times increase; a pose at the last time replaces the last.
   void Add(TimeNs t_ns, const Pose& pose);
-  /// Needs an entry.
+  /// Returns the pose at `t_ns`. Needs an entry.
   Pose At(TimeNs t_ns) const;
 
  private:

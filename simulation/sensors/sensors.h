@@ -65,8 +65,8 @@ class Sensors {
   Sensors(const SensorSetup& setup, std::uint64_t seed, const SensorEffects& effects = {});
 
   /// Adds the samples that fall due in (last call, t_ns] to `recording`'s streams, all taken from
-  /// `shape` at the time they are due; a sensor with latency takes it from what it was then. Call
-  /// it with increasing times, and for latency often enough that a cubic follows the motion.
+  /// `shape` at the time they are due; a sensor with latency takes them from the earlier shape.
+  /// Call it with increasing times, and for latency often enough that a cubic follows the motion.
   /// Before kSimulationStart_ns nothing is due: such calls only give the latencies their past.
   void Sample(const PlantShape& shape, TimeNs t_ns, Recording& recording);
 

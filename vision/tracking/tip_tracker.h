@@ -18,7 +18,7 @@
 
 namespace flextip {
 
-/// What one frame said.
+/// The result of a frame.
 struct TipTrack {
   TipObservation tip;              ///< in R; d_RE only where the tags were seen
   std::vector<TagDetection> tags;  ///< in the first camera: detected, or where the fit puts them
