@@ -16,8 +16,8 @@ struct StatedMoments {
   Eigen::Vector4d by_roll;  ///< of the instrument about its axis
   double s_port_m = 0.0;
 
-  /// Returns the covariance (Nm^2) by the errors of load, wrist and roll. The port is common to all
-  /// holds, and not in it.
+  /// Returns the covariance ((Nm)^2) by the errors of load, wrist and roll. The port is common to
+  /// all holds, and not in it.
   Eigen::Matrix4d Covariance(const LoadHold& hold) const;
 };
 
