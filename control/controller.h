@@ -20,9 +20,9 @@ enum class ControllerKind {
 };
 inline constexpr int kControllerKinds = 6;
 
-/// "straight-calculate", "straight-track", ... as in scenario files and summaries.
+/// Returns "straight-calculate", "straight-track", ... as in scenario files and summaries.
 const char* Name(ControllerKind kind);
-/// Empty for a name that is none of them.
+/// Returns the kind of that name; empty for an unknown name.
 std::optional<ControllerKind> ControllerKindNamed(std::string_view name);
 bool UsesTipMeasurement(ControllerKind kind);
 

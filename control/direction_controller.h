@@ -18,18 +18,19 @@ struct TipJacobians {
   Eigen::Matrix3d direction = Eigen::Matrix3d::Zero();  ///< d d_RE / d p_RW (rad/m), rank 2 at most
 };
 
-/// From the exact rod's derivatives, the load following the tip by `stiffness` = df/dp (N/m).
+/// Returns the Jacobians by the exact rod's derivatives; the load follows the tip by `stiffness` =
+/// df/dp (N/m).
 TipJacobians TipJacobiansOf(const ShaftRodState& rod, const Eigen::Matrix3d& stiffness);
 
-/// The direction's Jacobian as the thesis proposes (3.5): the shape does not change, it only turns
-/// with the chord from wrist to tip. `J_tip_wrist` of any model; m, in R.
+/// Returns the direction's Jacobian as the thesis proposes (3.5): the shape stays, and turns with
+/// the chord from wrist to tip. `J_tip_wrist` of any model; m, in R.
 Eigen::Matrix3d DirectionByRegistration(const Eigen::Matrix3d& J_tip_wrist,
                                         const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_RE,
                                         const Eigen::Vector3d& d_RE);
 
 enum class DirectionPriority {
   kWeighted,       ///< one compromise, by the two tolerances
-  kPositionFirst,  ///< the position but along `free_axis`; the direction in what is left
+  kPositionFirst,  ///< the position but along `free_axis`; the direction in the rest
 };
 
 struct DirectionOptions {
@@ -69,8 +70,8 @@ struct DirectionOutput {
 /// One controller. A step takes and returns fixed-size data, allocates nothing and is bounded.
 ///
 /// Place and direction are five conditions, the pinned wrist has three axes: with all of the place
-/// held nothing is left for the direction. What can be had is a compromise, or the direction in
-/// exchange for a part of the place that does not matter.
+/// held nothing is left for the direction. Possible are a compromise, or the direction in exchange
+/// for a part of the place that does not matter.
 class DirectionController {
  public:
   explicit DirectionController(const DirectionOptions& options) : options_(options) {}

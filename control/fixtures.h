@@ -1,5 +1,4 @@
-// The virtual fixtures of a run together: what becomes of a desired tip before a controller is
-// given it.
+// The virtual fixtures of a run together: they change a desired tip before the controller gets it.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,10 +1,10 @@
-// How far a Jacobian controller's motion misses the desired one: the measures of the thesis's
-// chapter 2, fast enough for every cycle of a control loop.
+// The difference between a Jacobian controller's motion and the desired motion: the measures of the
+// thesis's chapter 2, fast enough for every cycle of a control loop.
 //
-// J is the true Jacobian, J_hat the one the controller inverts, k its gain (2.1). The tip moves by
-// A dx_d with A = k J J_hat^-1 (2.2), and G = I - A maps the desired motion to what is left (2.5).
-// J and J_hat are N x N with N = 2 or 3, both from the same joints or wrist (any unit) to the same
-// frame. Directions are unit vectors of dx_d in that frame; their sign means nothing.
+// J is the true Jacobian, J_hat the Jacobian that the controller inverts, k its gain (2.1). The tip
+// moves by A dx_d with A = k J J_hat^-1 (2.2), and G = I - A maps the desired motion to the rest
+// (2.5). J and J_hat are N x N with N = 2 or 3, both from the same joints or wrist (any unit) to
+// the same frame. Directions are unit vectors of dx_d in that frame; their sign means nothing.
 #pragma once
 
 #include <Eigen/Dense>
@@ -48,17 +48,17 @@ struct AngleError {
   }
 };
 
-/// ||G||, v_sigma and phi_hat_max, (2.5), (2.6), (2.10). The bound is pi as soon as ||G||
+/// Finds ||G||, v_sigma and phi_hat_max, (2.5), (2.6), (2.10). The bound is pi as soon as ||G||
 /// exceeds 1.
 StepError<2> FindStepError(const Eigen::Matrix2d& J, const Eigen::Matrix2d& J_hat,
                            double gain = 1.0) noexcept;
 StepError<3> FindStepError(const Eigen::Matrix3d& J, const Eigen::Matrix3d& J_hat,
                            double gain = 1.0) noexcept;
 
-/// Exact phi_max and p_phi of (2.9), for any positive gain: an angle does not depend on it. Closed
-/// form in the plane. In space a search along a line that is proved to find the largest of several
-/// maxima to 1e-10 rad (within 1e-4 rad of pi: 2e-14 of the cosine), plus what rounding of J_hat's
-/// inverse adds (1e-16 times its condition).
+/// Finds the exact phi_max and p_phi of (2.9), for any positive gain: an angle does not depend on
+/// the gain. In the plane in closed form. In space by a search along a line that is proved to find
+/// the largest of several maxima to 1e-10 rad (within 1e-4 rad of pi: 2e-14 of the cosine), plus
+/// the rounding of J_hat's inverse (1e-16 times its condition).
 AngleError<2> FindLargestAngle(const Eigen::Matrix2d& J, const Eigen::Matrix2d& J_hat) noexcept;
 AngleError<3> FindLargestAngle(const Eigen::Matrix3d& J, const Eigen::Matrix3d& J_hat) noexcept;
 

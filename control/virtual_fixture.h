@@ -1,5 +1,5 @@
-// Virtual fixtures: what keeps a desired tip position out of a forbidden region, or draws it to a
-// path, before a controller is given it (thesis 5.2.6; Abbott and Okamura 2003, Marayong 2003).
+// Virtual fixtures: they keep a desired tip position out of a forbidden region, or draw it to a
+// path, before the controller gets it (thesis 5.2.6; Abbott and Okamura 2003, Marayong 2003).
 #pragma once
 
 #include <Eigen/Dense>
@@ -19,7 +19,7 @@ const char* Name(FixtureStatus status);
 /// Everything in R.
 struct FixtureOutput {
   FixtureStatus status = FixtureStatus::kBadInput;
-  Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();  ///< what to give the controller
+  Eigen::Vector3d p_RE_desired = Eigen::Vector3d::Zero();  ///< for the controller
   double depth_m = 0.0;  ///< of the input in the region; negative: its distance from it
   Eigen::Vector3d normal =
       Eigen::Vector3d::Zero();  ///< unit, out of the region, at the nearest place
@@ -38,11 +38,12 @@ struct ForbiddenSphere {
   bool forbidden_outside = false;
 };
 
-/// The desired position as near to `p` as it may be: out of the region and `margin_m` (0 or more)
-/// away from it. Bounded, without allocation, never throws.
+/// Returns the desired position as near to `p` as the region permits: outside, and `margin_m` (0 or
+/// more) away. Bounded, without allocation, never throws.
 FixtureOutput Constrain(const ForbiddenHalfSpace& region, const Eigen::Vector3d& p,
                         double margin_m = 0.0) noexcept;
-/// In the sphere's centre, where every direction is as near, it leaves along z.
+/// Returns the same for a sphere. In its centre, where every direction is as near, `p` leaves along
+/// z.
 FixtureOutput Constrain(const ForbiddenSphere& region, const Eigen::Vector3d& p,
                         double margin_m = 0.0) noexcept;
 
@@ -59,9 +60,9 @@ struct GuidanceOutput {
 /// through.
 class PathGuidance {
  public:
-  /// `points` (m, in R): two or more, finite, no two following ones the same. `compliance`: the
+  /// Takes two or more finite `points` (m, in R), no two following ones the same. `compliance`: the
   /// part of a deviation that is let through, 0 (on the path) to 1 (no guidance). Within
-  /// `free_radius_m` of the path nothing is changed. Throws InputError where one of them is not so.
+  /// `free_radius_m` of the path nothing is changed. Throws InputError where a value is not so.
   PathGuidance(std::vector<Eigen::Vector3d> points, double compliance = 0.0,
                double free_radius_m = 0.0);
 

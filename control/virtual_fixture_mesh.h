@@ -33,11 +33,11 @@ class ForbiddenMesh {
   /// mesh is not closed with all triangles turned the same way.
   explicit ForbiddenMesh(TriangleMesh mesh, bool forbidden_outside = false);
 
-  /// As the functions of that name in virtual_fixture.h. In hollows the margin may take several
-  /// moves; there are eight at most.
+  /// Constrains as the functions of that name in virtual_fixture.h. In hollows the margin may take
+  /// several moves; there are eight at most.
   FixtureOutput Constrain(const Eigen::Vector3d& p, double margin_m = 0.0) const noexcept;
 
-  /// By a tree of boxes; at worst it looks at every triangle. `p` finite.
+  /// Returns the nearest place by a tree of boxes; at worst looks at every triangle. `p` finite.
   MeshPlace Nearest(const Eigen::Vector3d& p) const noexcept;
 
   int TriangleCount() const { return static_cast<int>(mesh_.triangles.size()); }

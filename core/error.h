@@ -16,7 +16,7 @@ class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 
-  /// The message "FILE:LINE: what"; `line` 0 leaves the line out.
+  /// Returns an error "FILE:LINE: what"; `line` 0 leaves the line out.
   static InputError At(const std::string& file, long line, const std::string& what) {
     return InputError(line > 0 ? fmt::format("{}:{}: {}", file, line, what)
                                : fmt::format("{}: {}", file, what));

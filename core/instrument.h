@@ -11,7 +11,7 @@ struct Instrument {
   double mass_per_length_kg_m = 0.0;   ///< 0 where self-weight is not modelled
   double stiffness_taper = 0.0;        ///< E I (1 + taper (s / L - 1/2)), s from the wrist
 
-  /// E I at `s_m` from the wrist.
+  /// Returns E I (N m2) at `s_m` from the wrist.
   double StiffnessAt(double s_m) const {
     if (stiffness_taper == 0.0) return bending_stiffness_Nm2;
     return bending_stiffness_Nm2 * (1.0 + stiffness_taper * (s_m / length_m - 0.5));

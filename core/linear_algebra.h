@@ -8,7 +8,7 @@
 
 namespace flextip {
 
-/// A decomposition's right-hand sides and what shapes they have: those of the argument.
+/// The type of a solution: its shape is that of the right-hand sides.
 template <int N, class B>
 using SolutionOf =
     Eigen::Matrix<double, N == Eigen::Dynamic ? int(B::RowsAtCompileTime) : N, B::ColsAtCompileTime,
@@ -195,8 +195,8 @@ struct Svd {
   static Vector Values(const Matrix& A);
 };
 
-/// The size a decomposition of so many rows is compiled for: 2, 3, 6 and `also` have code of their
-/// own, all others are taken as dynamic.
+/// Returns the compiled size for so many rows: 2, 3, 6 and `also` have code of their own, all
+/// others are dynamic.
 constexpr int CompiledSize(int rows, int also = 6) {
   return rows == 2 || rows == 3 || rows == 6 || rows == also ? rows : Eigen::Dynamic;
 }

@@ -27,7 +27,7 @@ class StateText {
   bool Reading() const { return reading_; }
   const std::string& Text() const { return text_; }
 
-  /// Throw InputError where the text does not go on with such a value.
+  /// Visits a value. Throws InputError where the text does not go on with such a value.
   void operator()(double& value) { Number(value); }
   void operator()(std::int64_t& value) { Number(value); }
   void operator()(int& value) { Number(value); }
@@ -61,7 +61,7 @@ class StateText {
     (*this)(there);
     return there;
   }
-  /// After the last value. Throws InputError where more text follows.
+  /// Ends after the last value. Throws InputError where more text follows.
   void Finish() const {
     if (!reading_ || at_ == text_.size()) return;
     throw InputError("saved state: more than expected; it may be of other options");

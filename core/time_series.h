@@ -29,7 +29,7 @@ struct Bracket {
   double fraction = 0.0;
 };
 
-/// Empty where `t_ns` is outside the series: nothing is extrapolated.
+/// Returns the samples around `t_ns`; empty outside the series: nothing is extrapolated.
 template <class T>
 std::optional<Bracket> FindBracket(const Series<T>& series, TimeNs t_ns) {
   if (series.empty() || t_ns < series.front().t_ns || t_ns > series.back().t_ns) return {};

@@ -1,4 +1,4 @@
-// What a tip sensor says at one instant: vision produces it, recordings keep it, control uses it.
+// A tip sensor's reading at an instant: made by vision, kept by recordings, used by control.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,7 +12,7 @@ enum class TipStatus {
   kLost,       ///< not known: position and covariance mean nothing
 };
 
-/// As in recordings and summaries.
+/// Returns the name as in recordings and summaries.
 inline const char* Name(TipStatus status) {
   switch (status) {
     case TipStatus::kOk:

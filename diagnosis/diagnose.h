@@ -1,5 +1,5 @@
-// The whole diagnosis of a recording: what the simulation gets wrong, why, what an extended model
-// gains. The main flow is Diagnose() in diagnose.cpp, one stage a line.
+// The whole diagnosis of a recording: the simulation's errors, their causes, the gain of an
+// extended model. The main flow is Diagnose() in diagnose.cpp, one stage a line.
 #pragma once
 
 #include <Eigen/Dense>
@@ -21,7 +21,7 @@ struct DiagnoseOptions {
 
 /// Effects together, in alphabetical order; {"none"} and {"unknown"} are answers too.
 using Verdict = std::vector<std::string>;
-/// "a" or "a+b".
+/// Returns "a" or "a+b".
 std::string Joined(const Verdict& verdict);
 
 struct HypothesisProbability {
@@ -52,15 +52,15 @@ struct Gain {
   double heldout_error_ratio_low = 1.0, heldout_error_ratio_high = 1.0;  ///< 90 % interval
 };
 
-/// How strongly a channel's base residual depends on something: the score is in standard
-/// deviations of what chance gives.
+/// The dependence of a channel's base residual on a quantity. The score is in standard deviations
+/// of chance.
 struct Signature {
   std::string channel, against;
   double score = 0.0;
 };
 
-/// For pictures: residuals of every sample in standard deviations of each channel's noise (what
-/// the tip's force explains taken out), with the base simulation and the extended model.
+/// For pictures: residuals of every sample in standard deviations of each channel's noise (less the
+/// part that the tip's force explains), with the base simulation and the extended model.
 struct ResidualTable {
   std::vector<std::string> columns;  ///< names: t_s, regressors, base.CHANNEL.i, extended.CHANNEL.i
   std::vector<std::vector<double>> rows;  ///< NaN-free; absent measurements are empty cells:

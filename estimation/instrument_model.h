@@ -1,5 +1,5 @@
 // A found model as estimation and the closed loop use it. Implemented where the model is known
-// (diagnosis/), so that neither needs to know what effects there are.
+// (diagnosis/), so that neither needs to know the effects.
 #pragma once
 
 #include <Eigen/Dense>
@@ -10,8 +10,8 @@
 
 namespace flextip {
 
-/// The instrument and its sensors as they are at one instant after the other: what rubs or has play
-/// remembers where it came from.
+/// The instrument and its sensors at each instant in turn: friction and play remember earlier
+/// motion.
 class InstrumentModel {
  public:
   virtual ~InstrumentModel() = default;
@@ -20,7 +20,7 @@ class InstrumentModel {
   virtual void Advance(TimeNs t_ns, const Measurements& measured,
                        const Eigen::Vector3d& f_tip_N) = 0;
   virtual const ShaftChange& Shaft() const = 0;
-  /// What sensors without their own effects would have said. Latencies are left as they are.
+  /// Returns the readings of sensors without their own effects. Latencies stay.
   virtual Measurements Correct(const Measurements& measured) const = 0;
 
  protected:

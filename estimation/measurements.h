@@ -1,4 +1,4 @@
-// What the sensors say of the instrument at one instant, in R; what is absent was not measured.
+// The sensors' measurements of an instant, in R; absent fields were not measured.
 #pragma once
 
 #include <Eigen/Dense>

@@ -32,15 +32,15 @@ class RodFit {
   using Residuals = Eigen::Matrix<double, NUM_RESIDUALS, 1>;
   using Jacobian = Eigen::Matrix<double, NUM_RESIDUALS, NUM_PARAMETERS>;
 
-  /// `shaft` gives length, stiffness, weight and effects. Without `use_positions` the places of tip
-  /// and EM sensor are left out. The references must outlive the object.
+  /// Takes length, stiffness, weight and effects from `shaft`. Without `use_positions` the places
+  /// of tip and EM sensor are left out. The references must outlive the object.
   RodFit(const ShaftProblem& shaft, const Measurements& measurements, const RodPrior& prior,
          bool use_positions, ShaftRod& solver);
 
-  /// False where the rod has no equilibrium. `jacobian` (column-major) may be null.
+  /// Returns false where the rod has no equilibrium. `jacobian` (column-major) may be null.
   bool operator()(const double* parameters, double* residuals, double* jacobian) const;
 
-  /// How many scalar measurements (without the priors) the last call used.
+  /// Returns the number of scalar measurements (without the priors) that the last call used.
   int MeasurementCount() const { return rows_ - NUM_PARAMETERS; }
 
   ShaftProblem ProblemAt(const RodParameters& parameters) const;

@@ -1,4 +1,4 @@
-// How an instrument differs now from its data: what a found model (diagnosis) tells estimation.
+// The instrument's present difference from its data: a found model (diagnosis) for estimation.
 #pragma once
 
 #include <Eigen/Dense>

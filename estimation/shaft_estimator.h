@@ -23,8 +23,8 @@ struct EstimatorOptions {
   Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();
   double port_prior_m = kPortRegistration_m;  ///< standard deviation per axis of p_RP
   double force_prior_units = 4.0;  ///< standard deviation of the tip force in units of EI / L^2
-  /// False: only what a system without tip tracking has (orientations, strain, load, no tip or EM
-  /// position), for the controllers that calculate the tip.
+  /// False: only the measurements of a system without tip tracking (orientations, strain, load, no
+  /// tip or EM position), for the controllers that calculate the tip.
   bool use_positions = true;
   bool estimate_tissue = true;  ///< df_tip/dp_tip from how the load changed with the tip
 };
@@ -69,21 +69,23 @@ class ShaftEstimator {
  public:
   explicit ShaftEstimator(const EstimatorOptions& options);
 
-  /// `change`: how the instrument differs from its data at this instant, where a model was found.
+  /// Estimates from the measurements of an instant. `change`: the instrument's difference from its
+  /// data at this instant, where a model was found.
   ShaftEstimate Update(const Measurements& measurements, const ShaftChange& change = {});
 
-  /// What is known of the port from now on, in place of `port_prior_m`: its shift from where it is
-  /// registered, with the covariance of that (positive definite).
+  /// Sets the port's shift from its registered place (m, in R) from now on, in place of
+  /// `port_prior_m`, with a positive definite covariance.
   void SetPort(const Eigen::Vector3d& shift_m, const Eigen::Matrix3d& covariance_m2);
 
-  /// Forget the past: warm start, tissue and what SetPort said.
+  /// Forgets the past: warm start, tissue and the shift of SetPort.
   void Reset();
 
  private:
   bool FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   bool Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   void Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
-  /// Whether the load bends the shaft by more than is in doubt: the tip is better known with it.
+  /// Returns whether the load bends the shaft by more than the doubt in the tip, so that the load
+  /// improves the tip.
   static bool StandsOut(const RodFit& fit, const ShaftRodState& rod, const ShaftEstimate& estimate);
   void FillModel(const RodFit& fit, const RodParameters& x, const Measurements& z,
                  ShaftEstimate& estimate);

@@ -1,4 +1,4 @@
-// What estimation hands to control: the instrument as it is believed to be now.
+// The instrument as estimation believes it to be now, for control.
 #pragma once
 
 #include <Eigen/Dense>
@@ -9,7 +9,7 @@
 
 namespace flextip {
 
-/// Fixed data and what estimation last found. Everything in R; fixed size.
+/// Fixed data and the last estimate. Everything in R; fixed size.
 struct ShaftModel {
   Instrument instrument;  ///< with the length and stiffness of a found model
   Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();                  ///< port

@@ -11,7 +11,7 @@
 
 namespace flextip {
 
-/// Whether `effects` leave the rod plain (y_wrist alone does nothing).
+/// Returns whether `effects` leave the rod plain (y_wrist alone does nothing).
 bool IsPlain(const RodEffects& effects);
 
 struct ShaftProblem {
@@ -32,7 +32,7 @@ struct ShaftRodState {
   bool has_axes = false;  ///< y and dy of the sections are there: the rod is not plain
   ShaftSection wrist;     ///< where it truly is
   ShaftSection end;       ///< of the shaft
-  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();  ///< the tip: the end and what gives way there
+  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();  ///< the tip: the end and its yield there
   RodDerivative dp_RE = RodDerivative::Zero();
   std::array<ShaftSection, kMaxShaftStations> stations;
   double s_port_m = 0.0;
@@ -45,7 +45,8 @@ struct ShaftRodState {
 /// Allocates nothing; starts from the last equilibrium.
 class ShaftRod {
  public:
-  /// At most kMaxShaftStations `stations`; one beyond an end of the shaft is that end.
+  /// Solves for at most kMaxShaftStations `stations`; a station beyond an end of the shaft is that
+  /// end.
   ShaftRodState Solve(const ShaftProblem& problem, std::span<const RodStation> stations = {});
 
   void Reset();

@@ -10,12 +10,13 @@ namespace flextip {
 /// each weighted by how well its forces are known: the force along the shaft hardly is.
 class TissueSecants {
  public:
-  /// A tip and the force on it (m, N, in R); `force_covariance_N2` of that force.
+  /// Adds a tip and the force on it (m, N, in R), with the force's covariance
+  /// `force_covariance_N2`.
   void Add(const Eigen::Vector3d& p_RE, const Eigen::Vector3d& f_tip_N,
            const Eigen::Matrix3d& force_covariance_N2);
 
-  /// df/dp (N/m), negative semidefinite: tissue only pushes back. Zero before the first secant and
-  /// where the tip has travelled little.
+  /// Returns df/dp (N/m), negative semidefinite: tissue only pushes back. Zero before the first
+  /// secant and where the tip has travelled little.
   const Eigen::Matrix3d& Stiffness() const { return stiffness_N_m_; }
 
  private:

@@ -24,8 +24,8 @@ const char* Name(WindowStatus status);
 
 struct WindowEstimate {
   WindowStatus status = WindowStatus::kUnobservable;
-  /// Of the latest sample, its prior of the port being what the samples before it say, or the
-  /// registration as long as they do not narrow it.
+  /// The estimate of the latest sample. Its prior of the port comes from the earlier samples, or
+  /// from the registration as long as they do not narrow it.
   ShaftEstimate shaft;
   Eigen::Vector3d port_shift_m = Eigen::Vector3d::Zero();  ///< from where it is registered
   Eigen::Matrix3d port_covariance_m2 = Eigen::Matrix3d::Zero();
@@ -47,7 +47,7 @@ class WindowEstimator {
 
   WindowEstimate Update(const Measurements& measurements, const ShaftChange& change = {});
 
-  /// Forget the past.
+  /// Forgets the past.
   void Reset();
 
  private:

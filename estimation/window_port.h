@@ -12,7 +12,7 @@ namespace flextip {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// Where the wrist was and what pushed, in RodParameters' units: wrist, force.
+/// The wrist's place and the force, in RodParameters' units: wrist, force.
 struct WindowSample {
   Measurements measurements;
   ShaftProblem shaft;
@@ -27,18 +27,18 @@ class WindowPort {
  public:
   WindowPort(int samples, double prior_m, bool use_positions);
 
-  /// Adds a sample and, where there is no room, drops the older one of the two whose wrists are
-  /// nearest each other: what is left is spread.
+  /// Adds a sample and, where there is no room, drops the older of the two whose wrists are nearest
+  /// each other: the rest stays spread.
   void Add(const WindowSample& sample);
 
-  /// Gauss-Newton over the shift and every sample's own unknowns, which are eliminated one sample
-  /// at a time (Schur complement). At most four evaluations of every sample; a step that makes
-  /// things worse is halved, a sample that has no equilibrium is dropped. False where no sample is
-  /// left.
+  /// Fits by Gauss-Newton over the shift and every sample's own unknowns, which are eliminated
+  /// sample by sample (Schur complement). Makes at most four evaluations of every sample. Halves a
+  /// step that makes things worse; drops a sample without an equilibrium. Returns false where no
+  /// sample is left.
   bool Refine();
 
   const Eigen::Vector3d& Shift() const { return shift_m_; }
-  /// Of the shift.
+  /// Returns the covariance of the shift (m^2).
   const Eigen::Matrix3d& Covariance() const { return covariance_m2_; }
   int Size() const { return size_; }
   double Chi2() const { return cost_; }

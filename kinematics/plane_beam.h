@@ -42,8 +42,8 @@ struct PlaneBeam {
 };
 
 /// Solves the beam through a given wrist and port, bent by a given load. Of several solutions
-/// (loads with F_t L^2/EI > 12, where no beam applies), takes the one nearest the straight shaft.
-/// The status is kNoPort where the shaft does not reach the port, or the wrist is on it.
+/// (loads with F_t L^2/EI > 12, where no beam applies), takes the solution nearest the straight
+/// shaft. The status is kNoPort where the shaft does not reach the port, or the wrist is on it.
 PlaneBeam SolvePlaneBeam(const PlaneBeamProblem& problem) noexcept;
 
 /// Returns d tip / d wrist (2x2) of a beam with its chord at the angle `phi` (rad), 0 < a < length.

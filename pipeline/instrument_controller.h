@@ -32,7 +32,7 @@ struct InstrumentControllerOptions {
   bool straight_at_registered_port = false;
 };
 
-/// What one cycle is given. Fixed size but for the pictures, which stay the caller's.
+/// The inputs of a cycle. Fixed size but for the pictures, which stay the caller's.
 struct ControllerInputs {
   TimeNs t_ns = 0;                         ///< of the cycle; not before the last one
   SensorReadings sensors;                  ///< the newest sample of each stream; a tip counts once
@@ -42,7 +42,7 @@ struct ControllerInputs {
   std::optional<Eigen::Vector3d> d_RE_desired;  ///< the tip's direction, any length
 };
 
-/// What one cycle says. Fixed size; all in R.
+/// The result of a cycle. Fixed size; all in R.
 struct ControllerCommand {
   TimeNs t_ns = 0;
   ControlStatus status = ControlStatus::kNoWrist;
@@ -52,14 +52,14 @@ struct ControllerCommand {
   Measurements measurements;                               ///< gathered, seen and corrected
   ShaftEstimate estimate;
   std::optional<Eigen::Vector3d> p_RE_measured;  ///< the tip as the controller was given it
-  FixturesOutput goal;                           ///< what was wanted, kept by the fixtures
+  FixturesOutput goal;                           ///< the wish, kept by the fixtures
 };
 
 /// The whole cycle. A function of its inputs and its own state: the same inputs give the same
 /// commands, bit for bit. Without pictures it allocates nothing once it runs.
 class InstrumentController {
  public:
-  /// `model`: what was found of instrument and sensors (diagnosis); null: as their data say.
+  /// Takes the `model` of instrument and sensors that a diagnosis found; null: as their data say.
   /// `tracker` sees the tip where a cycle is given pictures. Throws InputError where
   /// `options.direction` comes without a rod kind.
   explicit InstrumentController(const InstrumentControllerOptions& options,
@@ -69,9 +69,9 @@ class InstrumentController {
   /// Runs one cycle. Throws InputError only for pictures of the wrong size.
   ControllerCommand Step(const ControllerInputs& inputs);
 
-  /// What the tracker said of the last pictures; empty before the first.
+  /// Returns the tracker's result for the last pictures; empty before the first.
   const std::optional<TipTrack>& Track() const { return track_; }
-  /// What the window said last; null without a window.
+  /// Returns the window's last estimate; null without a window.
   const WindowEstimate* Window() const { return estimator_.Window(); }
 
  private:

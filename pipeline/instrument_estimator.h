@@ -10,13 +10,14 @@ namespace flextip {
 
 class InstrumentEstimator {
  public:
-  /// `window_samples`: how many samples say together where the port is; 0: each sample by itself.
+  /// Takes `window_samples`, the number of samples that share the port's shift; 0: each sample by
+  /// itself.
   explicit InstrumentEstimator(const EstimatorOptions& options, int window_samples = 0);
 
   /// Fits the latest sample; allocates nothing.
   ShaftEstimate Update(const Measurements& measurements, const ShaftChange& change = {});
 
-  /// What the window said with the last update; null without a window and before the first.
+  /// Returns the window's estimate of the last update; null without a window and before the first.
   const WindowEstimate* Window() const { return window_estimate_ ? &*window_estimate_ : nullptr; }
 
  private:

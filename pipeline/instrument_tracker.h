@@ -41,8 +41,8 @@ class InstrumentTracker {
   TipTrack Follow(std::span<const Image* const> pictures, TimeNs t_ns,
                   const SensorReadings& readings);
 
-  /// What is needed to go on in another run. A run that is to give the same results must have asked
-  /// for it after the same frames: the model's solvers start afresh there.
+  /// Returns the state for going on in another run. The model's solvers start afresh at a call. So
+  /// a run that is to give the same results must call State after the same frames.
   std::string State();
   /// Throws InputError where `state` is not of a tracker with the same options.
   void SetState(const std::string& state);

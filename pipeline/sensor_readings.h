@@ -35,27 +35,28 @@ struct SensorReadings {
   std::optional<Sample<LoadMeasurement>> load;
 };
 
-/// A stream's sample with the stream's noise.
+/// Returns a stream's sample with the stream's noise.
 WristMeasurement Measured(const WristStream& stream, const WristSample& sample);
 TipMeasurement Measured(const VisionStream& stream, const TipObservation& tip);
 EmMeasurement Measured(const EmStream& stream, const EmSample& sample);
 StrainMeasurement Measured(const StrainStream& stream, const Eigen::Vector4d& moments_Nm);
 LoadMeasurement Measured(const LoadStream& stream, const Eigen::Vector3d& f_tip_N);
 
-/// The sensors of a recording at `t_ns`, interpolated between the samples beside it. The tip by
-/// vision only at the times of its own frames.
+/// Returns the sensors of a recording at `t_ns`, interpolated between the neighbouring samples. The
+/// tip by vision is there only at the times of its own frames.
 SensorReadings ReadingsAt(const Recording& recording, TimeNs t_ns);
 
-/// The last sample of each stream of a recording that is being made.
+/// Returns the last sample of each stream of a recording in the making.
 SensorReadings NewestReadings(const Recording& recording);
 
-/// What estimation takes. Empty where the wrist is not known. A lost tip is left out.
+/// Returns the measurements for estimation. Empty where the wrist is not known. A lost tip is left
+/// out.
 std::optional<Measurements> Gather(const SensorReadings& readings);
 
 /// Returns Gather(ReadingsAt(recording, t_ns)).
 std::optional<Measurements> MeasurementsAt(const Recording& recording, TimeNs t_ns);
 
-/// Every time at which the wrist or the tip was sampled, in order.
+/// Returns every time at which the wrist or the tip was sampled, in order.
 std::vector<TimeNs> EstimationTimes(const Recording& recording);
 
 }  // namespace flextip

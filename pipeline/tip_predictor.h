@@ -17,8 +17,8 @@ namespace flextip {
 struct TipPredictorOptions {
   double force_prior_units = 0.5;  ///< sd of an unknown tip force, in EI / L^2
   double port_prior_m = kPortRegistration_m;
-  /// The load's own wandering, a random walk: sd in EI / L^2 after one second. What the seen tips
-  /// say of it takes over, but for a floor.
+  /// The load's own wandering, a random walk: sd in EI / L^2 after one second. The wandering that
+  /// the seen tips show takes over, but for a floor.
   double force_drift_units = 0.1, least_force_drift_units = 0.03;
   /// Sd of the tip's way by the model's error, over the way itself.
   double way_error = 0.05;
@@ -28,16 +28,16 @@ struct TipPredictorOptions {
   double direction_error_rad = 0.005;  ///< of a shaft that is not quite straight
 };
 
-/// Before the tip was seen: what the other sensors say (ShaftEstimator; the unloaded shaft with a
-/// wide covariance where they do not see the load). After it: the last seen pose carried on by how
-/// far the model has moved since, with the port and the load that the seen tip told, joined by the
-/// covariances with what the other sensors say where those see the load. The carried pose is sharp
-/// at first and loses to load drift and distance.
+/// Before the tip was seen: the tip by the other sensors (ShaftEstimator; the unloaded shaft with a
+/// wide covariance where they do not see the load). Afterwards: the last seen pose carried on by
+/// the model's motion since, with the port and the load that the seen tip told. Where the other
+/// sensors see the load, their tip is joined by the covariances. The carried pose is sharp at first
+/// and loses to load drift and distance.
 class TipPredictor {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-  /// `p_RP`: the port as registered. All in R.
+  /// Takes the port as registered, `p_RP`. All in R (m).
   TipPredictor(const Instrument& instrument, const Eigen::Vector3d& p_RP,
                const Eigen::Vector3d& gravity_m_s2, const TipPredictorOptions& options = {});
 
@@ -47,8 +47,8 @@ class TipPredictor {
   /// measured, it stays where it was seen, and nothing is known of it before.
   std::optional<TipPrediction> Predict(TimeNs t_ns, const std::optional<Measurements>& measured);
 
-  /// What the frames so far have left. The solvers start afresh after it, whether it is written or
-  /// read: so both go on alike.
+  /// Visits the state that the frames so far have left. The solvers start afresh after writing and
+  /// after reading: so both runs go on alike.
   void VisitState(StateText& state);
 
   /// Learns from a tip that was seen; `covariance` of (dw, dp) in R as in TipPrediction.
@@ -89,7 +89,7 @@ class TipPredictor {
   void LearnDrift();
   std::optional<RodTip> SolveRod(const Measurements& z, const Eigen::Vector3d& p_RP,
                                  const Eigen::Vector3d& f_tip_N);
-  /// `sees_load`: the sensors narrow the load down.
+  /// Predicts the tip from the sensors. `sees_load`: the sensors narrow the load down.
   std::optional<TipPrediction> FromSensors(const Measurements& z, bool& sees_load);
   std::optional<TipPrediction> FromSight(TimeNs t_ns, const Measurements& z);
 

@@ -1,4 +1,4 @@
-// What a reader had to carry on without.
+// The data that a reader had to carry on without.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Reads a recording's folder and rejects what cannot be trusted.
+// Reads a recording's folder and rejects data that cannot be trusted.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace flextip {
 
-/// A recording with what had to be skipped to read it.
+/// A recording, and the data that had to be skipped to read it.
 struct ReadResult {
   Recording recording;
   std::vector<std::string> warnings;  ///< one line each: a torn last line, a dropped frame, ...

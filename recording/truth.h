@@ -17,7 +17,8 @@ struct TruthSample {
   Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();
 };
 
-/// RECORDING/truth0/data.csv; empty where there is none. Throws InputError as ReadRecording does.
+/// Reads RECORDING/truth0/data.csv; empty where there is none. Throws InputError as ReadRecording
+/// does.
 std::optional<Series<TruthSample>> ReadTruth(const std::filesystem::path& recording);
 
 /// Writes RECORDING/truth0/.

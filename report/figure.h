@@ -42,7 +42,7 @@ struct FigureBand {
 };
 
 struct Figure {
-  std::string name = {};  ///< "fig-2-4a": what files and links call it
+  std::string name = {};  ///< "fig-2-4a": in files and links
   std::string title = {}, caption = {};
   std::string x_label = {}, y_label = {}, z_label = {};  ///< with the unit: "depth (mm)"
   bool log_x = false, log_y = false;
@@ -55,8 +55,8 @@ struct Figure {
   bool InSpace() const { return !traces.empty() && !traces.front().z.empty(); }
 };
 
-/// Short line segments, each through its middle (x, y) along (u, v) with the length of (u, v), as
-/// one trace with gaps: a plot of directions whose sign means nothing.
+/// Returns short line segments as a single trace with gaps, each through its middle (x, y) along
+/// (u, v) with the length of (u, v): a plot of directions whose sign means nothing.
 FigureTrace Segments(const std::vector<double>& x, const std::vector<double>& y,
                      const std::vector<double>& u, const std::vector<double>& v);
 

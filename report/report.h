@@ -21,18 +21,18 @@ struct Table {
 /// Collects sections in the order they are added and writes them as a page.
 class Report {
  public:
-  /// `subtitle` stands below the title: the command as typed, the version.
+  /// Takes a `subtitle` for below the title: the command as typed, the version.
   explicit Report(std::string title, std::string subtitle = "");
 
   /// Adds the result in a sentence, large and at the head of the page, and more of it below.
   void AddLead(const std::string& says, const std::string& more = "");
   /// Adds large numbers: the name of each, its value with unit.
   void AddNumbers(const std::vector<std::pair<std::string, std::string>>& figures);
-  /// A list of remarks in a box that cannot be overlooked; nothing where it is empty.
+  /// Adds a list of remarks in a box that cannot be overlooked; adds nothing for an empty list.
   void AddWarnings(const std::vector<std::string>& warnings);
   void AddHeading(const std::string& text);
   void AddTable(const Table& table);
-  /// As it stands: for parts that a page draws itself. Its texts must be escaped already.
+  /// Adds HTML unchanged: for parts that a page draws itself. Its texts must be escaped already.
   void AddHtml(const std::string& html) { body_ += html; }
   /// Adds figures, side by side where there are several and the page is wide. Those of a page are
   /// all in space or all flat with fields or bars: lines alone go with both.
@@ -40,16 +40,16 @@ class Report {
   void AddFigure(const Figure& figure) { AddFigures({figure}); }
   /// Adds a figures.json. Throws InputError where the file is no list of figures.
   void AddFigureFile(const std::filesystem::path& file);
-  /// Pictures side by side, each a PNG or JPEG file's bytes with a caption.
+  /// Adds pictures side by side, each a PNG or JPEG file's bytes with a caption.
   void AddPictures(const std::vector<std::pair<std::string, std::string>>& bytes_and_captions);
 
-  /// The whole page.
+  /// Returns the whole page.
   std::string Html() const;
   /// Writes the page beside `path` and moves it there. Throws WorkError where the disk refuses.
   void Write(const std::filesystem::path& path) const;
 
  private:
-  /// `json`: of one figure.
+  /// Adds a drawing from the `json` of a figure.
   void AddDrawing(const std::string& title, const std::string& caption, const std::string& json,
                   bool in_space);
 
@@ -57,9 +57,9 @@ class Report {
   bool has_figures_ = false, has_space_ = false, has_flat_ = false;  ///< flat: fields or bars
 };
 
-/// `text` with the characters that HTML takes for its own replaced.
+/// Returns `text` with HTML's own characters replaced.
 std::string EscapeHtml(const std::string& text);
-/// RFC 4648 with padding.
+/// Returns the bytes in RFC 4648 with padding.
 std::string Base64(const std::string& bytes);
 
 }  // namespace flextip::report

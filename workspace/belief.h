@@ -1,4 +1,4 @@
-// What a controller believes that is not so, and the Jacobian it inverts therefore.
+// A controller's wrong beliefs, and the Jacobian that it inverts therefore.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ struct BeliefError {
   static BeliefError FromVector(const Vector& v);
 };
 
-/// "port z", "link 1", ..., of the component `index` of BeliefError<N>::Vector.
+/// Returns "port z", "link 1", ... for the component `index` of BeliefError<N>::Vector.
 template <int N>
 const char* ErrorName(int index);
 
@@ -34,12 +34,13 @@ struct BelievedState {
   double shaft_m = 0.0;
   MatrixN<N> J_hat;  ///< (2.1), d tip / d theta
 
-  /// Whether the believed shaft reaches the believed port. Between a controller for which it does
-  /// and one for which it does not lies one whose Jacobian is singular.
+  /// Returns whether the believed shaft reaches the believed port. Between a controller with and a
+  /// controller without such reach lies one whose Jacobian is singular.
   bool Reaches() const { return (p_port - p_wrist).norm() < shaft_m; }
 };
 
-/// At the true joint angles `theta`. Empty where the believed wrist is on the believed port.
+/// Returns the believed state at the true joint angles `theta` (rad). Empty where the believed
+/// wrist is on the believed port.
 template <int N>
 std::optional<BelievedState<N>> Believe(const PortInstrument<N>& truth, const BeliefError<N>& error,
                                         const VectorN<N>& theta);

@@ -28,16 +28,16 @@ struct WorkspaceMap {
   const PointMeasures<N>& At(std::size_t row, std::size_t column) const {
     return points[row * right_m.size() + column];
   }
-  /// How many points the tip can reach.
+  /// Returns the number of points that the tip can reach.
   std::size_t Reached() const;
 };
 
-/// All of the tip's workspace in the slice, without the empty rows and columns around it. Uses all
-/// cores.
+/// Maps all of the tip's workspace in the slice, without the empty rows and columns around it. Uses
+/// all cores.
 template <int N>
 WorkspaceMap<N> ComputeMap(const MapSetup<N>& setup, const Slice<N>& slice, double spacing_m);
 
-/// The rows and columns of the map within `margin_m` of any of the places.
+/// Returns the rows and columns of the map within `margin_m` of any of the places.
 template <int N>
 WorkspaceMap<N> PartAround(const WorkspaceMap<N>& map, const std::vector<Eigen::Vector2d>& places,
                            double margin_m);

@@ -1,4 +1,4 @@
-// A map's scenario file: what `flextip map` runs (keys in docs/usage/maps.md).
+// A map's scenario file for `flextip map` (keys in docs/usage/maps.md).
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace flextip {
 
-/// tolerance: worst cases over bounded errors, and what keeps to a limit.
+/// tolerance: worst cases over bounded errors, and the errors that keep to a limit.
 template <int N>
 struct ToleranceTask {
   ToleranceQuestion<N> question;

@@ -12,7 +12,7 @@ enum class Measure {
   kAngle,  ///< |phi_max| (2.9), rad
 };
 
-/// A robot, what its controller believes of it, and the controller's gain.
+/// A robot, its controller's beliefs, and the controller's gain.
 template <int N>
 struct MapSetup {
   PortInstrument<N> truth = {};
@@ -30,13 +30,13 @@ struct PointMeasures {
   AngleError<N> angle;
 };
 
-/// Where the tip's position is known and only the Jacobian is wrong, as in 2.3.2.
+/// Measures a place where the tip's position is known and only the Jacobian is wrong, as in 2.3.2.
 template <int N>
 PointMeasures<N> MeasureAt(const MapSetup<N>& setup, TrueShaft<N>& shaft, const VectorN<N>& p_tip);
 
-/// What can go wrong with a motion in one direction.
+/// The possible errors of a motion in a direction.
 enum class MotionFault {
-  kNorm,   ///< |G v| / |v|: what is left after one step
+  kNorm,   ///< |G v| / |v|: the rest after one step
   kAngle,  ///< between v and A v, rad; pi where there is no motion
   /// How far a whole move in small steps strays from its line, over its length: the largest part of
   /// exp(-A t) v square to v. The direction toward the goal turns as the tip strays, and its error
@@ -44,7 +44,7 @@ enum class MotionFault {
   kStray,
 };
 
-/// Of a motion along v (not zero).
+/// Returns the error of a motion along v (not zero).
 template <int N>
 double DirectionError(const MatrixN<N>& A, const VectorN<N>& v, MotionFault fault);
 

@@ -1,5 +1,5 @@
-// Paths of the tip that trade length against motion errors (thesis 2.4), and what a controller
-// makes of them.
+// Paths of the tip that trade length against motion errors (thesis 2.4), and a controller's motion
+// along them.
 #pragma once
 
 #include <vector>
@@ -9,20 +9,20 @@
 
 namespace flextip {
 
-/// A metre costs 1 + weight * DirectionError: what matters is the error of the direction
-/// travelled, not the worst of all directions.
+/// A metre costs 1 + weight * DirectionError: the error of the direction travelled counts, not the
+/// worst of all directions.
 struct PlanOptions {
   MotionFault fault = MotionFault::kStray;
   double weight = 1.0;
   double spacing_m = 0.005;
 };
 
-/// In the map's slice. The matrices A between the map's points are interpolated; where one of the
-/// four around a place is missing no path may go.
+/// Returns the cost in the map's slice. Interpolates the matrices A between the map's points; no
+/// path goes where one of the four around a place is missing.
 template <int N>
 PathCost MotionCost(const WorkspaceMap<N>& map, const PlanOptions& options);
 
-/// The cheapest path between two places of the slice, anywhere in the map.
+/// Returns the cheapest path between two places of the slice, anywhere in the map.
 template <int N>
 Path PlanMotion(const WorkspaceMap<N>& map, const Eigen::Vector2d& start,
                 const Eigen::Vector2d& goal, const PlanOptions& options);
@@ -51,8 +51,8 @@ struct Followed {
   double mean_deviation_m = 0.0;      ///< over the distance that the tip went
 };
 
-/// Quasi-static steps (2.3) along a path in space, with the tip's position known: each cycle moves
-/// the joints by k J_hat^-1 (x_d - x), and the next goal follows once the last is reached.
+/// Follows a path in space by quasi-static steps (2.3), with the tip's position known: each cycle
+/// moves the joints by k J_hat^-1 (x_d - x), and the next goal follows once the last is reached.
 template <int N>
 Followed<N> FollowPath(const MapSetup<N>& setup, const std::vector<VectorN<N>>& path,
                        const FollowOptions& options);

@@ -30,16 +30,17 @@ struct Path {
   double length_m = 0.0, cost = 0.0;
 };
 
-/// Integral of the cost along the path's straight pieces, sampled at most `spacing_m` apart.
+/// Returns the integral of the cost along the path's straight pieces, sampled at most `spacing_m`
+/// apart.
 double CostAlong(const PathCost& cost, const std::vector<Eigen::Vector2d>& points,
                  double spacing_m);
 double LengthOf(const std::vector<Eigen::Vector2d>& points);
-/// The same path with points that are at most `spacing_m` apart.
+/// Returns the same path with points at most `spacing_m` apart.
 std::vector<Eigen::Vector2d> Resample(const std::vector<Eigen::Vector2d>& points, double spacing_m);
 
-/// Dijkstra on a grid with 32 directions, then shortcuts, then every point moved to where the path
-/// is cheapest. The grid chooses among paths around obstacles; the rest makes it smooth. Uses all
-/// cores.
+/// Plans by Dijkstra on a grid with 32 directions, then by shortcuts, then by moving every point to
+/// the cheapest place. The grid chooses among paths around obstacles; the other steps make the path
+/// smooth. Uses all cores.
 Path PlanPath(const PathCost& cost, const PathProblem& problem);
 
 }  // namespace flextip

@@ -30,15 +30,15 @@ struct PortInstrument {
   double shaft_m = 0.32;
   VectorN<N> p_port = N == 2 ? 0.16 * VectorN<N>::UnitX() : 0.16 * VectorN<N>::Unit(N - 1);
 
-  /// (3.27): on the line from the wrist through the port, one shaft length on. Empty where the
-  /// wrist is at the port or the shaft does not reach it.
+  /// Returns the tip (3.27): on the line from the wrist through the port, one shaft length on.
+  /// Empty where the wrist is at the port or the shaft does not reach it.
   std::optional<VectorN<N>> Tip(const VectorN<N>& p_wrist) const;
-  /// d tip / d wrist; not for a wrist at the port.
+  /// Returns d tip / d wrist; not for a wrist at the port.
   MatrixN<N> TipByWrist(const VectorN<N>& p_wrist) const;
-  /// The wrist that puts the tip there, the shaft through the port. Empty where there is none, or
-  /// where the arm cannot put the wrist there within its limits.
+  /// Returns the wrist that puts the tip there, the shaft through the port. Empty where there is
+  /// none, or where the arm cannot put the wrist there within its limits.
   std::optional<VectorN<N>> WristForTip(const VectorN<N>& p_tip) const;
-  /// The same without looking at the arm.
+  /// Returns the same without regard to the arm.
   std::optional<VectorN<N>> WristOnLine(const VectorN<N>& p_tip) const;
 };
 

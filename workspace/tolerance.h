@@ -7,7 +7,7 @@
 
 namespace flextip {
 
-/// What the errors must keep to so that a measure stays below a limit all over a part of the
+/// The bounds of the errors for which a measure stays below a limit all over a part of the
 /// workspace.
 template <int N>
 struct ToleranceQuestion {
@@ -31,12 +31,12 @@ struct Tolerance {
   ToleranceStatus status = ToleranceStatus::kEmptyPart;
   double scale = 0.0;        ///< largest multiple of the bounds that stays below the limit
   std::size_t point = 0;     ///< of the map, where the limit is passed first
-  WorstError<N> first = {};  ///< what passes it there, at `scale` and a little more
+  WorstError<N> first = {};  ///< the errors that pass it there, at `scale` and a little more
   std::size_t points = 0;    ///< how many were looked at
 };
 
-/// By bisection to 1e-4 of the scale; a point that passes at one scale is not looked at again below
-/// it. Uses all cores.
+/// Finds the scale by bisection to 1e-4 of it; a point that passes at a scale is not looked at
+/// again below that. Uses all cores.
 template <int N>
 Tolerance<N> FindTolerance(const MapSetup<N>& setup, const WorkspaceMap<N>& map,
                            const ToleranceQuestion<N>& question);

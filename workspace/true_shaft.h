@@ -31,11 +31,11 @@ class TrueShaft {
   TrueShaft(const PortInstrument<N>& instrument, const std::optional<TipForce<N>>& force)
       : instrument_(instrument), force_(force) {}
 
-  /// The state with the tip there. Empty where the shaft cannot be there, the arm would be outside
-  /// its limits, or no bent shape is found.
+  /// Returns the state with the tip there. Empty where the shaft cannot be there, the arm would be
+  /// outside its limits, or no bent shape is found.
   std::optional<TrueState<N>> AtTip(const VectorN<N>& p_tip);
-  /// The state at these joint angles, for which limits are not looked at. Empty where the shaft
-  /// does not reach the port or no bent shape is found.
+  /// Returns the state at these joint angles, without regard to limits. Empty where the shaft does
+  /// not reach the port or no bent shape is found.
   std::optional<TrueState<N>> AtJoints(const VectorN<N>& theta);
 
  private:

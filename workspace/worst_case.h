@@ -19,19 +19,19 @@ struct ErrorBounds {
 
 template <int N>
 struct WorstError {
-  double value = 0.0;         ///< of the measure; see FindWorst for what infinite and pi mean
+  double value = 0.0;         ///< of the measure; see FindWorst for infinite and pi
   BeliefError<N> error = {};  ///< of the set, added to the setup's
 };
 
-/// The largest value of the measure at one state, over `scale` times the bounds: from all corners
-/// (of the box, or the directions toward them) a climb in ever smaller steps. Where the set holds a
-/// controller whose Jacobian is singular, the value is infinite, or pi of an angle.
+/// Returns the largest value of the measure at a state, over `scale` times the bounds, by a climb
+/// in ever smaller steps from all corners (of the box, or the directions toward them). Where the
+/// set holds a controller whose Jacobian is singular, the value is infinite, or pi for an angle.
 template <int N>
 WorstError<N> FindWorst(const MapSetup<N>& setup, const TrueState<N>& state,
                         const ErrorBounds<N>& bounds, Measure measure, double scale = 1.0);
 
-/// FindWorst at every point of the map that the tip can reach, in the map's order; NaN elsewhere.
-/// Uses all cores.
+/// Returns FindWorst at every point of the map that the tip can reach, in the map's order; NaN
+/// elsewhere. Uses all cores.
 template <int N>
 std::vector<double> WorstOverMap(const MapSetup<N>& setup, const WorkspaceMap<N>& map,
                                  const ErrorBounds<N>& bounds, Measure measure);

@@ -1,4 +1,4 @@
-// Flat boards to calibrate from: what they are, and where they are seen in a picture.
+// Flat boards to calibrate from: their description, and their corners in a picture.
 #pragma once
 
 #include <Eigen/Dense>
@@ -31,8 +31,8 @@ struct BoardSpec {
 /// throws InputError saying which part is wrong.
 BoardSpec ParseBoardSpec(const std::string& spec);
 
-/// All corners that the board has, by id, in frame B (m, z = 0), and where they begin and end along
-/// x and y.
+/// Returns all corners of the board by id, in frame B (m, z = 0), and their first and last place
+/// along x and y.
 std::vector<Eigen::Vector3d> BoardCorners(const BoardSpec& board);
 std::pair<Eigen::Vector2d, Eigen::Vector2d> BoardExtent(const BoardSpec& board);
 

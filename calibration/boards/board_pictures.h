@@ -16,10 +16,10 @@ struct BoardPictures {
   std::filesystem::path corners = {};  ///< read where it exists, else written; empty: neither
 };
 
-/// One picture is held at a time. What one picture tells of a charuco board's layout holds for all.
-/// Throws InputError for pictures of several sizes, for none, and for a `corners` file of another
-/// board or without one of the images.
-/// `progress` is told how many pictures were looked at, of how many.
+/// Finds the corners in every picture; holds a single picture at a time. A charuco layout told by a
+/// picture holds for all. Throws InputError for pictures of several sizes, for none, and for a
+/// `corners` file of another board or without one of the images. Calls `progress` with the number
+/// of pictures done and their total.
 CornersFile CornersOf(const BoardPictures& pictures,
                       const std::function<void(std::size_t done, std::size_t all)>& progress = {});
 

@@ -9,7 +9,7 @@
 
 namespace flextip {
 
-/// What was seen of one board by one camera.
+/// The corners of a board in a camera's pictures.
 struct CornersFile {
   std::string board;  ///< as ParseBoardSpec reads it
   int width_px = 0, height_px = 0;
@@ -28,8 +28,8 @@ struct CornersFile {
 /// numbers that are not finite.
 CornersFile ReadCorners(const std::filesystem::path& file);
 
-/// Every number exact. Throws WorkError where the disk refuses, InputError for an image's name with
-/// a line break.
+/// Writes every number exactly. Throws WorkError where the disk refuses, InputError for an image's
+/// name with a line break.
 void WriteCorners(const std::filesystem::path& file, const CornersFile& corners);
 
 }  // namespace flextip

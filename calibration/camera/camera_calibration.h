@@ -45,7 +45,7 @@ struct CameraCalibrationResult {
   int views_used = 0, views_rejected = 0;
 
   bool IsUsable() const { return status == CameraCalibrationStatus::kOk; }
-  /// Of fu, fv, cu, cv (px), then the distortion coefficients.
+  /// Returns standard deviations of fu, fv, cu, cv (px), then of the distortion coefficients.
   std::vector<double> StandardDeviations() const;
 };
 

@@ -1,4 +1,4 @@
-// Which lens model: the one that predicts views it has not seen.
+// The choice of the lens model, by its prediction of held-out views.
 #pragma once
 
 #include <optional>
@@ -14,12 +14,12 @@ struct LensModel {
   Distortion distortion = Distortion::kOpenCv;
   int terms = 5;
 
-  /// "radial-tangential", "equidistant", "opencv 5", "opencv 8", "opencv 12".
+  /// Returns "radial-tangential", "equidistant", "opencv 5", "opencv 8" or "opencv 12".
   std::string Name() const;
 };
 LensModel LensModelOf(const CameraCalibration& camera);
 
-/// All models, the simpler ones first.
+/// Returns all models, the simpler ones first.
 const std::vector<LensModel>& AllLensModels();
 
 /// The error of views that were left out: the lens (and warp) from the other views, the view's pose
@@ -29,8 +29,9 @@ struct HeldOutError {
   std::vector<double> squared_px2;  ///< of each view: the mean squared distance, likewise
 };
 
-/// Only corners that `solution` uses count. Where its board has a shape of its own (`shape.sd_m`
-/// above 0), that is found anew in each fold. Empty where a fold cannot be solved.
+/// Returns the error of views left out of the fit. Only corners that `solution` uses count. A
+/// board's shape (`shape.sd_m` above 0) is found anew in each fold. Empty where a fold cannot be
+/// solved.
 std::optional<HeldOutError> LeaveViewsOut(const CameraSolution& solution, int folds);
 
 /// One model's part in the choice.
@@ -43,20 +44,22 @@ struct LensCandidate {
   bool chosen = false;
 };
 
-/// The simplest candidate whose held-out error is not above the least by more than its standard
-/// error (of the views' differences), if there is one that does not fold; `reason` and `chosen` are
-/// filled in. Candidates without an error or with a `reason` are left aside. Empty where none is
+/// Returns the index of the simplest candidate that does not fold and whose held-out error is not
+/// above the least by more than its standard error (of the views' differences). Fills in `reason`
+/// and `chosen`. Candidates without an error or with a `reason` are left aside. Empty where none is
 /// left.
 std::optional<std::size_t> ChooseLens(std::vector<LensCandidate>& candidates);
 
-/// Whether the board's warp makes the held-out error smaller by more than its standard error.
+/// Returns whether the board's warp makes the held-out error smaller by more than its standard
+/// error.
 bool WarpHelps(const HeldOutError& flat, const HeldOutError& warped);
 
-/// Whether the board's own shape does, by more than two: it is a parameter for every corner.
+/// Returns whether the board's own shape makes the held-out error smaller by more than two standard
+/// errors: the shape has parameters for every corner.
 bool ShapeHelps(const HeldOutError& as_described, const HeldOutError& shaped);
 
-/// Why `camera` cannot be used over its whole picture: beyond where the boards were seen its
-/// distortion turns back on itself. Empty where it can.
+/// Returns the reason against `camera` over its whole picture: beyond the boards' places its
+/// distortion turns back on itself. Empty where it does not.
 std::string FoldsInPicture(const CameraCalibration& camera);
 
 }  // namespace flextip

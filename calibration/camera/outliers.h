@@ -27,9 +27,9 @@ struct OutlierRule {
   bool estimate_warp = false;
 };
 
-/// Adjusts robustly, rejects, and adjusts by least squares over what is left until nothing changes;
+/// Adjusts robustly, rejects, and adjusts by least squares over the rest until nothing changes;
 /// outliers may come back. Takes rejected views out of `solution.views` and lists them in
-/// `rejected`; keeps at least `min_views`. False where an adjustment fails.
+/// `rejected`; keeps at least `min_views`. Returns false where an adjustment fails.
 bool RejectOutliers(CameraSolution& solution, const OutlierRule& rule,
                     std::vector<RejectedView>& rejected);
 

@@ -1,4 +1,4 @@
-// A camera's lens, its board and where that was, all at once: what bundle adjustment ends with.
+// The result of bundle adjustment: a camera's lens, its board and the board's places together.
 #pragma once
 
 #include <Eigen/Dense>
@@ -19,12 +19,12 @@ struct BoardWarp {
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();  ///< of all corners that the board has
   Eigen::Vector2d half_m = Eigen::Vector2d::Ones();    ///< half their extent
 
-  /// 1 - u^2, 1 - v^2: the derivative of z by `bulge_m`.
+  /// Returns 1 - u^2, 1 - v^2: the derivative of z by `bulge_m`.
   Eigen::Vector2d Shape(const Eigen::Vector3d& x_B) const {
     const Eigen::Array2d uv = (x_B.head<2>() - centre_m).array() / half_m.array();
     return (1.0 - uv * uv).matrix();
   }
-  /// Where a corner of the flat board truly is, in B.
+  /// Returns the true place of a corner of the flat board, in B (m).
   Eigen::Vector3d Bent(const Eigen::Vector3d& x_B) const {
     return x_B + Eigen::Vector3d(0, 0, bulge_m.dot(Shape(x_B)));
   }
@@ -34,8 +34,8 @@ struct BoardWarp {
 struct BoardShape {
   std::map<int, Eigen::Vector3d> offset_B;  ///< by corner id, from where the warped board has it, m
   double sd_m = 0.0;  ///< prior standard deviation of each coordinate; 0: the board as described
-  /// The root of the mean squared coordinate that the offsets and their own uncertainty speak for:
-  /// the `sd_m` that the views themselves would have chosen is the one that equals it.
+  /// The root of the mean squared coordinate of the offsets, their own uncertainty included. The
+  /// views would choose an `sd_m` that equals this value.
   double scatter_m = 0.0;
 
   Eigen::Vector3d Of(int id) const {
@@ -58,7 +58,7 @@ struct SolvedView {
 
   bool IsUsed(std::size_t i) const { return reason[i].empty(); }
   int CountUsed() const;
-  /// Root of the mean squared distance: of the corners used, or of all.
+  /// Returns the root of the mean squared distance (px) of the corners used, or of all.
   double RmsPx(bool with_outliers = false) const;
 };
 
@@ -68,7 +68,7 @@ struct SolvedView {
 ///     for flat, 0,
 ///   - for each view (dw, dp), 6 numbers (rad, m): its T_CB becomes (exp([dw]x) R, p + dp).
 /// A projection that moves with the poses (mrcal's: the lens and the views may trade off against
-/// each other) has a Jacobian over all of them; `Covariance()` is what it is to be multiplied with.
+/// each other) has a Jacobian over all of them, to be multiplied with `Covariance()`.
 struct CameraSolution {
   CameraCalibration camera;
   BoardWarp warp;
@@ -95,16 +95,17 @@ struct CameraSolution {
   int Size() const { return ViewStart(views.size()); }
   int CornersUsed() const;
   int Outliers() const;
-  /// Over all corners used, or over those of all `views`, as OpenCV gives it: per distance.
+  /// Returns the root of the mean squared distance (px), as OpenCV gives it, over all corners used
+  /// or over all corners of `views`.
   double RmsPx(bool with_outliers = false) const;
 
-  /// noise_px^2 times the inverse of `normal_matrix`. Empty where the views do not determine all of
-  /// it.
+  /// Returns noise_px^2 times the inverse of `normal_matrix`. Empty where the views do not
+  /// determine all of it.
   Eigen::MatrixXd Covariance() const;
 };
 
-/// The inverse of a normal matrix, scaled to unit diagonal first; symmetric. Empty where it is
-/// singular.
+/// Returns the inverse of a normal matrix, scaled to unit diagonal first; symmetric. Empty where
+/// the matrix is singular.
 Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& normal_matrix);
 
 }  // namespace flextip

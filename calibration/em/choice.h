@@ -1,4 +1,4 @@
-// Which field the data call for, by how well it says what it was not fitted to.
+// The choice of the field, by its prediction of data left out of the fit.
 #pragma once
 
 #include <string>
@@ -19,7 +19,8 @@ struct EmCandidate {
   std::string reason = {};  ///< why it was not tried
 };
 
-/// Sixteen parts of space with as many pairs each, cut again and again across their longest side.
+/// Returns the part of space of each place: sixteen parts with equal numbers, cut again and again
+/// across their longest side.
 std::vector<int> PartsOfSpace(const std::vector<Eigen::Vector3d>& places);
 
 /// Tries every candidate whose `reason` is empty, from the simplest on: each part of space is

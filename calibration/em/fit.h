@@ -8,9 +8,9 @@
 
 namespace flextip {
 
-/// What is free beside the registration: the sensor's distance from the tip, a field over a box.
-/// So that field and registration do not mean the same, the field neither shifts nor turns its box:
-/// a polynomial has no constant and a symmetric linear part, a spline's coefficients no mean and no
+/// The free parameters beside the registration: the sensor's distance from the tip, a field over a
+/// box. To stay separate from the registration, the field neither shifts nor turns its box: a
+/// polynomial has no constant and a symmetric linear part, a spline's coefficients no mean and no
 /// mean turn about its middle.
 struct EmDesign {
   bool free_distance = true;
@@ -32,9 +32,9 @@ struct EmSolution {
   Eigen::MatrixXd covariance = {};
 };
 
-/// Corrected sensor less reference (m), in R.
+/// Returns the corrected sensor less the reference (m), in R.
 Eigen::Vector3d EmError(const EmPair& pair, const EmSolution& solution);
-/// Its length in stated standard deviations.
+/// Returns the error's length in stated standard deviations.
 double EmSigmas(const EmPair& pair, const EmSolution& solution);
 
 /// Whitened errors at a solution and their derivative by the design's parameters, three rows a pair
@@ -55,12 +55,13 @@ struct EmStep {
 EmStep SolveStep(const EmDesign& design, const Eigen::MatrixXd& H, const Eigen::VectorXd& g,
                  const Eigen::VectorXd& coefficients, bool with_covariance);
 
-/// Least squares with `weights` from `start` (its distance is kept where it is not free).
+/// Fits by least squares with `weights` from `start`, whose distance is kept where the distance is
+/// not free.
 EmSolution FitEm(const std::vector<EmPair>& pairs, const std::vector<double>& weights,
                  const EmDesign& design, const EmSolution& start);
 
-/// The closed-form registration (Arun 1987) with the sensor `distance_m` behind the tip, then least
-/// absolute residuals with the distance free.
+/// Fits the registration in closed form (Arun 1987) with the sensor `distance_m` behind the tip,
+/// then by least absolute residuals with the distance free.
 EmSolution RobustEm(const std::vector<EmPair>& pairs, double distance_m);
 
 }  // namespace flextip

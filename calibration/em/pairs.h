@@ -25,11 +25,11 @@ struct EmPairs {
   std::vector<std::string> warnings;
 };
 
-/// The sensor on the straight shaft from wrist0 through the port, at each of its own samples. Needs
-/// em0 and wrist0.
+/// Pairs the sensor with its place on the straight shaft from wrist0 through the port, at each of
+/// the sensor's samples. Needs em0 and wrist0.
 EmPairs PairByWrist(const Recording& recording);
-/// The sensor behind the tip that vision0 saw (`ok`, with a direction), at each such frame. Needs
-/// em0 and vision0.
+/// Pairs the sensor with its place behind the tip of vision0, at each `ok` frame with a direction.
+/// Needs em0 and vision0.
 EmPairs PairByVision(const Recording& recording);
 
 }  // namespace flextip

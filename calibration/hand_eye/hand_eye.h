@@ -48,12 +48,12 @@ struct HandEyeOptions {
 
 enum class HandEyeStatus { kOk, kTooFewViews, kNotConverged };
 
-/// What became of one view. Errors are those of the chain with the wrist as it was measured.
+/// The result of a view. Errors are those of the chain with the wrist as measured.
 struct HandEyeViewResult {
   std::string name;
   TimeNs t_ns = 0;
   bool seen = false;   ///< the board and the wrist: the numbers below mean something
-  bool used = false;   ///< for what was found
+  bool used = false;   ///< for the result
   std::string reason;  ///< why it was not used
   int corners = 0;
   double board_px = 0.0;  ///< RMS distance of the corners under the board's own best pose
@@ -68,7 +68,7 @@ struct HandEyeViewResult {
   std::vector<Eigen::Vector2d> px_seen, px_chain;  ///< corners, and where the chain puts them
 };
 
-/// A further view, and what it would do for the camera's and the board's place.
+/// A further view, and its gain for the camera's and the board's place.
 struct HandEyeMotion {
   std::string words;
   double sd_before_m = 0.0, sd_after_m = 0.0;  ///< of a point on the board carried to F; 0: unknown
@@ -85,7 +85,7 @@ struct HandEyeResult {
   bool has_time_offset = false, has_intrinsics = false;
 
   /// Of T_FC (dw, dp), T_KB (dw, dp), then the time offset, then fu, fv, cu, cv, those that were
-  /// fitted. Of no meaning in what `unobservable` names.
+  /// fitted. Of no meaning for the parts that `unobservable` names.
   Eigen::MatrixXd covariance;
   bool knows_camera = true, knows_board = true;
   /// With "camera." , "board." or "time_offset_s" in the place of a calibration.yaml's names.
@@ -106,15 +106,15 @@ struct HandEyeResult {
 /// Throws InputError for a wrist without samples or a camera that is none. Everything else that
 /// does not work out is a status, or a reason of a view.
 ///
-/// Start: both planar poses of every board, chosen together (start.h). Then maximum
-/// a-posteriori over both frames, the time offset and every wrist pose within its noise, from all
-/// corners; views that do not fit the others are left out, worst first. The noises of corners and
-/// wrist are estimated with it (variance components, Foerstner 1979). Not converged is also what
-/// half of the views disagree with, and what fits only with the other mount; `message` says so.
+/// Start: both planar poses of every board, chosen together (start.h). Then maximum a-posteriori
+/// over both frames, the time offset and every wrist pose within its noise, from all corners; views
+/// that do not fit the others are left out, worst first. The noises of corners and wrist are
+/// estimated with it (variance components, Foerstner 1979). The status is also not converged where
+/// half of the views disagree, and where only the other mount fits; `message` says so.
 HandEyeResult CalibrateHandEye(const HandEyeInput& input, const HandEyeOptions& options = {});
 
-/// The result under the names of docs/formats.md. `board` is "board", or "tags0" for the collar, of
-/// which T_WE is found.
+/// Returns the result under the names of docs/formats.md. `board` is "board", or "tags0" for the
+/// collar, which gives T_WE.
 Calibration HandEyeCalibration(const HandEyeResult& result, const std::string& board = "board");
 
 }  // namespace flextip

@@ -1,6 +1,6 @@
 // A recording with known loads on the tip (hung masses, a load cell) as a list of holds: spans in
-// which one load is stated and the wrist stands still. What is averaged over a hold loses its
-// noise; what is stated of its load is wrong once.
+// which the stated load is constant and the wrist stands still. The mean over a hold loses the
+// sensors' noise; the error of the stated load counts once.
 #pragma once
 
 #include <Eigen/Dense>
@@ -38,13 +38,13 @@ struct LoadHold {
 
 enum class LoadClock { kStrain, kVision, kEm };
 
-/// At the times of one sensor; samples without load0 or wrist0 are left out. A hold ends where
-/// another load is stated or the wrist has moved by 0.1 mm or six times its noise; a load cell
-/// whose numbers differ from sample to sample gives holds of one sample. Above `most` holds every
-/// n-th is taken.
+/// Returns the holds at the times of a sensor. Samples without load0 or wrist0 are left out. A hold
+/// ends where another load is stated or the wrist has moved by 0.1 mm or six times its noise. A
+/// load cell whose numbers differ from sample to sample gives holds of one sample. Above `most`
+/// holds every n-th is taken.
 std::vector<LoadHold> LoadHolds(const Recording& recording, LoadClock clock, std::size_t most);
 
-/// "at 12.3 s" or "12.3 to 14.5 s" after the first hold began.
+/// Returns "at 12.3 s" or "12.3 to 14.5 s" after the first hold's start.
 std::string SpanOf(const LoadHold& hold, TimeNs start_ns);
 
 }  // namespace flextip

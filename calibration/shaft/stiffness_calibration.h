@@ -40,7 +40,7 @@ struct StiffnessHoldResult {
   std::string reason;  ///< why not
 };
 
-/// What is left at like insertions.
+/// Residuals at like insertions.
 struct InsertionResidual {
   double inserted_m = 0.0;  ///< beyond the port, mean
   int holds = 0;
@@ -70,8 +70,8 @@ struct StiffnessCalibrationOptions {
   std::size_t most_holds = 400;
 };
 
-/// From load0, wrist0, and vision0 or em0 (also strain0, in Nm). Throws InputError where one is
-/// missing or fewer than five holds can be used; `source` is for its message.
+/// Calibrates from load0, wrist0, and vision0 or em0 (also strain0, in Nm). Throws InputError, with
+/// `source` in the message, where a stream is missing or fewer than five holds can be used.
 StiffnessCalibration CalibrateStiffness(const Recording& recording, const std::string& source,
                                         const StiffnessCalibrationOptions& options = {});
 

@@ -34,7 +34,7 @@ struct StrainCalibration {
   double largest_moment_Nm = 0.0;
   std::vector<StrainHoldResult> holds;
   bool insertions_alike = false;  ///< why the gages are not known: `stations_apart` would do
-  Calibration found;              ///< what calibration.yaml gets
+  Calibration found;              ///< for calibration.yaml
   std::string advice;             ///< which further load would help most
 };
 
@@ -43,15 +43,15 @@ struct StrainCalibrationOptions {
   std::size_t most_holds = 600;
 };
 
-/// From strain0 (readings in any unit), load0, wrist0 with orientation, instrument and port. The
-/// offset's and the columns' identifiability is judged by their standard deviations. Throws
-/// InputError where one of the streams is missing or fewer than three holds are usable; `source`
-/// is for its message.
+/// Calibrates from strain0 (readings in any unit), load0, wrist0 with orientation, instrument and
+/// port. Judges the identifiability of offset and columns by their standard deviations. Throws
+/// InputError, with `source` in the message, where a stream is missing or fewer than three holds
+/// are usable.
 StrainCalibration CalibrateStrain(const Recording& recording, const std::string& source,
                                   const StrainCalibrationOptions& options = {});
 
-/// Where to hang how much next, in words; `model` and `fit` as after the calibration. Empty where
-/// no load of the recording's size would help.
+/// Returns the most helpful next load and its place, in words; `model` and `fit` as after the
+/// calibration. Empty where no load of the recording's size would help.
 std::string NextStrainLoad(const std::vector<StrainHoldResult>& holds, const GageFit& fit,
                            const Eigen::Vector4d& reading_sd, const Eigen::Vector3d& p_RP,
                            MomentModel& model);

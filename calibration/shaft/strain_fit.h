@@ -10,7 +10,7 @@
 
 namespace flextip {
 
-/// One hold: what the gages read and what the load says.
+/// One hold: the gages' readings, and the moments by the load.
 struct GageSample {
   Eigen::Vector4d readings = Eigen::Vector4d::Zero(), m_Nm = Eigen::Vector4d::Zero();
   Eigen::Vector4d reading_sd = Eigen::Vector4d::Ones();    ///< of `readings`
@@ -35,13 +35,13 @@ struct GageFitOptions {
   bool stations_apart = false;  ///< the gages of one station do not feel the other's moment
 };
 
-/// By maximum likelihood with the true moments as unknowns of their own (errors in both variables;
-/// Fuller, Measurement Error Models, 1987, ch. 3), Gauss-Newton on what is left when those are
-/// eliminated. What the samples say nothing of stays at zero with a standard deviation of 30 times
-/// what is typical.
+/// Fits by maximum likelihood with the true moments as unknowns (errors in both variables; Fuller,
+/// Measurement Error Models, 1987, ch. 3). Gauss-Newton works on the residuals after their
+/// elimination. Parameters that the samples do not show stay at zero, with a standard deviation of
+/// 30 times the typical value.
 GageFit FitGages(const std::vector<GageSample>& samples, const GageFitOptions& options);
 
-/// What the fit leaves of one sample, and the covariance that should have.
+/// The residual of a sample, and its expected covariance.
 struct GageResidual {
   Eigen::Vector4d readings;
   Eigen::Matrix4d covariance;
@@ -49,7 +49,7 @@ struct GageResidual {
 };
 GageResidual ResidualOf(const GageSample& sample, const GageFit& fit);
 
-/// Of a sample, the rows that it adds to the equations of the fit: derivative of the readings.
+/// Returns the rows that a sample adds to the equations of the fit: derivative of the readings.
 Eigen::Matrix<double, 4, kGageUnknowns> GageRows(const GageFit& fit, const Eigen::Vector4d& m_Nm,
                                                  const Eigen::Matrix<double, 4, 3>& m_by_port);
 

@@ -16,17 +16,19 @@ struct StatedMoments {
   Eigen::Vector4d by_roll;  ///< of the instrument about its axis
   double s_port_m = 0.0;
 
-  /// Of what is not known of load, wrist and roll; the port is common to all holds and apart.
+  /// Returns the covariance ((Nm)^2) by the errors of load, wrist and roll. The port is common to
+  /// all holds, and not in it.
   Eigen::Matrix4d Covariance(const LoadHold& hold) const;
 };
 
 class MomentModel {
  public:
-  /// `stations_m` from the wrist, within the shaft.
+  /// Takes `stations_m` from the wrist, within the shaft.
   MomentModel(const Instrument& instrument, const Eigen::Vector3d& p_RP,
               const Eigen::Vector3d& gravity_m_s2, const double (&stations_m)[2]);
 
-  /// Empty where the rod has no equilibrium or the wrist's orientation is not known.
+  /// Returns the moments in `hold`. Empty where the rod has no equilibrium or the wrist's
+  /// orientation is not known.
   std::optional<StatedMoments> At(const LoadHold& hold);
 
  private:

@@ -1,5 +1,5 @@
-// Two cameras fixed to each other, their board and where that was: what stereo bundle adjustment
-// ends with.
+// The result of stereo bundle adjustment: two cameras fixed to each other, their board and the
+// board's places.
 #pragma once
 
 #include <Eigen/Dense>
@@ -10,7 +10,7 @@
 
 namespace flextip {
 
-/// One moment. `eyes` hold what each camera saw; one that saw nothing has no corners.
+/// One moment. `eyes` hold each camera's corners; a camera that saw nothing has none.
 struct StereoView {
   std::size_t index = 0;  ///< among all pairs given
   Pose T_C0B;
@@ -45,9 +45,10 @@ struct StereoSolution {
   }
   int Size() const { return ViewStart(views.size()); }
   int CornersUsed() const;
-  /// Root of the mean squared distance of the corners used, of both eyes (-1) or of one.
+  /// Returns the root of the mean squared distance (px) of the corners used, of both eyes (-1) or
+  /// of eye 0 or 1.
   double RmsPx(int eye = -1) const;
-  /// Where a corner of the board is, in B.
+  /// Returns the place of a corner of the board, in B (m).
   Eigen::Vector3d CornerOf(const SolvedView& eye, std::size_t i) const {
     return warp.Bent(eye.x_B[i]) + shape.Of(eye.ids[i]);
   }
@@ -55,7 +56,8 @@ struct StereoSolution {
     return eye == 0 ? view.T_C0B : T_C0C1.Inverse() * view.T_C0B;
   }
 
-  /// noise_px^2 times the inverse of `normal_matrix`. Empty where the views do not determine it.
+  /// Returns noise_px^2 times the inverse of `normal_matrix`. Empty where the views do not
+  /// determine it.
   Eigen::MatrixXd Covariance() const;
 };
 

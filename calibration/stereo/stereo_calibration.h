@@ -11,7 +11,7 @@
 
 namespace flextip {
 
-/// What was seen at one moment; an eye may have seen no board (its sighting's `reason` says why).
+/// The sightings of one moment; an eye may have seen no board (its sighting's `reason` says why).
 struct StereoPair {
   std::array<BoardView, 2> eyes;
 };
@@ -55,14 +55,14 @@ struct StereoResult {
   int pairs_used = 0, single_views_used = 0;
 
   bool IsUsable() const { return status == StereoStatus::kOk; }
-  /// Of (dw, dp) of T_C0C1.
+  /// Returns the covariance of (dw, dp) of T_C0C1 (rad, m).
   Eigen::MatrixXd PairCovariance() const {
     return covariance.block(solution.PairStart(), solution.PairStart(), 6, 6);
   }
 };
 
-/// Each eye alone first, with its outliers and its lens; then both together. Throws InputError for
-/// sizes that are not positive.
+/// Calibrates each eye alone first, with its outliers and its lens, then both together. Throws
+/// InputError for sizes that are not positive.
 StereoResult CalibrateStereo(const std::vector<StereoPair>& pairs,
                              const std::array<Eigen::Vector2i, 2>& sizes_px, const BoardSpec& board,
                              const StereoOptions& options = {});

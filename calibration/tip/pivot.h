@@ -44,8 +44,8 @@ struct PivotResidual {
   std::string reason;  ///< why not
 };
 
-/// What one more turn would bring: `poses` further ones, `angle_rad` about `axis_B` from the middle
-/// of those there are.
+/// The gain of a further turn: `poses` more poses, `angle_rad` about `axis_B` from the middle of
+/// the present poses.
 struct PivotAdvice {
   Eigen::Vector3d axis_B = Eigen::Vector3d::UnitX();
   double angle_rad = 0.0;

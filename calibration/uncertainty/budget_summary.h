@@ -39,7 +39,8 @@ struct StatedChain {
   std::vector<MissingCalibration> missing;
 };
 
-/// Gathers them; of several calibrations with one entry the last counts, as it does for the values.
+/// Gathers the covariances; of several calibrations with the same entry the last counts, as for the
+/// values.
 StatedChain GatherChain(const std::vector<const Calibration*>& calibrations);
 
 }  // namespace flextip

@@ -19,7 +19,7 @@ struct CameraUncertainty {
 /// without them no next view is looked for.
 std::optional<CameraUncertainty> FindUncertainty(const CameraSolution& solution,
                                                  const std::vector<Eigen::Vector3d>& x_B);
-/// The same of camera `eye`, 0 or 1, of two that were calibrated together; without next views.
+/// Returns the same for camera `eye`, 0 or 1, of two calibrated together; without next views.
 std::optional<CameraUncertainty> FindUncertainty(const StereoSolution& solution, int eye);
 
 }  // namespace flextip

@@ -12,16 +12,16 @@
 
 namespace flextip {
 
-/// What is known of the calibrations' errors; empty: not known, and not in the budget.
+/// The known covariances of the calibrations; empty: not known, and not in the budget.
 struct ChainCovariance {
   Eigen::MatrixXd lens;        ///< of fu, fv, cu, cv (px), then the coefficients
   Eigen::MatrixXd hand_eye;    ///< 6x6, of (dw, dp) of T_RC (rad, m)
   Eigen::MatrixXd tip_offset;  ///< 3x3, of the tip in E (m)
 };
 
-/// What bends the shaft between collar and tip. With the force measured (`load0`) the tracker
-/// corrects the bend, and what is left is how well force and stiffness are known; else it takes the
-/// shaft for rigid, and is off by all of it.
+/// The bend of the shaft between collar and tip. With the force measured (`load0`) the tracker
+/// corrects the bend; the errors of force and stiffness remain. Else the tracker takes the shaft
+/// for rigid, and is off by all of the bend.
 struct TipBending {
   Eigen::Vector3d f_R = Eigen::Vector3d::Zero();         ///< force on the tip (N)
   Eigen::Vector3d weight_N_m = Eigen::Vector3d::Zero();  ///< of the shaft per length, in R
@@ -45,8 +45,9 @@ struct TipBudget {
   Eigen::Vector3d depth_R = Eigen::Vector3d::UnitX();  ///< from the camera to the tip, unit
   std::vector<BudgetPart> parts;
   Eigen::Vector3d bend_R = Eigen::Vector3d::Zero();  ///< of the tip against the rigid shaft (m)
-  /// Of all parts in the total. They are taken for independent: a hand-eye calibration made with
-  /// the same lens has taken up some of the lens's error, and the truth is then less than this.
+  /// Returns the covariance (m^2) of all parts in the total, taken for independent. A hand-eye
+  /// calibration made with the same lens has taken up some of the lens's error; the true covariance
+  /// is then less.
   Eigen::Matrix3d TotalCovariance() const;
 };
 
@@ -56,7 +57,7 @@ struct DepthAndAcross {
 };
 DepthAndAcross SplitByDepth(const Eigen::Matrix3d& covariance_R, const Eigen::Vector3d& depth_R);
 
-/// The budget of a tip that was found by the corners of `tags`. Empty where these give no pose.
+/// Returns the budget of a tip found by the corners of `tags`. Empty where these give no pose.
 std::optional<TipBudget> BudgetOfTip(const CameraCalibration& camera, const TagCollar& collar,
                                      const std::vector<TagDetection>& tags,
                                      const ChainCovariance& chain,

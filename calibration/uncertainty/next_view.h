@@ -20,18 +20,19 @@ struct NextView {
   std::string words;                       ///< "hold the board in the upper left, ..."
 };
 
-/// Places of the board of which all corners would be seen: in nine parts of the picture and at
-/// four distances, facing the camera and tilted four ways.
+/// Returns places of the board at which all corners would be seen: in nine parts of the picture and
+/// at four distances, facing the camera and tilted four ways.
 std::vector<Pose> CandidateViews(const CameraSolution& solution,
                                  const std::vector<Eigen::Vector3d>& x_B);
 
-/// The candidates, the one that lowers the uncertainty most first.
+/// Returns the candidates, sorted: the view that lowers the uncertainty most comes first.
 std::vector<NextView> RankNextViews(const ProjectionUncertainty& uncertainty,
                                     const std::vector<Pose>& candidates,
                                     const std::vector<Eigen::Vector3d>& x_B,
                                     const NextViewOptions& options);
 
-/// "hold the board in the upper left of the picture, 310 mm away, its left side 40 deg nearer".
+/// Returns "hold the board in the upper left of the picture, 310 mm away, its left side 40 deg
+/// nearer".
 std::string HoldTheBoard(const CameraCalibration& camera, const Eigen::Vector3d& centre_B,
                          const Pose& T_CB);
 

@@ -13,33 +13,34 @@ namespace flextip {
 
 /// Calibrate again from corners with other noise: lens, camera and boards come out a little
 /// different, together. A point that stands still in the world, that is relative to the boards, is
-/// then expected at another pixel; how far is what counts for measuring, and not how well each
-/// parameter alone is known (a longer focal length with the boards further away sees the same).
-/// As the boards do not move alike, the mean over them is the world, as in mrcal ("mean-pcam",
-/// https://mrcal.secretsauce.net/uncertainty.html). Of that mean only a small turn and shift
-/// (w, t) are needed: a point x_C of the world is at x_C + w x x_C + t in the new camera.
+/// then expected at another pixel. The distance to that pixel counts for measuring, not the
+/// uncertainty of each parameter alone (a longer focal length with the boards further away sees the
+/// same). As the boards do not move alike, the mean over them is the world, as in mrcal
+/// ("mean-pcam", https://mrcal.secretsauce.net/uncertainty.html). Of that mean only a small turn
+/// and shift (w, t) are needed: a point x_C of the world is at x_C + w x x_C + t in the new camera.
 class ProjectionUncertainty {
  public:
-  /// Empty where the views do not determine the solution.
+  /// Returns the uncertainty of a calibrated camera. Empty where the views do not determine the
+  /// solution.
   static std::optional<ProjectionUncertainty> Of(const CameraSolution& solution);
-  /// Of one of two cameras that were calibrated together.
+  /// Returns the uncertainty of camera `eye` of two calibrated together.
   static std::optional<ProjectionUncertainty> Of(const StereoSolution& solution, int eye);
 
-  /// Of the pixel (px^2) of what is seen at `px` in the plane z = `depth_m`; HUGE_VAL: at infinity.
-  /// Empty where the lens model sees nothing there.
+  /// Returns the covariance of a pixel (px^2): of the point seen at `px` in the plane z =
+  /// `depth_m`, or at infinity (HUGE_VAL). Empty where the lens model sees nothing there.
   std::optional<Eigen::Matrix2d> CovariancePx(const Eigen::Vector2d& px, double depth_m) const;
 
-  /// The same of the point `x_C` of the world (m); `infinite`: of its direction.
+  /// Returns the same for the point `x_C` of the world (m), or for its direction (`infinite`).
   Eigen::Matrix2d CovarianceOfPoint(const Eigen::Vector3d& x_C, bool infinite) const;
 
-  /// What it becomes with one more view: the board at T_CB with its corners `x_B`, each seen with
-  /// the noise of the others.
+  /// Returns the uncertainty after one more view: the board at T_CB with its corners `x_B` (m),
+  /// each seen with the noise of the others.
   ProjectionUncertainty WithView(const Pose& T_CB, const std::vector<Eigen::Vector3d>& x_B) const;
 
   const CameraCalibration& Camera() const { return camera_; }
   const BoardWarp& Warp() const { return warp_; }
   double NoisePx() const { return noise_px_; }
-  /// Of the intrinsics, the warp where it was estimated, w (rad) and t (m).
+  /// Returns the covariance of the intrinsics, the warp where it was estimated, w (rad) and t (m).
   const Eigen::MatrixXd& Covariance() const { return covariance_; }
 
  private:
@@ -50,7 +51,7 @@ class ProjectionUncertainty {
   Eigen::MatrixXd covariance_;
 };
 
-/// A covariance's standard deviation in the direction where that is largest.
+/// Returns the standard deviation in the direction where it is largest.
 double WorstSd(const Eigen::Matrix2d& covariance);
 
 /// The uncertainty over the picture: the worst direction's standard deviation.
@@ -59,20 +60,19 @@ struct UncertaintyMap {
   std::vector<double> x_px, y_px;  ///< of the grid's columns and rows
   Eigen::MatrixXd sd_px;           ///< rows x columns; NaN where the lens model sees nothing
   Eigen::MatrixXd sd_mm;           ///< across, in the plane z = depth_m; empty at infinity
-  double MeanPx() const;           ///< over what is seen
+  double MeanPx() const;           ///< over the places seen
   double LargestPx() const;
   double CentrePx() const;
   double MeanMm() const;
 };
 
-/// Over `columns` x `rows` places from edge to edge.
+/// Maps the uncertainty over `columns` x `rows` places from edge to edge of the picture.
 UncertaintyMap MapUncertainty(const ProjectionUncertainty& uncertainty, double depth_m,
                               int columns = 25, int rows = 19);
 
-/// The median distance of the boards' centres along the axis (m): the distance that was calibrated
-/// at.
+/// Returns the median distance of the boards' centres along the axis (m): the calibrated distance.
 double MedianBoardDepth(const CameraSolution& solution);
-/// The same from camera `eye`.
+/// Returns the same for camera `eye`.
 double MedianBoardDepth(const StereoSolution& solution, int eye);
 
 }  // namespace flextip

@@ -14,10 +14,10 @@ struct UnknownPart {
   std::string part, reason;
 };
 
-/// Returns what to improve first: the largest part of the total, in words.
+/// Returns the part to improve first: the largest of the total, in words.
 std::string BudgetAdvice(const std::vector<BudgetPartSize>& parts);
 
-/// `parts` as SummariseBudgets gives them, over `frames` frames.
+/// Judges `parts` as SummariseBudgets gives them, over `frames` frames.
 CalibrationVerdict JudgeBudget(const std::vector<BudgetPartSize>& parts,
                                const std::vector<UnknownPart>& not_known, std::size_t frames);
 

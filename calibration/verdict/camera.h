@@ -1,4 +1,4 @@
-// Calibrations of one camera and of two, judged: from corners to what a page says of them.
+// Calibrations of one camera and of two, judged: from corners to the verdict of the page.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct JudgedStereo {
   CalibrationVerdict verdict;
 };
 
-/// The same of two cameras, left and right; their views are pairs in their order.
+/// Calibrates and judges two cameras, left and right; their views are pairs in their order.
 JudgedStereo CalibrateAndJudge(const std::array<CornersFile, 2>& eyes,
                                const StereoOptions& options = {});
 

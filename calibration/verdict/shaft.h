@@ -1,4 +1,4 @@
-// Judges what known loads told of gages and stiffness.
+// Judges the calibrations of gages and stiffness.
 #pragma once
 
 #include <string>

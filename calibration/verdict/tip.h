@@ -12,7 +12,7 @@ namespace flextip {
 /// "W", "S" or "E".
 std::string AdviceText(const PivotResult& result, const std::string& body);
 
-/// `tip_name` as in calibration.yaml: "tip.p_WE", "tip.p_SE" or "tags0.p_E".
+/// Judges a pivot; `tip_name` as in calibration.yaml: "tip.p_WE", "tip.p_SE" or "tags0.p_E".
 CalibrationVerdict JudgeTip(const PivotResult& result, const std::string& tip_name,
                             const std::string& body);
 

@@ -24,7 +24,7 @@ struct CalibrationVerdict {
   std::vector<std::string> reasons;                  ///< to be careful, and to know
   std::vector<Value> values;                         ///< found, and how well it fits
   std::vector<Calibration::Unobservable> not_found;  ///< as in calibration.yaml
-  std::string next;                                  ///< what to do next
+  std::string next;                                  ///< the next step
 
   /// Adds a reason to be careful, which takes a good grade down.
   void Beware(const std::string& reason);

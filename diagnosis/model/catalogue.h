@@ -34,12 +34,13 @@ std::unique_ptr<Effect> MakeStrainDrift();
 
 using Catalogue = std::vector<std::unique_ptr<Effect>>;
 
-/// The effects that `samples` could show, in the order of docs; those named in `without` are left
-/// out. Fresh objects: some hold what a diagnosis finds on its way (a frequency).
+/// Returns the effects that `samples` could show, in the order of docs, without those named in
+/// `without`. The objects are new: some hold values that a diagnosis finds on its way (a
+/// frequency).
 Catalogue MakeCatalogue(const SampleSet& samples, const std::vector<std::string>& without = {},
                         const EffectMakers& own = {});
 
-/// One effect by its name; null where there is none of that name.
+/// Returns the effect of that name; null for an unknown name.
 std::unique_ptr<Effect> MakeEffect(const std::string& name, const EffectMakers& own = {});
 
 }  // namespace flextip::diagnosis

@@ -53,7 +53,7 @@ class InputChange {
     Derivative(j, input, factor);
   }
   void Add(int input, double value) { inputs_[input] += value; }
-  /// Returns the input as the effects before this one left it.
+  /// Returns the input as the earlier effects left it.
   double Input(int input) const { return inputs_[input]; }
   void Derivative(int j, int input, double value) {
     if (value != 0.0) columns_.push_back({first_ + j, input, value});
@@ -112,7 +112,7 @@ class Effect {
   virtual std::optional<ScannedParameter> Scanned(const SampleSet&) const { return {}; }
   /// Returns the two shapes at `now`, by which amplitudes move the scanned inputs.
   virtual Eigen::Vector2d ScanShapes(double value, const Instant& now) const;
-  /// The value about which the scanned parameter is fitted.
+  /// Returns the value about which the scanned parameter is fitted.
   virtual double ScanCentre() const { return 0.0; }
   virtual void SetScanCentre(double /*value*/) {}
 

@@ -1,5 +1,5 @@
-// An extended model at one instant after the other: what it changes in the shaft, and the sensors'
-// effects undone.
+// An extended model at each instant in turn: its changes of the shaft, and the sensors' effects
+// undone.
 #pragma once
 
 #include <memory>
@@ -12,13 +12,12 @@
 
 namespace flextip::diagnosis {
 
-/// Made for one run: effects have a memory. Advance and Correct do what diagnosis/geometry and
-/// sensor_prediction do, the latter backwards.
+/// Made for one run: effects have a memory. Advance does the work of diagnosis/replay/geometry,
+/// Correct that of sensor_prediction, backwards.
 class ExtendedInstrument : public InstrumentModel {
  public:
-  /// Of `base` the instrument, port, gravity and the camera's pose are taken. Throws InputError for
-  /// an effect that is neither in the catalogue nor in
-  /// `own`.
+  /// Takes instrument, port, gravity and the camera's pose from `base`. Throws InputError for an
+  /// effect that is neither in the catalogue nor in `own`.
   ExtendedInstrument(const ExtendedModel& model, const Recording& base,
                      const EffectMakers& own = {});
   ~ExtendedInstrument() override;
@@ -27,7 +26,7 @@ class ExtendedInstrument : public InstrumentModel {
   const ShaftChange& Shaft() const override { return shaft_; }
   Measurements Correct(const Measurements& measured) const override;
 
-  /// Inputs at this instant, delays among them.
+  /// Returns the inputs at this instant, delays among them.
   const SampleInputs& Inputs() const { return inputs_; }
 
  private:

@@ -1,5 +1,4 @@
-// What a diagnosis found, as something that can be kept in a file and used: model.yaml
-// (docs/formats.md).
+// The result of a diagnosis as a model to keep in a file and use: model.yaml (docs/formats.md).
 #pragma once
 
 #include <Eigen/Dense>
@@ -20,7 +19,8 @@ struct ExtendedModel {
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< which EM gradients are about
   TimeNs start_ns = 0;                                 ///< t = 0 of phases and drifts
 
-  /// Of effects or those within tolerance; null where it is not there.
+  /// Returns the fit of an effect beyond or within tolerance; null where the model does not have
+  /// the effect.
   const EffectFit* Find(const std::string& effect) const;
 };
 

@@ -1,5 +1,5 @@
-// What a sample of the replayed model depends on: the rod's inputs (kinematics/effect_rod.h) and
-// the sensors'. Effects write into these, and every prediction is differentiated by them.
+// The inputs of a sample of the replayed model: the rod's inputs (kinematics/effect_rod.h) and the
+// sensors'. Effects write into these, and every prediction is differentiated by them.
 #pragma once
 
 #include <Eigen/Dense>
@@ -21,7 +21,7 @@ inline constexpr int kCameraDelay = kEmDelay + 1;
 inline constexpr int kCameraTurn = kCameraDelay + 1;  ///< of the camera about itself, rad
 inline constexpr int kCameraShift = kCameraTurn + 3;  ///< of the camera
 inline constexpr int kLogFocal = kCameraShift + 3;    ///< of the true focal length over calibrated
-/// What a changed focal length turns a pose by, over the tangent of how far off the axis it is.
+/// The turn of a pose by a changed focal length, over the tangent of the pose's angle off the axis.
 inline constexpr int kFocalTurn = kLogFocal + 1;
 inline constexpr int kTagOffset = kFocalTurn + 1;      ///< in E, of the tags against their mount
 inline constexpr int kStrainGain = kTagOffset + 3;     ///< per gage, less one

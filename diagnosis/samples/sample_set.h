@@ -1,5 +1,5 @@
-// A recording as the diagnosis sees it: one sample for each time of the wrist, with what every
-// sensor said nearest to it.
+// A recording as the diagnosis sees it: one sample for each time of the wrist, with every sensor's
+// nearest reading.
 #pragma once
 
 #include <Eigen/Dense>
@@ -20,11 +20,10 @@ namespace flextip::diagnosis {
 struct DiagnosisSample {
   double t_s = 0.0;                                    ///< since the first sample
   Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();      ///< smoothed as far as noise allows
-  double p_RW_noise_m = 0.0;                           ///< what noise is left, per axis
+  double p_RW_noise_m = 0.0;                           ///< remaining noise, per axis
   Eigen::Vector3d y_wrist = Eigen::Vector3d::UnitY();  ///< the instrument's y axis, in R
   std::bitset<row::kCount> present;
-  /// What a sensor said, whether it is judged (present) or not: late sensors speak of other
-  /// samples.
+  /// A sensor's reading, judged (present) or not: late sensors speak of other samples.
   std::bitset<row::kCount> spoken;
   Eigen::Vector3d d_wrist = Eigen::Vector3d::UnitX();  ///< shaft's direction at the wrist
   Eigen::Vector3d p_RS = Eigen::Vector3d::Zero();      ///< EM sensor
@@ -63,7 +62,7 @@ struct SampleSet {
   bool has_wrist_direction = false, has_port_direction = false, has_load = false;
   bool has_camera = false;  ///< T_RC is known
   Pose T_RC;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of what the EM sensor or vision saw, in R
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the EM or vision positions, in R
   double period_s = 0.0;                             ///< between samples, the median
   bool resolved_in_time = true;                      ///< the motion from sample to sample is smooth
   std::vector<DiagnosisSample> samples;

@@ -31,13 +31,13 @@ struct FieldBasis {
   Eigen::VectorXd At(const Eigen::Vector3d& u) const;
 };
 
-/// The basis that belongs to so many coefficients; throws InputError where there is none.
+/// Returns the basis for that number of coefficients. Throws InputError where there is none.
 FieldBasis BasisOf(std::size_t coefficients);
 
-/// The true position for a measured one (m, in R). Throws InputError as BasisOf.
+/// Returns the true position for a measured one (m, in R). Throws InputError as BasisOf.
 Eigen::Vector3d ApplyField(const FieldCorrection& field, const Eigen::Vector3d& p);
 
-/// Whether the correction is known there.
+/// Returns whether the correction is known at that position.
 bool FieldCovers(const FieldCorrection& field, const Eigen::Vector3d& p);
 
 }  // namespace flextip

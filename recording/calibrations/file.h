@@ -1,4 +1,5 @@
-// calibration.yaml: what a calibration found, with its covariance and what it could not find.
+// calibration.yaml: the values that a calibration found, their covariance, and the values not
+// found.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,8 +13,8 @@
 
 namespace flextip {
 
-/// What a calibration found. Names are places of a recording (docs/formats.md): `cam0.T_RC`,
-/// `strain0.gage_matrix`, `instrument.bending_stiffness_Nm2`.
+/// The values that a calibration found. Names are places of a recording (docs/formats.md):
+/// `cam0.T_RC`, `strain0.gage_matrix`, `instrument.bending_stiffness_Nm2`.
 struct Calibration {
   std::string kind;                                    ///< "hand-eye", "tip", "em", ...
   std::map<std::string, Pose> poses;                   ///< by name
@@ -24,14 +25,14 @@ struct Calibration {
   /// one being (exp([dw]x) R, p + dp). Empty where it is not known.
   Eigen::MatrixXd covariance;
 
-  /// What the data could not tell.
+  /// The parameters that the data could not tell.
   struct Unobservable {
     std::string parameter, reason;
   };
   std::vector<Unobservable> unobservable;
 
-  /// `NAME.w[0..2]`, `NAME.p[0..2]` for each pose, then `NAME` or `NAME[i]` for the numbers; each
-  /// kind in alphabetical order of the names.
+  /// Returns `NAME.w[0..2]`, `NAME.p[0..2]` for each pose, then `NAME` or `NAME[i]` for the
+  /// numbers; each kind in alphabetical order of the names.
   std::vector<std::string> CoordinateNames() const;
   /// Rows and columns of `covariance` that belong to one entry: the first one's place, and how
   /// many. Throws InputError where there is no such entry.
@@ -39,7 +40,7 @@ struct Calibration {
     int first = 0, count = 0;
   };
   Range RangeOf(const std::string& name) const;
-  /// That entry's block of `covariance`; empty where that is.
+  /// Returns that entry's block of `covariance`; empty where the covariance is.
   Eigen::MatrixXd CovarianceOf(const std::string& name) const;
 };
 
@@ -50,7 +51,7 @@ void AddLens(const std::string& camera, const CameraCalibration& lens, Calibrati
 /// of another size, order or sign.
 Calibration ReadCalibration(const std::filesystem::path& file);
 
-/// Every number exact. Throws WorkError where the disk refuses, or where there are NaNs.
+/// Writes every number exactly. Throws WorkError where the disk refuses, or where there are NaNs.
 void WriteCalibration(const std::filesystem::path& file, const Calibration& calibration);
 
 }  // namespace flextip

@@ -25,10 +25,10 @@ class FrameSource {
   FrameSource(const FrameSource&) = delete;
   FrameSource& operator=(const FrameSource&) = delete;
 
-  /// How many there will be; 0: not known.
+  /// Returns the number of frames in the source; 0: not known.
   virtual std::size_t Count() const = 0;
-  /// The next frame; empty after the last, and where a video ends early. Throws InputError for an
-  /// unreadable frame.
+  /// Returns the next frame; empty after the last, and where a video ends early. Throws InputError
+  /// for an unreadable frame.
   virtual std::optional<Frame> Next() = 0;
   /// Passes over the next `frames` without decoding them where that can be helped.
   virtual void Skip(std::size_t frames) = 0;
@@ -37,27 +37,27 @@ class FrameSource {
   FrameSource() = default;
 };
 
-/// The frames of RECORDING/`name` ("cam0"). Throws InputError where there are none or the video
-/// cannot be opened.
+/// Opens the frames of RECORDING/`name` ("cam0"). Throws InputError where there are none or the
+/// video cannot be opened.
 std::unique_ptr<FrameSource> OpenRecordedFrames(const std::filesystem::path& recording,
                                                 const std::string& name, const CameraStream& camera,
                                                 const GreyRange& range = {});
 
-/// A folder of PNG, JPEG or TIFF files or a video. Frames are stamped from 0 on by `rate_hz`; where
-/// that is empty by the files' names if those are nanoseconds, else by the video's own rate or the
-/// camera's.
+/// Opens a folder of PNG, JPEG or TIFF files or a video. Stamps frames from 0 on by `rate_hz`.
+/// Where that is empty, stamps by the files' names if those are nanoseconds, else by the video's
+/// own rate or the camera's.
 std::unique_ptr<FrameSource> OpenPlainFrames(const std::filesystem::path& source,
                                              const CameraCalibration& camera,
                                              const std::optional<double>& rate_hz,
                                              const GreyRange& range = {});
 
-/// The times and names of the pictures in a folder, as OpenPlainFrames takes them: in the order of
-/// the numbers in their names. Names are nanoseconds where all are whole numbers that lie at least
+/// Returns the times and names of the pictures in a folder, as OpenPlainFrames takes them: in the
+/// order of the numbers in their names. Names are nanoseconds where all are whole numbers at least
 /// 0.1 ms apart.
 Series<std::string> PicturesInFolder(const std::filesystem::path& folder, double rate_hz,
                                      bool times_from_names);
 
-/// A device number, a URL or a file, stamped by the clock (nanoseconds since 1970).
+/// Opens a device number, a URL or a file. Stamps by the clock (nanoseconds since 1970).
 std::unique_ptr<FrameSource> OpenLiveFrames(const std::string& source,
                                             const CameraCalibration& camera);
 

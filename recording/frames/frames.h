@@ -13,14 +13,14 @@ struct GreyRange {
   double black = 0.0, white = 65535.0;
 };
 
-/// The picture in blue, green, red with 8 bits. Throws InputError naming the file where it is
+/// Reads a picture in blue, green, red with 8 bits. Throws InputError naming the file where it is
 /// missing, empty, cut off or no picture, and for pixels of other than 8 or 16 bits.
 Image ReadImageFile(const std::filesystem::path& file);
 
-/// The same with one channel where the file has one.
+/// Reads the same, with a single channel where the file has a single channel.
 Image ReadGreyOrColour(const std::filesystem::path& file, const GreyRange& range = {});
 
-/// A copy with three channels.
+/// Returns a copy with three channels.
 Image ToColour(const Image& image);
 
 /// Keeps the video library's own messages off stderr. Before the first video is opened.
@@ -29,7 +29,7 @@ void SilenceVideoCodecs();
 /// Throws WorkError where the disk refuses.
 void WritePng(const std::filesystem::path& file, const Image& image);
 
-/// A video written frame by frame. What was not closed by Finish is of no use.
+/// A video written frame by frame. A file not closed by Finish is of no use.
 class VideoFile {
  public:
   VideoFile(const std::filesystem::path& file, double rate_hz);
@@ -43,7 +43,7 @@ class VideoFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The codecs write what they dislike straight to stderr; whoever calls them says it in one line.
+/// The codecs write their complaints straight to stderr; the caller reports them in one line.
 class QuietStderr {
  public:
   QuietStderr();

@@ -1,5 +1,5 @@
 // One reader and one writer for each sensor's folder. `folder` is RECORDING/wrist0 and so on;
-// readers throw InputError with file and line, and log what they had to skip.
+// readers throw InputError with file and line, and log skipped data.
 #pragma once
 
 #include <filesystem>
@@ -16,12 +16,13 @@ void WriteWrist(const std::filesystem::path& folder, const WristStream& stream);
 CommandStream ReadCommand(const std::filesystem::path& folder, ReadLog& log);
 void WriteCommand(const std::filesystem::path& folder, const CommandStream& stream);
 
-/// An EM sensor on the shaft is `length_m` from the tip at most; one on the port (`on_port`) needs
-/// no distance.
+/// Reads an EM sensor. A sensor on the shaft is `length_m` from the tip at most; a sensor on the
+/// port (`on_port`) needs no distance.
 EmStream ReadEm(const std::filesystem::path& folder, double length_m, bool on_port, ReadLog& log);
 void WriteEm(const std::filesystem::path& folder, const EmStream& stream);
 
-/// The stations lie along the shaft, within `length_m`, the first one nearer to the wrist.
+/// Reads strain gages. The stations lie along the shaft, within `length_m`, the first one nearer to
+/// the wrist.
 StrainStream ReadStrain(const std::filesystem::path& folder, double length_m, ReadLog& log);
 void WriteStrain(const std::filesystem::path& folder, const StrainStream& stream);
 
@@ -31,7 +32,7 @@ void WriteLoad(const std::filesystem::path& folder, const LoadStream& stream);
 CameraStream ReadCamera(const std::filesystem::path& folder, bool check_frames, ReadLog& log);
 void WriteCamera(const std::filesystem::path& folder, const CameraStream& stream);
 
-/// A collar's sensor.yaml, alone.
+/// Reads a collar's sensor.yaml, alone.
 TagCollar ReadCollarFile(const std::filesystem::path& file, ReadLog& log);
 TagCollar ReadTags(const std::filesystem::path& folder, ReadLog& log);
 void WriteTags(const std::filesystem::path& folder, const TagCollar& collar);
@@ -39,7 +40,7 @@ void WriteTags(const std::filesystem::path& folder, const TagCollar& collar);
 VisionStream ReadVision(const std::filesystem::path& folder, ReadLog& log);
 void WriteVision(const std::filesystem::path& folder, const VisionStream& stream);
 
-/// The parts of WriteVision, for a table that is written as its rows come.
+/// Writes parts of a vision table, for rows that come one by one.
 const std::vector<std::string>& VisionColumns();  ///< without the time
 void AddVisionRow(CsvWriter& csv, const Sample<TipObservation>& tip);
 void WriteVisionSettings(const std::filesystem::path& folder, const VisionStream& stream);

@@ -41,15 +41,15 @@ class CsvReader {
   /// Goes to the next row; false after the last. Throws InputError for a wrong number of fields.
   bool Next();
 
-  /// Fields of the current row; `column` counts as in the constructor's `columns`.
+  /// Returns a field of the current row; `column` counts as in the constructor's `columns`.
   std::string_view Text(std::size_t column) const;
   bool Empty(std::size_t column) const { return Text(column).empty(); }
-  /// Finite; throws InputError for anything else.
+  /// Returns a finite number. Throws InputError for anything else.
   double Number(std::size_t column) const;
   TimeNs Integer(std::size_t column) const;
 
   long line() const { return line_; }
-  /// An error at the current line.
+  /// Returns an error at the current line.
   InputError Error(const std::string& what) const;
 
  private:
@@ -92,7 +92,7 @@ class CsvWriter {
   void EndRow();  ///< the row must be full
 
   const std::string& text() const { return text_; }
-  /// What was written since the last call, for tables that go to the disk row by row.
+  /// Returns the text since the last call, for tables that go to the disk row by row.
   std::string TakeText() { return std::exchange(text_, {}); }
 
  private:

@@ -1,5 +1,5 @@
 // The closed loop: plant -> sensors (and laparoscope -> vision) -> estimation -> control -> wrist.
-// Estimator and controller are given what the sensors say and nothing else.
+// Estimator and controller get the sensors' readings and nothing else.
 #pragma once
 
 #include <functional>

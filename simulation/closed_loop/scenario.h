@@ -1,4 +1,4 @@
-// A scenario file: what `flextip simulate` runs (keys in docs/scenarios.md).
+// A scenario file for `flextip simulate` (keys in docs/scenarios.md).
 #pragma once
 
 #include <filesystem>

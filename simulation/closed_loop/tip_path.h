@@ -28,18 +28,21 @@ struct PathSetup {
 /// Where the tip should be, update by update.
 class TipPath {
  public:
-  /// `T_RE`: the tip at the start.
+  /// Takes the tip at the start, `T_RE`.
   TipPath(const PathSetup& setup, const Pose& T_RE, double update_rate_hz);
 
-  /// The goal of the next update. `p_RE_known` is the tip as the controller knows it.
+  /// Returns the goal of the next update (m, in R). `p_RE_known` is the tip as the controller knows
+  /// it.
   Eigen::Vector3d Advance(const Eigen::Vector3d& p_RE_known);
-  /// The tip's direction wanted with the last goal: turns evenly along a leg. Empty: any.
+  /// Returns the tip's wished direction with the last goal: it turns evenly along a leg. Empty:
+  /// any.
   std::optional<Eigen::Vector3d> Direction() const;
   bool Done() const { return done_; }
 
-  /// How far `p` is from the path travelled so far: from the leg under way and the one before.
+  /// Returns the distance (m) of `p` from the path travelled so far: from the current leg and the
+  /// last.
   double Deviation(const Eigen::Vector3d& p) const;
-  /// How many updates the path takes at most.
+  /// Returns the largest number of updates that the path takes.
   int MaxUpdates() const;
 
  private:

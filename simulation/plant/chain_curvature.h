@@ -9,13 +9,15 @@
 
 namespace flextip::simulation {
 
-/// The wrist's tangent: the links' directions, which hold at their middles, continued to the end.
+/// Returns the wrist's tangent: the links' directions, which hold at their middles, continued to
+/// the end.
 Eigen::Vector3d WristTangent(const std::vector<Eigen::Vector3d>& u);
 
-/// The instrument's axes at the wrist, x along the shaft: R's turned without twist, after the roll.
+/// Returns the instrument's axes at the wrist, x along the shaft: R's turned without twist, after
+/// the roll.
 Eigen::Matrix3d WristAxes(const Eigen::Vector3d& t_wrist, double roll_rad);
 
-/// `b`, normal to u, taken to v without twist.
+/// Returns `b`, normal to u, taken to v without twist.
 inline Eigen::Vector3d Carried(const Eigen::Vector3d& b, const Eigen::Vector3d& u,
                                const Eigen::Vector3d& v) {
   return b - b.dot(v) / (1.0 + u.dot(v)) * (u + v);
@@ -34,18 +36,18 @@ struct ChainRest {
   std::vector<double> twist;   ///< of the joint's two links against each other (rad)
   double wrist_torque = 0.0;   ///< sum of all T
   double wrist_twist = 0.0;    ///< between the wrist and the first link's middle
-  /// Sum of T beyond the joint and half its own.
+  /// Returns the sum of T beyond the joint and half its own.
   double Middle(int joint) const {
     const double before = joint > 0 ? torque[joint - 1] : wrist_torque;
     return 0.5 * (torque[joint] + before);
   }
 };
 
-/// The axes depend on the torsion and the torsion on the axes: this takes one from what `rest`
-/// holds from the last call, so that it converges along with the chain's iterations.
+/// Updates axes and torsion, which depend on each other: takes the torsion of the last call from
+/// `rest`, so that it converges along with the chain's iterations.
 void UpdateRest(const ChainProblem& problem, const ChainState& state, ChainRest& rest);
 
-/// The moment in the joint behind `link` of the part beyond on the part before.
+/// Returns the moment (Nm) in the joint behind `link` of the part beyond on the part before.
 Eigen::Vector3d JointMoment(const ChainGeometry& geometry, const ChainState& state,
                             const ChainRest& rest, int link);
 

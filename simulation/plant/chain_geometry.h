@@ -30,17 +30,18 @@ class ChainGeometry {
 
   double h(int link) const { return link < n1_ ? h1_ : h2_; }
   double dh(int link) const { return link < n1_ ? dh1_ : dh2_; }
-  /// Length of shaft beyond the middle of `link`, whose weight that section carries.
+  /// Returns the length of shaft (m) beyond the middle of `link`, whose weight that section
+  /// carries.
   double beyond(int link) const;
   double dbeyond(int link) const;
-  /// Length of it that is beyond the port too.
+  /// Returns the part of that length that is beyond the port too.
   double inside(int link) const { return link < n1_ ? n2_ * h2_ : beyond(link); }
   double dinside(int link) const { return link < n1_ ? n2_ * dh2_ : dbeyond(link); }
-  /// Of the joint between `link` and the next one.
+  /// Returns the joint between `link` and the next one.
   ChainJoint Joint(int link) const;
   double JointLength(int link) const { return 0.5 * (h(link) + h(link + 1)); }
   double JointLengthSlope(int link) const { return 0.5 * (dh(link) + dh(link + 1)); }
-  /// Of the shaft at that joint, over the mean one, and its derivative.
+  /// Returns the shaft's stiffness at that joint, over the mean stiffness.
   double Stiffness(int link) const { return 1.0 + taper_ * (1.0 - 2.0 * JointPlace(link)); }
   double StiffnessSlope(int link) const;
   ChainPlace At(double place) const;
@@ -59,7 +60,7 @@ class ChainGeometry {
   ChainJoint joints_[3];  // without taper
 };
 
-/// Positions of the chain's nodes, true wrist to tip: n1 + n2 + 1 of them.
+/// Returns the positions of the chain's nodes, true wrist to tip: n1 + n2 + 1 of them.
 std::vector<Eigen::Vector3d> ChainNodes(const ChainProblem& problem, const ChainState& state);
 
 }  // namespace flextip::simulation

@@ -1,6 +1,6 @@
-// What the chain of chain.h is made of, what acts on it, and its state. Everything is in units of
-// the shaft's length L and of EI / L^2. The origin is the wrist where the arm would hold it without
-// force; the chain itself starts at the true wrist, which a yielding arm moves away from there.
+// The parts of the chain of chain.h, its loads, and its state. Everything is in units of the
+// shaft's length L and of EI / L^2. The origin is the wrist's place by the arm without force. The
+// chain itself starts at the true wrist, which a yielding arm moves away from the origin.
 #pragma once
 
 #include <Eigen/Dense>
@@ -16,7 +16,7 @@ struct ChainForce {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
 };
 
-/// What the port does besides holding the shaft sideways.
+/// The port's actions besides holding the shaft sideways.
 struct ChainPort {
   double compliance = 0.0;  ///< the port moves by this times the lateral force on it
   double play = 0.0;        ///< radius of the hole
@@ -79,10 +79,10 @@ struct ChainState {
   double contact = 0.0;                         ///< force of the second contact
 };
 
-/// All that acts on the shaft but the wrist: the force on the arm.
+/// Returns the force on the arm (N, in R): all that acts on the shaft but the wrist.
 Eigen::Vector3d ForceOnArm(const ChainProblem& problem, const ChainState& state);
 
-/// Where the true wrist is.
+/// Returns the true wrist's place (m, in R).
 inline Eigen::Vector3d TrueWrist(const ChainProblem& problem, const ChainState& state) {
   if (problem.wrist_compliance == 0.0) return Eigen::Vector3d::Zero();
   return problem.wrist_compliance * ForceOnArm(problem, state);

@@ -1,5 +1,5 @@
-// What a real instrument does that a nominal one does not: the plant's side of it, by its own
-// physics (the names and parameters are those of docs/effects.md). Neutral values: no effect.
+// A real instrument's differences from a nominal instrument: the plant's side, by its own physics
+// (the names and parameters are those of docs/effects.md). Neutral values: no effect.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,4 +1,4 @@
-// What the plant remembers from one equilibrium to the next.
+// The plant's memory from equilibrium to equilibrium.
 #pragma once
 
 #include <Eigen/Dense>

@@ -19,10 +19,10 @@ class Plant {
  public:
   explicit Plant(const PlantSetup& setup, const PlantOptions& options = {});
 
-  /// The equilibrium with the wrist measured at `p_RW`, at the time `t_s`: from the last one where
-  /// there is one, otherwise from the straight shaft with the load applied in steps. What has a
-  /// memory (backlash, friction, tissue on the shaft) goes on from the last equilibrium found; a
-  /// time before the last one's counts as no time passed.
+  /// Returns the equilibrium with the wrist measured at `p_RW` (m, in R), at the time `t_s`: from
+  /// the last equilibrium where there is one, otherwise from the straight shaft with the load
+  /// applied in steps. Effects with a memory (backlash, friction, tissue on the shaft) go on from
+  /// the last equilibrium found; a time before the last call's counts as no time passed.
   PlantShape Solve(const Eigen::Vector3d& p_RW, double t_s = 0.0);
 
   const PlantSetup& Setup() const { return setup_; }

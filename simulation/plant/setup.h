@@ -1,4 +1,4 @@
-// What the plant is made of, and the chain it becomes.
+// The parts of the plant, and its chain.
 #pragma once
 
 #include <Eigen/Dense>
@@ -35,14 +35,14 @@ struct PlantUnits {
   double length_m, stiffness_Nm2, force_N, moment_Nm;
 };
 
-/// Where the port's centre would be at `t_s` without force.
+/// Returns the place of the port's centre at `t_s` without force (m, in R).
 Eigen::Vector3d PortAt(const PlantSetup& setup, double t_s);
 
-/// Why there can be no such plant; empty where there can.
+/// Returns the reason why there can be no such plant; empty where there can.
 const char* WhatIsWrong(const PlantSetup& setup);
 
-/// The chain with the wrist held at `p_RW`, with `fraction` of all loads and deformations, without
-/// friction and without tissue on the shaft, which have a memory. Refers to `setup`.
+/// Returns the chain with the wrist held at `p_RW`, with `fraction` of all loads and deformations,
+/// without friction and without tissue on the shaft, which have a memory. Refers to `setup`.
 ChainProblem MakeChain(const PlantSetup& setup, const PlantOptions& options,
                        const Eigen::Vector3d& p_RW, double t_s, double fraction);
 

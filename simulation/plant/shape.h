@@ -1,4 +1,4 @@
-// One equilibrium of the plant: the shaft's shape and what acts on it.
+// One equilibrium of the plant: the shaft's shape and its loads.
 #pragma once
 
 #include <Eigen/Dense>
@@ -32,8 +32,8 @@ class PlantShape {
   Eigen::Vector3d f_wrist_N = Eigen::Vector3d::Zero();
   Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
 
-  // What effects change (plant_effects.h).
-  /// What encoders say; the true wrist is T_RW().p.
+  // Changed by effects (simulation/plant/effects.h).
+  /// The wrist by the encoders; the true wrist is T_RW().p.
   Eigen::Vector3d p_RW_measured = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();     ///< true centre of the port
   Eigen::Vector3d t_port = Eigen::Vector3d::UnitX();  ///< the shaft's tangent there
@@ -45,20 +45,20 @@ class PlantShape {
 
   bool IsUsable() const { return status == PlantStatus::kOk; }
 
-  /// The shaft at `s_m` from the wrist (0 to length_m), by cubic interpolation of the chain within
-  /// the part before or behind the port. Need IsUsable().
+  /// Returns a place on the shaft (m, in R) at `s_m` from the wrist (0 to length_m), by cubic
+  /// interpolation of the chain within the part before or behind the port. Needs IsUsable().
   Eigen::Vector3d Position(double s_m) const;
   Eigen::Vector3d Tangent(double s_m) const;  ///< unit
-  /// Internal moment of the part beyond on the part before (Nm).
+  /// Returns the internal moment of the part beyond on the part before (Nm).
   Eigen::Vector3d Moment(double s_m) const;
-  /// The wrist's frame carried along the shaft without twist but for what torsion there is; x is
-  /// the tangent.
+  /// Returns the wrist's frame carried along the shaft, twisted by the torsion alone; x is the
+  /// tangent.
   Pose Frame(double s_m) const;
 
-  /// The true wrist frame: x along the shaft; R's axes turned without twist from x to the tangent,
-  /// after a turn by the roll angle about x.
+  /// Returns the true wrist frame: x along the shaft; R's axes turned without twist from x to the
+  /// tangent, after a turn by the roll angle about x.
   Pose T_RW() const { return Frame(0.0); }
-  /// The tip: the end of the shaft, and what gives way there.
+  /// Returns the tip: the end of the shaft, and its yield there.
   Pose T_RE() const {
     const Pose end = Frame(length_m);
     return {end.R, end.p + tip_yield_m};

@@ -1,4 +1,5 @@
-// What hides an instrument from the camera, or makes it hard to read: each in frames of its own.
+// Hazards that hide an instrument from the camera, or make it hard to read: each in frames of its
+// own.
 #pragma once
 
 #include <Eigen/Dense>
@@ -87,7 +88,7 @@ struct Hazards {
   std::vector<OtherInstrument> others;
   std::vector<int> mirrored_tags;  ///< ids that the printer mirrored, left for right
 
-  /// Of the lens and all that is out of focus.
+  /// Returns the blur (px, standard deviation) of the lens and of all defocus.
   double BlurAt(int frame, double lens_sigma_px) const {
     double squared = lens_sigma_px * lens_sigma_px;
     for (const Defocus& d : defocus) squared += std::pow(d.SigmaAt(frame), 2);

@@ -1,5 +1,4 @@
-// The laparoscope: what its camera sees of the shaft, the tag collar and the tissue, as 8-bit
-// video.
+// The laparoscope: its camera's view of the shaft, the tag collar and the tissue, as 8-bit video.
 #pragma once
 
 #include <Eigen/Dense>
@@ -91,21 +90,22 @@ class Laparoscope {
   Laparoscope(Laparoscope&&) noexcept;
   Laparoscope& operator=(Laparoscope&&) noexcept;
 
-  /// The frame as the camera gives it. The same seed, number and curve give the same bytes.
+  /// Returns the frame as the camera gives it. The same seed, number and curve give the same bytes.
   Image Render(const ShaftCurve& curve, int frame_number) const;
 
-  /// With motion blur: the linear light's mean over the exposure, in which the shaft takes the
-  /// shapes `during_exposure` (at least one; at equal steps of time). Nothing else moves meanwhile.
+  /// Returns the frame with motion blur: the linear light's mean over the exposure, in which the
+  /// shaft takes the shapes `during_exposure` (at least one; at equal steps of time). Nothing else
+  /// moves meanwhile.
   Image Render(std::span<const ShaftCurve> during_exposure, int frame_number) const;
 
-  /// The noise-free linear light in each pixel (its mean over the pixel's area), smoke and exposure
-  /// included, as a lens without blur would give it.
+  /// Returns the noise-free linear light in each pixel (its mean over the pixel's area), smoke and
+  /// exposure included, as a lens without blur would give it.
   LinearImage RenderLinear(const ShaftCurve& curve, int frame_number) const;
 
-  /// The same behind the lens that blurs: what falls on the film.
+  /// Returns the same behind the lens that blurs: the light on the film.
   LinearImage RenderLight(const ShaftCurve& curve, int frame_number) const;
 
-  /// The exponent in use: the calibration's where it has one.
+  /// Returns the exponent in use: the calibration's where it has one.
   double Gamma() const;
 
  private:

@@ -1,4 +1,4 @@
-// What sensors do that their data sheets do not say (names and parameters as in docs/effects.md;
+// Effects of sensors that are not in their data sheets (names and parameters as in docs/effects.md;
 // the forms are the simulation's own). Neutral values: no effect.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What a pose was a moment ago, for sensors whose samples are stamped late.
+// A pose's recent past, for sensors whose samples are stamped late.
 #pragma once
 
 #include <deque>
@@ -13,9 +13,9 @@ namespace flextip::simulation {
 /// first, after the last it is the last.
 class PoseHistory {
  public:
-  /// In increasing time; an entry at the last one's time replaces it.
+  /// Adds a pose. Times increase; a pose at the last time replaces the last.
   void Add(TimeNs t_ns, const Pose& pose);
-  /// Needs an entry.
+  /// Returns the pose at `t_ns`. Needs an entry.
   Pose At(TimeNs t_ns) const;
 
  private:

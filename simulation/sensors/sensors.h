@@ -46,8 +46,8 @@ class SensorNoise {
   SensorNoise(std::uint64_t seed, NoiseDistribution distribution, double scale = 1.0,
               double correlation = 0.0)
       : rng_(seed), distribution_(distribution), scale_(scale), correlation_(correlation) {}
-  /// Standard deviation `sd` per axis, times the scale; a uniform distribution has the same one.
-  /// `which` of the sensor's vectors it is: each has its own past.
+  /// Draws noise with standard deviation `sd` per axis, times the scale, for either distribution.
+  /// `which` is the index of the sensor's vector: each vector has its own past.
   Eigen::Vector3d Vector(double sd, int which = 0);
 
  private:
@@ -65,8 +65,8 @@ class Sensors {
   Sensors(const SensorSetup& setup, std::uint64_t seed, const SensorEffects& effects = {});
 
   /// Adds the samples that fall due in (last call, t_ns] to `recording`'s streams, all taken from
-  /// `shape` at the time they are due; a sensor with latency takes it from what it was then. Call
-  /// it with increasing times, and for latency often enough that a cubic follows the motion.
+  /// `shape` at the time they are due; a sensor with latency takes them from the earlier shape.
+  /// Call it with increasing times, and for latency often enough that a cubic follows the motion.
   /// Before kSimulationStart_ns nothing is due: such calls only give the latencies their past.
   void Sample(const PlantShape& shape, TimeNs t_ns, Recording& recording);
 
@@ -75,7 +75,7 @@ class Sensors {
   struct Channel {
     SensorNoise noise;
     TimeNs next_ns;
-    /// Whether a sample is due at `t_ns`; moves the clock on.
+    /// Returns whether a sample is due at `t_ns`; moves the clock on.
     bool Due(double rate_hz, TimeNs t_ns);
   };
   Channel MakeChannel(std::uint64_t seed, int sensor, const std::optional<EmStream>& em = {}) const;

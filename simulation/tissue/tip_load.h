@@ -1,4 +1,4 @@
-// What pushes on the tip: a constant force, soft tissue with a surface, a law of its own, or all.
+// The load on the tip: a constant force, soft tissue with a surface, a law of its own, or all.
 #pragma once
 
 #include <Eigen/Dense>

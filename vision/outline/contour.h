@@ -48,7 +48,7 @@ struct ContourFit {
 };
 
 /// One tube before one camera. Edges are looked for along scan lines across the predicted outline;
-/// neither the tube's brightness nor what is behind it is known.
+/// neither the tube's brightness nor its background is known.
 class ShaftContour {
  public:
   /// Makes the contour of `tube` before `camera`. Throws InputError for a diameter, a length or

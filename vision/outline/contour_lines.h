@@ -20,7 +20,7 @@ struct ContourErrors {
   double inset_px = 0.3;  ///< how far all edges stand inward alike: limb darkening, gamma, blur
   double side_px = 0.4, slope_px = 0.05;  ///< of each side: at its middle, and from there to an end
   double end_px = 0.3;                    ///< offset, slope and curvature along its rim
-  double line_px = 0.03;                  ///< of a single line, what the noise does not explain
+  double line_px = 0.03;                  ///< of a single line, beyond the noise
 
   static ContourErrors LightAtLens() { return {0.3, 0.02, 0.02, 0.05, 0.03}; }
 };

@@ -19,7 +19,7 @@ struct TubeShape {
     double from_m = 0.0, to_m = 0.0, radius_m = 0.0;
   };
   double diameter_m = 0.0;
-  double length_m = 0.15;  ///< behind E; what is out of view is not used
+  double length_m = 0.15;  ///< behind E; the part out of view is not used
   bool round_end = true;   ///< a half sphere within the length; else a flat disc at E
   std::optional<Collar> collar;
 };

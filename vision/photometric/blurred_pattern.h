@@ -100,8 +100,8 @@ class BlurredPattern {
   const NormalTable* normal_ = &NormalTable::Get();
 };
 
-// What a crossing of lines adds where the two axes are correlated; `density`: the product of both
-// axes' densities there times the crossing's colour. Derivatives to the first order in rho.
+// The addition of a crossing of lines where the two axes are correlated; `density`: the product of
+// both axes' densities there times the crossing's colour. Derivatives to the first order in rho.
 inline void BlurredPattern::AddCrossing(float density, float x, float y, const PatternBlur& blur,
                                         PatternValue& value) {
   const float rho = blur.rho, su = blur.inverse_u, sv = blur.inverse_v;

@@ -18,7 +18,7 @@ enum class PhotometricStatus {
   kOk,
   kNoFaces,       ///< no tag is where it should be
   kNotConverged,  ///< the steps do not become small
-  kPoorFit,       ///< what is there does not look like the tags
+  kPoorFit,       ///< the picture does not look like the tags
 };
 
 struct PhotometricOptions {
@@ -35,7 +35,7 @@ struct PhotometricOptions {
 
 /// The result of one camera's picture.
 struct ViewFit {
-  OpticsPrior learned;  ///< its mean is what was fitted
+  OpticsPrior learned;  ///< its mean is the fitted value
   double noise_grey = 0;
   std::vector<FaceFit> faces;
 };

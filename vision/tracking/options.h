@@ -1,4 +1,4 @@
-// What a tracker may be told, and how it says a pose was found.
+// A tracker's options, and the sources of a pose.
 #pragma once
 
 #include <optional>
@@ -16,14 +16,14 @@ struct TrackerOptions {
   CollarPoseOptions pose;
   PhotometricOptions photometric;
   bool photometric_fit = true;  ///< false: the tags' corners alone
-  /// A lost tip is looked for on a thread; what it finds counts some frames later. For live
-  /// pictures; false gives the same result on every machine.
+  /// A thread looks for a lost tip; its result counts some frames later. For live pictures; false
+  /// gives the same result on every machine.
   bool background_detection = false;
   int max_predicted_frames = 3;  ///< then the tip is lost, unless a model is given
   TimeNs max_prediction_ns = 200'000'000;
   double max_predicted_sd_m = 0.01;  ///< a prediction less certain than this is none
-  /// What is seen less certainly (one small tag, a blurred one) counts as predicted: the tip per
-  /// axis, and the turn.
+  /// Limits for the tip per axis, and for the turn. A less certain tip (a single small tag, a
+  /// blurred tag) counts as predicted.
   double max_ok_sd_m = 0.0005, max_ok_sd_rad = 0.01;
   double acceleration_noise_m_s2 = 1.0;            ///< how fast a prediction's covariance grows
   double gamma_guess = 2.2, gamma_guess_sd = 0.4;  ///< where the camera's is not known

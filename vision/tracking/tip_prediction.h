@@ -18,14 +18,14 @@ struct TipPrediction {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// The standard deviation along the least certain direction.
+/// Returns the standard deviation along the least certain direction.
 inline double MaxSd(const Eigen::Matrix3d& covariance) {
   return std::sqrt(SymmetricEigenvalues(covariance)[2]);
 }
 inline double PositionSd(const TipPrediction& prediction) {
   return MaxSd(prediction.covariance.bottomRightCorner<3, 3>());
 }
-/// Per axis, of the tip's axis d, which turns by dw x d (rad).
+/// Returns the noise per axis (rad) of the tip's axis d, which turns by dw x d.
 inline double DirectionNoise(const TipPrediction& prediction) {
   const Eigen::Matrix3d turn = Skew(prediction.T_RE.R.col(0));
   const Eigen::Matrix3d of_direction =

@@ -18,7 +18,7 @@
 
 namespace flextip {
 
-/// What one frame said.
+/// The result of a frame.
 struct TipTrack {
   TipObservation tip;              ///< in R; d_RE only where the tags were seen
   std::vector<TagDetection> tags;  ///< in the first camera: detected, or where the fit puts them
@@ -49,19 +49,20 @@ class TipTracker {
   TipTracker(TipTracker&&) noexcept;
   TipTracker& operator=(TipTracker&&) noexcept;
 
-  /// `model`: where wrist and shaft model expect the tip. Throws InputError where the image is
-  /// empty or its size is not the camera's.
+  /// Tracks the tip in an image; `model` is the tip that wrist and shaft model expect. Throws
+  /// InputError where the image is empty or its size is not the camera's.
   TipTrack Track(const Image& image, TimeNs t_ns, const std::optional<TipPrediction>& model = {});
 
-  /// One image a camera, taken at the same time; null where a camera has none.
+  /// Tracks in an image of each camera, taken at the same time; null where a camera has none.
   TipTrack Track(const std::vector<const Image*>& images, TimeNs t_ns,
                  const std::optional<TipPrediction>& model = {});
 
-  /// All that the frames so far have left: a tracker of the same cameras, collar and options that
-  /// reads it goes on as this one would. Not what a detection in the background is at.
+  /// Visits the state that the frames so far have left. A tracker of the same cameras, collar and
+  /// options that reads the state goes on as this tracker would. The state of a detection in the
+  /// background is not in it.
   void VisitState(StateText& state);
 
-  /// From tags that were detected elsewhere, in the first camera.
+  /// Tracks from tags that were detected elsewhere, in the first camera.
   TipTrack Track(const std::vector<TagDetection>& tags, TimeNs t_ns);
 
  private:
