@@ -25,7 +25,6 @@ struct PencilPoint {
   double cosine = 1.0;   ///< cos(phi) of y
   Eigen::Vector3d y = Eigen::Vector3d::UnitX();
 
-  double Least() const { return 1.0 - missing; }
   /// log(PeakX() / x).
   double Offset() const { return std::atanh(balance); }
   /// x at which this y's 2 x s / (x^2 m + n) is its cosine.

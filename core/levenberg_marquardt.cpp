@@ -8,8 +8,8 @@ namespace flextip {
 
 DescentResult Descend(double cost, const std::function<TrialStep(double damping)>& try_step,
                       const std::function<void()>& accept, const DescentOptions& options) {
-  DescentResult result{.cost = cost};
-  double damping = options.start_damping;
+  DescentResult result{.cost = cost, .damping = options.start_damping};
+  double& damping = result.damping;
   while (result.tried < options.max_iterations && !result.settled && !result.exhausted) {
     const TrialStep trial = try_step(damping);
     ++result.tried;

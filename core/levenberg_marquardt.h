@@ -28,6 +28,7 @@ struct DescentResult {
   int tried = 0;
   double cost = 0.0;            ///< of the last state accepted
   double last_gain = HUGE_VAL;  ///< by which the last accepted step lowered the cost
+  double damping = 0.0;         ///< for a next step
 };
 
 /// A step that was tried.
@@ -37,7 +38,8 @@ struct TrialStep {
 };
 
 /// Descends from a state with `cost`. `try_step` makes the damped step from the present state and
-/// returns the cost after it; `accept` makes the state that was tried last the present one.
+/// returns the cost after it; `accept` makes the state that was tried last the present one. Given
+/// as std::ref of their callables, allocates nothing.
 DescentResult Descend(double cost, const std::function<TrialStep(double damping)>& try_step,
                       const std::function<void()>& accept, const DescentOptions& options = {});
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -16,6 +17,13 @@ T Median(std::vector<T> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Returns the median of `values`, as above, and allocates nothing.
+template <class T, std::size_t N>
+T Median(std::array<T, N> values) {
+  std::nth_element(values.begin(), values.begin() + N / 2, values.end());
+  return values[N / 2];
 }
 
 /// Returns the member of `values` at the rank floor(q (n - 1)), not interpolated: for `q` = 0 the

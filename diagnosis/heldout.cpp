@@ -101,7 +101,7 @@ std::pair<double, double> Interval(const std::vector<Sums>& base,
     if (b.Weighted() > 0.0) ratios.push_back(e.Weighted() / b.Weighted());
   }
   if (ratios.empty()) return {1.0, 1.0};
-  std::sort(ratios.begin(), ratios.end());
+  std::sort(ratios.begin(), ratios.end());  // by the rank n q, where LowerQuantile has (n - 1) q
   return {ratios[ratios.size() / 20], ratios[ratios.size() * 19 / 20]};
 }
 

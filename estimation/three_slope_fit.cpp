@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+
+#include "core/levenberg_marquardt.h"
 
 namespace flextip {
 namespace {
@@ -42,35 +45,30 @@ struct Solution {
   bool converged = false;
 };
 Solution Minimise(const Eigen::Vector3d& y, const Eigen::Matrix3d& W, Eigen::Vector2d x) {
-  Solution out;
-  SlopeModel model = Evaluate(x);
-  Eigen::Vector3d r = y - model.y;
-  double chi2 = r.dot(W * r), damping = 1e-6;
-  while (out.iterations < 100 && !out.converged && damping < 1e12) {
-    ++out.iterations;
+  SlopeModel model = Evaluate(x), there;
+  Eigen::Vector2d tried;
+  const auto chi2 = [&](const SlopeModel& at) { return (y - at.y).dot(W * (y - at.y)); };
+  const auto try_step = [&](double damping) -> TrialStep {
     Eigen::Matrix2d H = model.dy.transpose() * W * model.dy;
-    const Eigen::Vector2d gradient = model.dy.transpose() * W * r;
+    const Eigen::Vector2d gradient = model.dy.transpose() * W * (y - model.y);
     H.diagonal() *= 1.0 + damping;
     const Eigen::Vector2d step = H.inverse() * gradient;
-    const Eigen::Vector2d tried = x + step;
-    const SlopeModel there = Evaluate(tried);
-    const Eigen::Vector3d r_there = y - there.y;
-    const double chi2_there = r_there.dot(W * r_there);
-    out.converged = step.cwiseAbs().maxCoeff() < 1e-12 * (1.0 + std::abs(x[0]));
-    if (chi2_there <= chi2) {
-      x = tried;
-      model = there;
-      r = r_there;
-      chi2 = chi2_there;
-      damping = std::max(1e-12, 0.1 * damping);
-    } else {
-      damping *= 10.0;
-    }
-  }
-  out.x = x;
-  out.chi2 = chi2;
-  out.covariance = (model.dy.transpose() * W * model.dy).inverse();
-  return out;
+    tried = x + step;
+    there = Evaluate(tried);
+    return {chi2(there), step.cwiseAbs().maxCoeff() < 1e-12 * (1.0 + std::abs(x[0]))};
+  };
+  const auto accept = [&] {
+    x = tried;
+    model = there;
+  };
+  const DescentResult descent = Descend(
+      chi2(model), std::ref(try_step), std::ref(accept),
+      {.max_iterations = 100, .least_raised = 0.0, .most_damping = 1e12, .relative_gain = 0.0});
+  return {.x = x,
+          .covariance = (model.dy.transpose() * W * model.dy).inverse(),
+          .chi2 = descent.cost,
+          .iterations = descent.tried,
+          .converged = descent.settled};
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "apps/common/exit_code.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
+#include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "report/figure.h"
 #include "report/pages.h"
@@ -39,27 +40,17 @@ constexpr Chapter kChapters[] = {{"2", ReproduceChapter2},
                                  {"4", ReproduceChapter4},
                                  {"5", ReproduceChapter5}};
 
-/// RFC 4180: in quotes where it has to be.
-std::string Cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += c;
-    out += c == '\n' ? ' ' : c;
-  }
-  return out + "\"";
-}
-
-std::string Cell(const std::optional<double>& number) {
+std::string Rounded(const std::optional<double>& number) {
   return number ? fmt::format("{:.6g}", *number) : "";
 }
 
 std::string TableText(const std::vector<TableRow>& rows) {
-  std::string text = "quantity,thesis,flextip,unit,note\n";
-  for (const auto& row : rows)
-    text += fmt::format("{},{},{},{},{}\n", Cell(row.quantity), Cell(row.thesis), Cell(row.flextip),
-                        Cell(row.unit), Cell(row.note));
-  return text;
+  CsvWriter csv({"quantity", "thesis", "flextip", "unit", "note"}, false);
+  for (const auto& row : rows) {
+    csv.Add(row.quantity).Add(Rounded(row.thesis)).Add(Rounded(row.flextip));
+    csv.Add(row.unit).Add(row.note).EndRow();
+  }
+  return csv.text();
 }
 
 ChapterResult RunChapter(const Chapter& chapter, const ReproduceOptions& options, bool quiet) {
@@ -71,7 +62,7 @@ ChapterResult RunChapter(const Chapter& chapter, const ReproduceOptions& options
 void PrintRows(const std::vector<TableRow>& rows) {
   fmt::print("{:>12} {:>12} {:<6} {}\n", "thesis", "flextip", "unit", "quantity");
   for (const auto& row : rows)
-    fmt::print("{:>12} {:>12} {:<6} {}\n", Cell(row.thesis), Cell(row.flextip), row.unit,
+    fmt::print("{:>12} {:>12} {:<6} {}\n", Rounded(row.thesis), Rounded(row.flextip), row.unit,
                row.quantity);
 }
 

@@ -17,6 +17,7 @@
 #include "bench/tool.h"
 #include "calibration/hand_eye/fit.h"
 #include "core/linear_algebra.h"
+#include "core/median.h"
 #include "vision/camera_model.h"
 #include "vision/tags/reprojection.h"
 
@@ -214,9 +215,8 @@ void CompareFarBoards(int views, double distance_m, double tilt_rad, double nois
     for (const auto& view : ours.views) flipped += view.flipped;
     mm["flextip"].push_back(ours.IsUsable() ? 1e3 * (ours.T_FC.p - far.T_FC.p).norm() : 1e9);
   }
-  for (auto& [name, errors] : mm) {
-    std::sort(errors.begin(), errors.end());
-    fmt::print("  {:18} {:10.2f} {:12.2f} mm\n", name, errors[kRuns / 2], errors.back());
+  for (const auto& [name, errors] : mm) {
+    fmt::print("  {:18} {:10.2f} {:12.2f} mm\n", name, Median(errors), LowerQuantile(errors, 1.0));
   }
   fmt::print("  {:.1f} of {} views were flipped\n", flipped / static_cast<double>(kRuns), views);
 }

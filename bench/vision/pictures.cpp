@@ -1,13 +1,12 @@
 #include "bench/vision/pictures.h"
 
 #include <algorithm>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <regex>
-#include <sstream>
 
 #include "core/error.h"
 #include "recording/recording_reader.h"
+#include "recording/text/csv.h"
 #include "recording/text/text.h"
 
 namespace flextip::bench {
@@ -69,18 +68,13 @@ std::vector<PictureSet> RenderedPictures(const fs::path& recordings) {
   const Recording recording = ReadRecording(folder).recording;
   PictureSet set{"rendered sample", recording.cam0->calibration, *recording.tags0, {}};
   std::map<TimeNs, Pose> truth;
-  std::ifstream in(recordings / "rendered.truth.csv");
-  std::string line;
-  std::getline(in, line);  // the names
-  while (std::getline(in, line)) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream fields(line);
-    TimeNs t_ns = 0;
-    Eigen::Vector3d p;
-    Eigen::Quaterniond q;
-    if (fields >> t_ns >> p.x() >> p.y() >> p.z() >> q.w() >> q.x() >> q.y() >> q.z()) {
-      truth[t_ns] = Pose::FromQuaternion(q, p);
-    }
+  ReadLog log;
+  CsvReader csv(recordings / "rendered.truth.csv",
+                {"timestamp [ns]", "x", "y", "z", "qw", "qx", "qy", "qz"}, log);
+  while (csv.Next()) {
+    const auto at = [&](std::size_t column) { return csv.Number(column); };
+    truth[csv.Integer(0)] =
+        Pose::FromQuaternion({at(4), at(5), at(6), at(7)}, {at(1), at(2), at(3)});
   }
   const CameraModel camera(set.camera);
   for (const auto& frame : recording.cam0->filenames) {

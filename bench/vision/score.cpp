@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/median.h"
 #include "recording/text/text.h"
 
 namespace flextip::bench {
@@ -59,12 +60,6 @@ double Rms(const std::vector<double>& v) {
   for (const double x : v) sum += x * x;
   return v.empty() ? 0 : std::sqrt(sum / static_cast<double>(v.size()));
 }
-double Quantile(std::vector<double> v, double part) {
-  if (v.empty()) return 0;
-  const auto at = v.begin() + static_cast<std::ptrdiff_t>(part * (double(v.size()) - 1));
-  std::nth_element(v.begin(), at, v.end());
-  return *at;
-}
 double Inside95(const std::vector<double>& nees) {
   const auto in = [](double x) { return x > kLow95 && x < kHigh95; };
   return nees.empty() ? 0
@@ -95,10 +90,10 @@ std::vector<std::pair<std::string, Sums>> AllSums(const std::vector<SequenceScor
 json ToJson(const Sums& s) {
   const auto of = [](const std::vector<double>& mm, const std::vector<double>& nees) {
     return json{{"rms_mm", Rms(mm)},
-                {"median_mm", Quantile(mm, 0.5)},
-                {"largest_mm", Quantile(mm, 1.0)},
+                {"median_mm", LowerQuantile(mm, 0.5)},
+                {"largest_mm", LowerQuantile(mm, 1.0)},
                 {"nees_mean", Mean(nees)},
-                {"nees_median", Quantile(nees, 0.5)},
+                {"nees_median", LowerQuantile(nees, 0.5)},
                 {"inside_95", Inside95(nees)}};
   };
   return {{"frames", s.frames},
@@ -110,7 +105,7 @@ json ToJson(const Sums& s) {
           {"wrong_ok", s.wrong_ok},
           {"flips", s.flips},
           {"ms_per_frame", Mean(s.ms)},
-          {"ms_largest", Quantile(s.ms, 1.0)},
+          {"ms_largest", LowerQuantile(s.ms, 1.0)},
           {"of_ok", of(s.ok_mm, s.ok_nees)},
           {"of_predicted", of(s.predicted_mm, s.predicted_nees)}};
 }
@@ -148,7 +143,7 @@ std::string ScoreTable(const std::vector<SequenceScore>& scores) {
         "{:>8.1f}{:>8.2f}{:>8.2f}\n",
         name, s.frames, s.ok, s.predicted, s.lost,
         s.in_view > 0 ? double(s.ok_in_view) / s.in_view : 0.0, Rms(s.ok_mm),
-        Quantile(s.ok_mm, 0.5), s.false_ok, s.wrong_ok, s.flips, Mean(s.ok_nees),
+        LowerQuantile(s.ok_mm, 0.5), s.false_ok, s.wrong_ok, s.flips, Mean(s.ok_nees),
         Inside95(s.ok_nees), Rms(s.predicted_mm), Mean(s.predicted_nees),
         Inside95(s.predicted_nees), Mean(s.ms));
   }

@@ -12,6 +12,7 @@
 #include "bench/vision/clip.h"
 #include "bench/vision/figures.h"
 #include "bench/vision/plot.h"
+#include "core/median.h"
 #include "recording/text/text.h"
 #include "vision/tracking/tip_tracker.h"
 
@@ -150,8 +151,7 @@ SpeedFigures Measure(const Clip& clip, Contender& contender, int repeats) {
     }
   }
   ms.erase(ms.begin());  // the first frame is found, not tracked
-  std::sort(ms.begin(), ms.end());
-  return {contender.Name(), ms[ms.size() / 2], ms.back(), score.Figures(contender.Name())};
+  return {contender.Name(), Median(ms), LowerQuantile(ms, 1.0), score.Figures(contender.Name())};
 }
 
 std::string Table(const std::vector<SpeedFigures>& all) {

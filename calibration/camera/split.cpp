@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "calibration/camera/bundle.h"
+#include "core/median.h"
 #include "vision/camera_model.h"
 #include "vision/tags/reprojection.h"
 
@@ -34,8 +36,7 @@ double MedianDistance(const CameraSolution& s) {
     for (const Eigen::Vector3d& x : view.x_B) middle += x / static_cast<double>(view.x_B.size());
     z.push_back((view.T_CB * middle).norm());
   }
-  std::sort(z.begin(), z.end());
-  return z[z.size() / 2];
+  return Median(std::move(z));
 }
 
 }  // namespace

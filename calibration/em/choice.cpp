@@ -27,7 +27,7 @@ void Cut(const std::vector<Eigen::Vector3d>& places, Indices::iterator begin, In
   }
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
-  const auto middle = begin + (end - begin) / 2;
+  const auto middle = begin + (end - begin) / 2;  // two halves are asked for, no median
   std::nth_element(begin, middle, end,
                    [&](std::size_t a, std::size_t b) { return places[a][axis] < places[b][axis]; });
   Cut(places, begin, middle, first, parts / 2, part);

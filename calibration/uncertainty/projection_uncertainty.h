@@ -38,8 +38,6 @@ class ProjectionUncertainty {
   ProjectionUncertainty WithView(const Pose& T_CB, const std::vector<Eigen::Vector3d>& x_B) const;
 
   const CameraCalibration& Camera() const { return camera_; }
-  const BoardWarp& Warp() const { return warp_; }
-  double NoisePx() const { return noise_px_; }
   /// Returns the covariance of the intrinsics, the warp where it was estimated, w (rad) and t (m).
   const Eigen::MatrixXd& Covariance() const { return covariance_; }
 

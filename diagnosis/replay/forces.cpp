@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/levenberg_marquardt.h"
 #include "core/linear_algebra.h"
 #include "diagnosis/replay/replay.h"
 #include "diagnosis/replay/sample_loops.h"
@@ -55,27 +56,29 @@ void Replay::FitForce(std::size_t k, EffectRodSolver& solver) {
     const Eigen::Vector3d off = sample.f_tip_N - mean_N;
     return noise.SolveL(residual()).squaredNorm() + off.dot(precision * off);
   };
-  double damping = 0.0;
   sample.force_merit = merit();
-  for (int i = 0; i < kForceSteps; ++i) {
+  const auto try_step = [&](double damping) -> TrialStep {
     const Eigen::MatrixXd B = sample.compared.by_inputs(rows, Eigen::seqN(sample_input::kForce, 3));
     const Eigen::Matrix3d H = B.transpose() * noise.Solve(B) + precision;
     const Eigen::Vector3d g =
         B.transpose() * noise.Solve(residual()) - precision * (sample.f_tip_N - mean_N);
     const Eigen::Matrix3d damped = H + damping * (H.trace() / 3.0) * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d step = ShortStep(k, Llt(damped).Solve(g));
-    if (step.dot(g) < kForceRest) return;
+    if (step.dot(g) < kForceRest) return {.cost = sample.force_merit, .settled = true};
     const ReplayedSample before = sample;
-    const double now =
-        TryForce(k, sample.f_tip_N + step, solver) ? merit() : before.force_merit + 1.0;
-    if (now < before.force_merit) {
-      sample.force_merit = now;
-      damping *= 0.1;
-    } else {
-      sample = before;
-      damping = std::max(1e-4, 10.0 * damping);
-    }
-  }
+    if (TryForce(k, sample.f_tip_N + step, solver)) sample.force_merit = merit();
+    if (sample.force_merit < before.force_merit) return {.cost = sample.force_merit};
+    sample = before;
+    return {};
+  };
+  const auto accept = [] {};  // the sample is where it was tried
+  Descend(sample.force_merit, try_step, accept,
+          {.max_iterations = kForceSteps,
+           .start_damping = 0.0,
+           .least_damping = 0.0,
+           .floor = 0.0,
+           .least_raised = 1e-4,
+           .relative_gain = 0.0});
 }
 
 /// The sample next to `k` with the same sensors, `step` of -1 or 1 at a time; `k` where there is

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/median.h"
+
 namespace flextip::diagnosis {
 namespace {
 
@@ -15,13 +17,6 @@ constexpr double kToSd = 1.483;  // from the median of absolute deviations, of a
 constexpr double kLongestPeriod_s = 0.2;
 
 using Window = std::array<double, 2 * kHalf + 1>;
-
-template <class Values>
-double Median(Values values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Window Around(const Eigen::MatrixXd& readings, Eigen::Index k, Eigen::Index column) {
   Window window;

@@ -187,6 +187,10 @@ CsvWriter& CsvWriter::AddOrEmpty(double value, int digits) {
   return std::isfinite(value) ? Add(value, digits) : AddEmpty();
 }
 
+CsvWriter& CsvWriter::AddFixed(double value, int decimals) {
+  return std::isfinite(value) ? Add(fmt::format("{:.{}f}", value, decimals)) : AddEmpty();
+}
+
 CsvWriter& CsvWriter::Add(TimeNs value) {
   Separate();
   text_ += std::to_string(value);

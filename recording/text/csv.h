@@ -85,6 +85,8 @@ class CsvWriter {
   CsvWriter& Add(double value, int digits = 0);
   /// Adds an empty field where the value is NaN or infinite.
   CsvWriter& AddOrEmpty(double value, int digits = 0);
+  /// Adds the number with so many decimals; an empty field where it is NaN or infinite.
+  CsvWriter& AddFixed(double value, int decimals);
   CsvWriter& Add(TimeNs value);
   /// Adds a text without line breaks, in quotes where it needs them.
   CsvWriter& Add(const std::string& text);

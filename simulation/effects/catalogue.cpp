@@ -98,8 +98,6 @@ std::string ParametersOf(const std::string& effect) {
 
 }  // namespace
 
-std::span<const EffectParameter> EffectCatalogue() { return kCatalogue; }
-
 const std::vector<std::string>& CatalogueEffects() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> unique;

@@ -32,9 +32,6 @@ struct EffectParameter {
   void (*set)(std::span<const double> values, InstrumentEffects& effects);
 };
 
-/// All parameters of all effects, those of an effect together.
-std::span<const EffectParameter> EffectCatalogue();
-
 /// The effects' names, in the order of the catalogue.
 const std::vector<std::string>& CatalogueEffects();
 

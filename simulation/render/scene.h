@@ -45,7 +45,6 @@ class Scene {
   void SetGuesses(int tile, Guesses& guesses) const;
 
   int TilesAcross() const { return tiles_across_; }
-  int TilesDown() const { return tiles_down_; }
   ObjectMask InTile(int tile) const { return tiles_[tile]; }
 
   /// The nearest of `candidates` along the ray, 0 where it meets none.

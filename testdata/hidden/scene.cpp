@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "core/median.h"
 #include "core/rotation.h"
 
 namespace flextip::hidden {
@@ -85,13 +87,12 @@ Eigen::Vector3d Mean(const std::vector<Eigen::Vector3d>& points) {
 }
 
 /// The height along `normal` below which `part` of the points lie.
-double Quantile(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal,
-                double part) {
+double HeightQuantile(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal,
+                      double part) {
   std::vector<double> heights;
   heights.reserve(points.size());
   for (const Eigen::Vector3d& p : points) heights.push_back(normal.dot(p));
-  std::sort(heights.begin(), heights.end());
-  return heights[static_cast<std::size_t>(part * static_cast<double>(heights.size() - 1))];
+  return LowerQuantile(std::move(heights), part);
 }
 
 /// Stiffness such that the straight tip would feel `force_N` or more for a quarter of the time.
@@ -99,10 +100,10 @@ simulation::Tissue DrawTissue(const HiddenScene& scene, double force_N, Rng& rng
   const auto tips = StraightPoints(scene, scene.instrument.length_m);
   simulation::Tissue tissue;
   tissue.normal = Beside(-scene.motion_setup.axis, Uniform(rng, 0.5, 1.4), rng);
-  const double surface = Quantile(tips, tissue.normal, Uniform(rng, 0.7, 0.95));
+  const double surface = HeightQuantile(tips, tissue.normal, Uniform(rng, 0.7, 0.95));
   const Eigen::Vector3d mean = Mean(tips);
   tissue.p_surface = mean + (surface - tissue.normal.dot(mean)) * tissue.normal;
-  tissue.stiffness_N_m = force_N / (surface - Quantile(tips, tissue.normal, 0.25));
+  tissue.stiffness_N_m = force_N / (surface - HeightQuantile(tips, tissue.normal, 0.25));
   tissue.p_anchor = tissue.p_surface;
   tissue.onset_m = Uniform(rng, 0.002, 0.005);
   if (Chance(rng, 0.5)) {
@@ -270,10 +271,10 @@ void AddShaftForm(const std::string& form, const HiddenScene& scene, Rng& rng,
     contact.s_from_tip_m = Uniform(rng, 0.1, 0.25) * length;
     contact.normal = Beside(motion.axis, Uniform(rng, 1.3, 1.7), rng);
     const auto points = StraightPoints(scene, length - contact.s_from_tip_m);
-    const double surface = Quantile(points, contact.normal, Uniform(rng, 0.35, 0.5));
+    const double surface = HeightQuantile(points, contact.normal, Uniform(rng, 0.35, 0.5));
     contact.p_surface = surface * contact.normal;
-    contact.stiffness_N_m =
-        Uniform(rng, 1.0, 2.0) * unit_force / (surface - Quantile(points, contact.normal, 0.0));
+    contact.stiffness_N_m = Uniform(rng, 1.0, 2.0) * unit_force /
+                            (surface - HeightQuantile(points, contact.normal, 0.0));
   }
 }
 

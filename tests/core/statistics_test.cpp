@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "core/mean_sd.h"
@@ -12,6 +13,8 @@ TEST(Median, IsTheUpperOfTwoInTheMiddle) {
   EXPECT_EQ(Median<double>({5.0, 1.0, 3.0}), 3.0);
   EXPECT_EQ(Median<int>({4, 1, 3, 2}), 3);
   EXPECT_EQ(Median<double>({}), 0.0);
+  EXPECT_EQ(Median(std::array{5.0, 1.0, 3.0}), 3.0);
+  EXPECT_EQ(Median(std::array{4, 1, 3, 2}), 3);
 }
 
 TEST(Quantile, InterpolatesBetweenNeighbours) {

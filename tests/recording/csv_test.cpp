@@ -166,7 +166,8 @@ TEST(Csv, NeverWritesWhatItWouldNotRead) {
   EXPECT_THROW(csv.Add(std::nan("")), WorkError);
   EXPECT_THROW(csv.Add(HUGE_VAL), WorkError);
   csv.Add(TimeNs{1}).Add(0.25).EndRow();
-  EXPECT_EQ(csv.text(), "#a,b\n1,0.25\n");
+  csv.AddFixed(2.0 / 3.0, 4).AddFixed(HUGE_VAL, 4).EndRow();
+  EXPECT_EQ(csv.text(), "#a,b\n1,0.25\n0.6667,\n");
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <vector>
 
+#include "core/levenberg_marquardt.h"
 #include "core/linear_algebra.h"
 #include "core/median.h"
 
@@ -176,40 +178,63 @@ double HuberCost(const std::vector<EdgePixel>& pixels, const Vector9& q, double 
   return cost;
 }
 
-// Levenberg-Marquardt with Huber weights.
-Vector9 Minimise(const std::vector<EdgePixel>& pixels, Vector9 q) {
+// The step of the weighted normal equations at `q`, with their diagonal enlarged.
+Vector9 HuberStep(const std::vector<EdgePixel>& pixels, const Vector9& q, double scale,
+                  double damping) {
+  Matrix9 A = Matrix9::Zero();
+  Vector9 b = Vector9::Zero(), J;
+  for (const EdgePixel& p : pixels) {
+    const double r = Residual(p, q, &J);
+    const double weight = std::abs(r) < scale ? 1.0 : scale / std::abs(r);
+    A.noalias() += weight * J * J.transpose();
+    b.noalias() += weight * r * J;
+  }
+  A.diagonal() *= 1 + damping;
+  if (q[7] <= 0) A(7, 7) = A(8, 8) = 1;  // no rim
+  return Ldlt(A).Solve(b);
+}
+
+// Levenberg-Marquardt with Huber weights: moves `q` and `damping` by so many steps, fewer where the
+// offset moves by less than `settled_px`. Returns whether the last step helped.
+bool MinimiseHuber(const std::vector<EdgePixel>& pixels, double scale, int steps, double settled_px,
+                   Vector9& q, double& damping) {
   const bool rim = q[7] > 0;
-  double damping = 1e-3;
-  double scale = RobustScale(pixels, q);
-  double cost = HuberCost(pixels, q, scale);
-  for (int iteration = 0; iteration < 25; ++iteration) {
-    Matrix9 A = Matrix9::Zero();
-    Vector9 b = Vector9::Zero(), J;
-    for (const EdgePixel& p : pixels) {
-      const double r = Residual(p, q, &J);
-      const double weight = std::abs(r) < scale ? 1.0 : scale / std::abs(r);
-      A.noalias() += weight * J * J.transpose();
-      b.noalias() += weight * r * J;
-    }
-    A.diagonal() *= 1 + damping;
-    if (!rim) A(7, 7) = A(8, 8) = 1;
-    const Vector9 step = Ldlt(A).Solve(b);
-    Vector9 next = q - step;
+  bool helped = false;
+  double cost = HuberCost(pixels, q, scale), next_cost = cost;
+  Vector9 next = q;
+  const auto try_step = [&](double with_damping) -> TrialStep {
+    const Vector9 step = HuberStep(pixels, q, scale, with_damping);
+    next = q - step;
     next[2] = std::clamp(next[2], kMinBlur_px, kMaxBlur_px);
     if (rim) next[7] = std::clamp(next[7], 0.3, 2 * kMaxRimBand_px);
-    const double next_cost = step.allFinite() ? HuberCost(pixels, next, scale) : HUGE_VAL;
-    if (!(next_cost <= cost)) {
-      damping *= 10;
-      if (damping > 1e6) break;
-      continue;
-    }
-    const double moved = std::abs(next[0] - q[0]);
+    next_cost = step.allFinite() ? HuberCost(pixels, next, scale) : HUGE_VAL;
+    helped = next_cost <= cost;
+    return {next_cost, helped && std::abs(next[0] - q[0]) < settled_px};
+  };
+  const auto accept = [&] {
     q = next;
-    damping = std::max(1e-7, 0.1 * damping);
-    if (iteration == 3) scale = RobustScale(pixels, q);
-    cost = iteration == 3 ? HuberCost(pixels, q, scale) : next_cost;
-    if (iteration > 3 && moved < 1e-4) break;
-  }
+    cost = next_cost;
+  };
+  damping = Descend(cost, std::ref(try_step), std::ref(accept),
+                    {.max_iterations = steps,
+                     .start_damping = damping,
+                     .least_damping = 1e-7,
+                     .floor = 1e-7,
+                     .least_raised = 0.0,
+                     .most_damping = 1e6,
+                     .relative_gain = 0.0})
+                .damping;
+  return helped;
+}
+
+// With the residuals' scale learned again where the fit has come near.
+Vector9 Minimise(const std::vector<EdgePixel>& pixels, Vector9 q) {
+  constexpr int kFirstSteps = 4, kMoreSteps = 21;
+  constexpr double kSettled_px = 1e-4;
+  double scale = RobustScale(pixels, q), damping = 1e-3;
+  const bool helped = MinimiseHuber(pixels, scale, kFirstSteps, 0.0, q, damping);
+  if (helped) scale = RobustScale(pixels, q);
+  MinimiseHuber(pixels, scale, kMoreSteps, kSettled_px, q, damping);
   return q;
 }
 

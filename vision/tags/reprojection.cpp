@@ -1,7 +1,9 @@
 #include "vision/tags/reprojection.h"
 
-#include <algorithm>
+#include <cmath>
+#include <functional>
 
+#include "core/levenberg_marquardt.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 
@@ -55,27 +57,34 @@ std::optional<PoseMinimum> MinimiseReprojection(const CameraModel& camera,
                                                 const Pose& start, int max_iterations) {
   const auto first = Reproject(camera, points, start);
   if (!first) return {};
-  PoseMinimum at{start, *first};
-  double damping = 1e-4;
-  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+  PoseMinimum at{start, *first}, next = at;
+  bool finite = true;
+  const auto try_step = [&](double damping) -> TrialStep {
     Eigen::Matrix<double, 6, 6> A = at.error.JtJ;
     A.diagonal() *= 1 + damping;
     const Eigen::Matrix<double, 6, 1> step = -Ldlt(A).Solve(at.error.Jtr);
-    if (!step.allFinite()) return {};
+    finite = step.allFinite();
     // The decrease that the quadratic model promises; below it there is only rounding left.
     const double promised = -step.dot(2 * at.error.Jtr + at.error.JtJ * step);
-    if (promised < 1e-12 * (at.error.squared_px2 + 1e-12)) return at;
-    const Pose next = MovePose(at.T_CE, step);
-    const auto error = Reproject(camera, points, next);
-    if (error && error->squared_px2 < at.error.squared_px2) {
-      at = {next, *error};
-      damping = std::max(1e-12, 0.1 * damping);
-    } else {
-      damping *= 10;
-      if (damping > 1e10) return at;
+    if (!finite || promised < 1e-12 * (at.error.squared_px2 + 1e-12)) {
+      next = at;
+      return {.cost = at.error.squared_px2, .settled = true};
     }
-  }
-  return {};
+    next.T_CE = MovePose(at.T_CE, step);
+    const auto error = Reproject(camera, points, next.T_CE);
+    if (!error || !(error->squared_px2 < at.error.squared_px2)) return {};
+    next.error = *error;
+    return {.cost = error->squared_px2};
+  };
+  const auto accept = [&] { at = next; };
+  const DescentResult descent = Descend(at.error.squared_px2, std::ref(try_step), std::ref(accept),
+                                        {.max_iterations = max_iterations,
+                                         .start_damping = 1e-4,
+                                         .least_raised = 0.0,
+                                         .most_damping = 1e10,
+                                         .relative_gain = 0.0});
+  if (!finite || (!descent.settled && !descent.exhausted)) return {};
+  return at;
 }
 
 }  // namespace flextip

@@ -1,11 +1,12 @@
 #include "apps/calibrate/budget/output.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "apps/calibrate/verdict_json.h"
+#include "recording/streams/series_file.h"
+#include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "report/figure.h"
 #include "report/pages.h"
@@ -28,27 +29,28 @@ std::string Table(const std::vector<TimedBudget>& budgets) {
   for (const char* column : {"xx", "xy", "xz", "yy", "yz", "zz"}) {
     columns.push_back(fmt::format("total_cov_{} [m2]", column));
   }
-  std::string text = fmt::format("#timestamp [ns],{}\n", fmt::join(columns, ","));
+  CsvWriter csv(TimedColumns(columns));
   for (const TimedBudget& b : budgets) {
-    const Eigen::Vector3d& p = b.value.p_RE;
-    text +=
-        fmt::format("{},{},{},{}", b.t_ns, NumberText(p.x()), NumberText(p.y()), NumberText(p.z()));
+    csv.Add(b.t_ns);
+    AddVector3(csv, b.value.p_RE);
     const std::vector<BudgetPart> parts = PartsWithTotal(b.value);
     for (const std::string& name : names) {
       const auto part = std::find_if(parts.begin(), parts.end(),
                                      [&](const BudgetPart& one) { return one.name == name; });
       if (part == parts.end()) {
-        text += ",,";
+        csv.AddEmpty(2);
         continue;
       }
       const DepthAndAcross sd = SplitByDepth(part->covariance_R, b.value.depth_R);
-      text += fmt::format(",{:.4g},{:.4g}", sd.depth_m, sd.across_m);
+      csv.AddOrEmpty(sd.depth_m, 4).AddOrEmpty(sd.across_m, 4);
     }
     const Eigen::Matrix3d C = b.value.TotalCovariance();
-    text += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", C(0, 0), C(0, 1), C(0, 2),
-                        C(1, 1), C(1, 2), C(2, 2));
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) csv.AddOrEmpty(C(i, j), 6);
+    }
+    csv.EndRow();
   }
-  return text;
+  return csv.text();
 }
 
 report::Figure BarFigure(const std::vector<BudgetPartSize>& parts) {

@@ -15,6 +15,7 @@
 #include "calibration/camera/choice.h"
 #include "calibration/entries.h"
 #include "recording/cameras/camera_file.h"
+#include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
 
@@ -117,15 +118,17 @@ json Summary(const JudgedCamera& judged) {
 }
 
 std::string ResidualTable(const CameraSolution& s) {
-  std::string text = "#image,id [],x [px],y [px],dx [px],dy [px],used []\n";
+  CsvWriter csv({"image", "id []", "x [px]", "y [px]", "dx [px]", "dy [px]", "used []"});
   for (const SolvedView& v : s.views) {
+    const std::string name = fs::path(v.name).filename().string();
     for (std::size_t i = 0; i < v.px.size(); ++i) {
-      text += fmt::format("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{}\n",
-                          fs::path(v.name).filename().string(), v.ids[i], v.px[i].x(), v.px[i].y(),
-                          v.residual_px[i].x(), v.residual_px[i].y(), v.IsUsed(i) ? 1 : 0);
+      csv.Add(name).Add(TimeNs{v.ids[i]});
+      csv.AddFixed(v.px[i].x(), 4).AddFixed(v.px[i].y(), 4);
+      csv.AddFixed(v.residual_px[i].x(), 4).AddFixed(v.residual_px[i].y(), 4);
+      csv.Add(TimeNs{v.IsUsed(i)}).EndRow();
     }
   }
-  return text;
+  return csv.text();
 }
 
 }  // namespace

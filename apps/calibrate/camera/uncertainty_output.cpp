@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "recording/text/csv.h"
 #include "recording/text/text.h"
 
 namespace flextip {
@@ -83,25 +84,21 @@ report::Figure MapFigure(const UncertaintyMap& map, const std::string& camera,
   return figure;
 }
 
-void AddRows(const UncertaintyMap& map, std::string& text) {
+void AddRows(const UncertaintyMap& map, CsvWriter& csv) {
   for (Eigen::Index row = 0; row < map.sd_px.rows(); ++row) {
     for (Eigen::Index column = 0; column < map.sd_px.cols(); ++column) {
-      const auto cell = [](double v, const char* form) {
-        return std::isfinite(v) ? fmt::format(fmt::runtime(form), v) : std::string();
-      };
-      const bool finite = map.sd_mm.size() > 0;
-      text += fmt::format("{:.1f},{:.1f},{},{},{}\n", map.x_px[column], map.y_px[row],
-                          cell(map.depth_m, "{:.4f}"), cell(map.sd_px(row, column), "{:.5f}"),
-                          finite ? cell(map.sd_mm(row, column), "{:.6f}") : "");
+      csv.AddFixed(map.x_px[column], 1).AddFixed(map.y_px[row], 1).AddFixed(map.depth_m, 4);
+      csv.AddFixed(map.sd_px(row, column), 5);
+      csv.AddFixed(map.sd_mm.size() > 0 ? map.sd_mm(row, column) : HUGE_VAL, 6).EndRow();
     }
   }
 }
 
 std::string UncertaintyTable(const CameraUncertainty& u) {
-  std::string text = "#x [px],y [px],depth [m],sd [px],sd_across [mm]\n";
-  AddRows(u.near, text);
-  AddRows(u.far, text);
-  return text;
+  CsvWriter csv({"x [px]", "y [px]", "depth [m]", "sd [px]", "sd_across [mm]"});
+  AddRows(u.near, csv);
+  AddRows(u.far, csv);
+  return csv.text();
 }
 
 }  // namespace

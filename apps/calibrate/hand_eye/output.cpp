@@ -164,14 +164,6 @@ std::vector<report::Figure> Figures(const HandEyeResult& result) {
   return {px, mm, wrist};
 }
 
-void AddOrEmpty(CsvWriter& csv, double value) {
-  if (std::isfinite(value)) {
-    csv.Add(value);
-  } else {
-    csv.AddEmpty();
-  }
-}
-
 std::string Quoted(std::string text) {
   std::replace(text.begin(), text.end(), ',', ';');  // a cell of a table without quotes
   return text;
@@ -200,7 +192,7 @@ void WriteHandEyeTables(const std::filesystem::path& folder, const HandEyeResult
                  "heldout_px [px]", "heldout_mm [mm]", "chi2 []", "used []", "reason"});
   for (const HandEyeViewResult& v : result.views) {
     csv.Add(v.t_ns).Add(Quoted(v.name)).Add(static_cast<double>(v.corners)).Add(v.board_px);
-    for (const double value : {v.px, v.mm, v.held_out_px, v.held_out_mm}) AddOrEmpty(csv, value);
+    for (const double value : {v.px, v.mm, v.held_out_px, v.held_out_mm}) csv.AddOrEmpty(value);
     csv.Add(v.chi2).Add(v.used ? 1.0 : 0.0).Add(Quoted(v.reason));
     csv.EndRow();
   }

@@ -12,6 +12,7 @@
 #include "calibration/entries.h"
 #include "calibration/stereo/rectification_text.h"
 #include "recording/cameras/camera_file.h"
+#include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "report/figure.h"
 #include "report/pages.h"
@@ -96,19 +97,21 @@ json Summary(const JudgedStereo& judged) {
 }
 
 std::string ResidualTable(const StereoSolution& s) {
-  std::string text = "#image,camera [],id [],x [px],y [px],dx [px],dy [px],used []\n";
+  CsvWriter csv(
+      {"image", "camera []", "id []", "x [px]", "y [px]", "dx [px]", "dy [px]", "used []"});
   for (const StereoView& view : s.views) {
     for (int eye = 0; eye < 2; ++eye) {
       const SolvedView& v = view.eyes[eye];
+      const std::string name = fs::path(v.name).filename().string();
       for (std::size_t i = 0; i < v.px.size(); ++i) {
-        text += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{}\n",
-                            fs::path(v.name).filename().string(), eye, v.ids[i], v.px[i].x(),
-                            v.px[i].y(), v.residual_px[i].x(), v.residual_px[i].y(),
-                            v.IsUsed(i) ? 1 : 0);
+        csv.Add(name).Add(TimeNs{eye}).Add(TimeNs{v.ids[i]});
+        csv.AddFixed(v.px[i].x(), 4).AddFixed(v.px[i].y(), 4);
+        csv.AddFixed(v.residual_px[i].x(), 4).AddFixed(v.residual_px[i].y(), 4);
+        csv.Add(TimeNs{v.IsUsed(i)}).EndRow();
       }
     }
   }
-  return text;
+  return csv.text();
 }
 
 report::Figure PairFigure(const StereoResult& r) {

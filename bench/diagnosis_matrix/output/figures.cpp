@@ -6,6 +6,8 @@
 #include <functional>
 #include <utility>
 
+#include "core/median.h"
+
 namespace flextip::bench {
 namespace {
 
@@ -47,15 +49,6 @@ bool IsDeclaredAlias(const MatrixRecord& r) {
            std::any_of(r.full_indistinguishable.begin(), r.full_indistinguishable.end(),
                        [&](const EffectNames& group) { return Holds(group, name); });
   });
-}
-
-double Quantile(std::vector<double> values, double part) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const double at = part * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, values.size() - 1);
-  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
 }
 
 double Mean(const std::vector<double>& values) {

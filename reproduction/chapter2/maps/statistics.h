@@ -1,11 +1,13 @@
 // Small statistics of the studies of chapter 2. Private to reproduction.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
+#include "core/median.h"
 #include "workspace/map.h"
 #include "workspace/planar_instrument.h"
 
@@ -18,12 +20,10 @@ inline double Mean(const std::vector<double>& values) {
   for (const double v : values) sum += v;
   return values.empty() ? std::numeric_limits<double>::quiet_NaN() : sum / double(values.size());
 }
-/// The value below which `share` of all lie; not of none.
-inline double Quantile(std::vector<double> values, double share) {
+/// As LowerQuantile, but NaN of none, which is no number.
+inline double QuantileOrNan(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return LowerQuantile(std::move(values), share);
 }
 
 /// Of the points with both measures that `where` holds for, the share that `what` holds for.

@@ -58,15 +58,15 @@ std::vector<TableRow> StudyContours() {
            "Along rays from the port, at the right and the bottom; both lines run along the edge."},
           {"2.3.1 135 degrees of the bound to 45 degrees of phi_max, largest distance",
            {},
-           Quantile(apart_mm, 1.0),
+           QuantileOrNan(apart_mm, 1.0),
            "mm",
            ""},
           {"2.3.1 |phi_max| on the bound's line of 135 degrees, mean", 45.0, Mean(phi_deg), "deg",
            "The bound jumps from 90 to 180 where ||G|| = 1, so its 135 degrees are that line."},
           {"2.3.1 |phi_max| on the bound's line of 135 degrees, smallest", 45.0,
-           Quantile(phi_deg, 0.0), "deg", "At the upper right."},
+           QuantileOrNan(phi_deg, 0.0), "deg", "At the upper right."},
           {"2.3.1 |phi_max| on the bound's line of 135 degrees, largest", 45.0,
-           Quantile(phi_deg, 1.0), "deg", "At the bottom left."}};
+           QuantileOrNan(phi_deg, 1.0), "deg", "At the bottom left."}};
 }
 
 /// The believed Jacobian if the shaft's direction came from the tip that is known instead of from
@@ -152,17 +152,17 @@ std::vector<TableRow> StudyMeasures(const WorkspaceMap<2>& map) {
        "Middle: the wrist 100 to 260 mm from the port."},
       {"2.3.1 least bound minus phi_max",
        {},
-       Quantile(Collect(map, all, excess), 0.0),
+       QuantileOrNan(Collect(map, all, excess), 0.0),
        "deg",
        "Conservative everywhere if not negative."},
       {"2.4 bound minus phi_max in the middle, median",
        {},
-       Quantile(Collect(map, middle, excess), 0.5),
+       QuantileOrNan(Collect(map, middle, excess), 0.5),
        "deg",
        "The thesis: closely estimating there."},
       {"2.4 bound minus phi_max, wrist within 100 mm of the port, median",
        {},
-       Quantile(Collect(map, far_from_port, excess), 0.5),
+       QuantileOrNan(Collect(map, far_from_port, excess), 0.5),
        "deg",
        "The thesis: quite large."},
       {"2.3.1 part with |phi_max| <= 90 deg",
@@ -172,24 +172,24 @@ std::vector<TableRow> StudyMeasures(const WorkspaceMap<2>& map) {
        "The thesis: most of the workspace."},
       {"2.3.1 |phi_max|, tip or wrist within 60 mm of the port, median",
        {},
-       Quantile(Collect(
-                    map,
-                    [](const Point& at) {
-                      return WristFromPortMm(at) < 60.0 || WristFromPortMm(at) > 260.0;
-                    },
-                    PhiMaxDeg),
-                0.5),
+       QuantileOrNan(Collect(
+                         map,
+                         [](const Point& at) {
+                           return WristFromPortMm(at) < 60.0 || WristFromPortMm(at) > 260.0;
+                         },
+                         PhiMaxDeg),
+                     0.5),
        "deg",
        "The thesis: larger values near the port."},
       {"2.3.1 |phi_max|, both further than 60 mm from it, median",
        {},
-       Quantile(Collect(
-                    map,
-                    [](const Point& at) {
-                      return WristFromPortMm(at) >= 60.0 && WristFromPortMm(at) <= 260.0;
-                    },
-                    PhiMaxDeg),
-                0.5),
+       QuantileOrNan(Collect(
+                         map,
+                         [](const Point& at) {
+                           return WristFromPortMm(at) >= 60.0 && WristFromPortMm(at) <= 260.0;
+                         },
+                         PhiMaxDeg),
+                     0.5),
        "deg",
        ""}};
   for (const auto& more : {StudyContours(), StudyStarts()})
@@ -208,14 +208,14 @@ std::vector<TableRow> StudyGains(double spacing_m) {
     const std::string at_gain = fmt::format(" at k = {}", gain);
     rows.push_back({"2.3.1 ||G||" + at_gain + ", median",
                     {},
-                    Quantile(norms, 0.5),
+                    QuantileOrNan(norms, 0.5),
                     "",
                     gain == 0.01  ? "Constricts to 1 as the thesis says, because G goes to I."
                     : gain == 2.0 ? "Not proportional to k: G = I - k J J_hat^-1."
                                   : ""});
     rows.push_back({"2.3.1 ||G||" + at_gain + ", 95 % of the workspace below",
                     {},
-                    Quantile(norms, 0.95),
+                    QuantileOrNan(norms, 0.95),
                     "",
                     ""});
     rows.push_back(
