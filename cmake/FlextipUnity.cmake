@@ -5,7 +5,7 @@
 # type, macro or test at the top level) go to different batches. Names are read when CMake runs, so
 # a redefinition that a later edit brings goes away by running cmake again.
 option(FLEXTIP_UNITY "Compile several files as one: less work from clean, more after an edit" ON)
-set(FLEXTIP_UNITY_FILES 8)  # a batch: more saves little and takes more memory than 2 GB
+set(FLEXTIP_UNITY_FILES 16)  # a batch: see docs/building.md
 
 # Sets `names` to the names FILE defines and `aliases` to its lines "using X = ...".
 function(flextip_defined_names file names aliases)

@@ -39,6 +39,9 @@ Json TraceJson(const FigureTrace& trace) {
                 "a place or a label for each y");
   FLEXTIP_CHECK(trace.y_error.empty() || trace.y_error.size() == trace.y.size(),
                 "an error for each y");
+  FLEXTIP_CHECK(trace.texts.empty() || trace.texts.size() == trace.y.size(), "a text for each y");
+  FLEXTIP_CHECK(trace.colors.empty() || trace.colors.size() == trace.y.size(),
+                "a color for each y");
   Json json{{"name", trace.name}, {"kind", Name(trace.kind)}, {"y", Numbers(trace.y)}};
   if (trace.labels.empty()) {
     json["x"] = Numbers(trace.x);
@@ -50,9 +53,12 @@ Json TraceJson(const FigureTrace& trace) {
     json["z"] = Numbers(trace.z);
   }
   if (!trace.y_error.empty()) json["y_error"] = Numbers(trace.y_error);
+  if (!trace.texts.empty()) json["texts"] = trace.texts;
+  if (!trace.colors.empty()) json["colors"] = trace.colors;
   if (!trace.color.empty()) json["color"] = trace.color;
   if (!trace.symbol.empty()) json["symbol"] = trace.symbol;
   if (trace.dashed) json["dashed"] = true;
+  if (trace.arrow) json["arrow"] = true;
   return json;
 }
 
@@ -65,10 +71,12 @@ Json FieldJson(const FigureField& field) {
     for (std::size_t c = 0; c < columns; ++c) row.push_back(Number(field.values[r * columns + c]));
     rows.push_back(std::move(row));
   }
-  return {
+  Json json{
       {"name", field.name},        {"x", Numbers(field.x)},           {"y", Numbers(field.y)},
       {"values", std::move(rows)}, {"levels", Numbers(field.levels)}, {"low", Number(field.low)},
       {"high", Number(field.high)}};
+  if (field.cells) json["cells"] = true;
+  return json;
 }
 
 Json FigureJson(const Figure& figure) {
@@ -80,6 +88,7 @@ Json FigureJson(const Figure& figure) {
   for (const auto& field : figure.fields) json["fields"].push_back(FieldJson(field));
   for (const auto& trace : figure.traces) json["traces"].push_back(TraceJson(trace));
   if (!figure.z_label.empty()) json["z_label"] = figure.z_label;
+  if (figure.lying_bars) json["lying_bars"] = true;
   for (const auto& band : figure.bands) {
     json["bands"].push_back({{"from", band.from}, {"to", band.to}, {"color", band.color}});
   }

@@ -20,12 +20,15 @@ struct FigureTrace {
   std::vector<double> x = {}, y = {}, z = {};
   std::vector<std::string> labels = {};  ///< in place of `x`: categories
   std::vector<double> y_error = {};      ///< half lengths of error bars; empty: none
+  std::vector<std::string> texts = {};   ///< written beside each point or bar; empty: none
   std::string color = {};                ///< as in CSS; empty: the page chooses
+  std::vector<std::string> colors = {};  ///< of each bar, in place of `color`
   std::string symbol = {};               ///< of points, as Plotly names it ("circle-open", "x")
   bool dashed = false;
+  bool arrow = false;  ///< of a line: its last point has a head
 };
 
-/// A quantity over a grid, as colours with contour lines.
+/// A quantity over a grid, as colours with contour lines, or as cells with numbers.
 struct FigureField {
   std::string name = {};               ///< of the colours' scale, with the unit
   std::vector<double> x = {}, y = {};  ///< the grid's lines
@@ -33,9 +36,10 @@ struct FigureField {
   std::vector<double> levels = {};     ///< of the contour lines
   double low = std::numeric_limits<double>::quiet_NaN();  ///< of the colours; NaN: the least value
   double high = std::numeric_limits<double>::quiet_NaN();
+  bool cells = false;  ///< x, y are middles of cells, each of one colour with its value in it
 };
 
-/// A stretch of the x axis behind the curves.
+/// A stretch of the x axis behind the curves; a dashed line where it has no length.
 struct FigureBand {
   double from = 0.0, to = 0.0;
   std::string color;
@@ -48,6 +52,7 @@ struct Figure {
   bool log_x = false, log_y = false;
   bool y_down = false;                   ///< as in a picture
   bool equal_axes = false;               ///< a length is as long in both directions
+  bool lying_bars = false;               ///< bars run along x, below each other; labels on the left
   std::vector<FigureField> fields = {};  ///< none or one
   std::vector<FigureTrace> traces = {};  ///< on top of the field; all in space, or none
   std::vector<FigureBand> bands = {};

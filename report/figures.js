@@ -14,8 +14,9 @@
   }
 
   function field(f) {
-    const colors = { type: "heatmap", x: f.x, y: f.y, z: f.values, colorscale: FIELD_COLORS, zsmooth: "best", hoverongaps: false,
+    const colors = { type: "heatmap", x: f.x, y: f.y, z: f.values, colorscale: FIELD_COLORS, zsmooth: f.cells ? false : "best", hoverongaps: false,
       colorbar: { title: { text: f.name, side: "right" }, thickness: 12, outlinewidth: 0 }, showscale: true };
+    if (f.cells) Object.assign(colors, { texttemplate: "%{z}", xgap: 1, ygap: 1 });
     if (f.low !== null) colors.zmin = f.low;
     if (f.high !== null) colors.zmax = f.high;
     if (f.low !== null || f.high !== null) colors.zauto = false;
@@ -25,14 +26,18 @@
     return [colors].concat(lines);
   }
 
-  function trace(t, i) {
+  function trace(t, i, lying) {
     if (t.z) return pathInSpace(t, i);
     const color = t.color || COLORS[i % COLORS.length];
     const out = { name: t.name, showlegend: t.name !== "", x: t.x, y: t.y };
-    if (t.kind === "bars") Object.assign(out, { type: "bar", marker: { color: color } });
+    if (t.kind === "bars") Object.assign(out, { type: "bar", marker: { color: t.colors || color }, textposition: "outside", cliponaxis: false });
     else Object.assign(out, { type: "scatter", mode: t.kind === "points" ? "markers" : "lines", connectgaps: false,
       line: { color: color, width: 2, dash: t.dashed ? "dash" : "solid" },
       marker: { color: color, size: t.y.length > 200 ? 4 : 8, symbol: t.symbol || "circle", line: { color: color, width: t.y.length > 200 ? 1 : 2 } } });
+    if (t.kind === "bars" && lying) Object.assign(out, { orientation: "h", x: t.y, y: t.x });
+    if (t.texts) out.text = t.texts;
+    if (t.texts && t.kind === "points") Object.assign(out, { mode: "markers+text", textposition: "top right", cliponaxis: false });
+    if (t.arrow) Object.assign(out, { mode: "lines+markers", marker: { color: color, symbol: "arrow", angleref: "previous", size: t.x.map((x, k) => k === t.x.length - 1 ? 14 : 0) } });
     if (t.y_error) out.error_y = { type: "data", array: t.y_error, visible: true, color: INK, thickness: 1.2 };
     return out;
   }
@@ -78,20 +83,45 @@
     if (figure.traces.some((t) => t.z)) return spaceLayout(figure);
     const legend = hasLegend(figure);
     const overTime = figure.x_label.startsWith("time (") && figure.traces.every((t) => t.kind === "line");
-    const bands = (figure.bands || []).map((b) => ({ type: "rect", layer: "below", xref: "x", yref: "paper",
-      x0: b.from, x1: b.to, y0: 0, y1: 1, fillcolor: b.color, opacity: 0.18, line: { width: 0 } }));
+    const bands = (figure.bands || []).map((b) => Object.assign({ xref: "x", yref: "paper", x0: b.from, x1: b.to, y0: 0, y1: 1 }, b.from === b.to
+      ? { type: "line", layer: "above", line: { color: b.color, width: 2, dash: "dash" } }
+      : { type: "rect", layer: "below", fillcolor: b.color, opacity: 0.18, line: { width: 0 } }));
     const out = { font: FONT, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", margin: { l: 60, r: 16, t: legend ? 64 : 34, b: 48 },
       shapes: bands, showlegend: legend, legend: { orientation: "h", y: 1.01, yanchor: "bottom", x: 0 }, hoverlabel: { font: FONT }, hovermode: overTime ? "x unified" : "closest",
       barmode: "group", modebar: { bgcolor: "rgba(0,0,0,0)", color: "#b9c2cc", activecolor: INK },
       xaxis: axis(figure.x_label, figure.log_x), yaxis: axis(figure.y_label, figure.log_y) };
-    if (figure.equal_axes) Object.assign(out.yaxis, { scaleanchor: "x", constrain: "domain" }), out.xaxis.constrain = "domain";
-    if (figure.y_down) out.yaxis.autorange = "reversed";
+    const constrain = isLongAndFlat(figure) ? "range" : "domain";
+    if (figure.equal_axes) Object.assign(out.yaxis, { scaleanchor: "x", constrain }), out.xaxis.constrain = constrain;
+    if (figure.y_down || figure.lying_bars) out.yaxis.autorange = "reversed";
+    if (figure.lying_bars) out.margin.r = 60;  // for the longest bar's text
+    if (figure.lying_bars) Object.assign(out.yaxis, { type: "category", showgrid: false }), out.xaxis.rangemode = "tozero";
     return out;
+  }
+
+  // Room for each bar, whatever their number.
+  function lyingHeight(figure) {
+    return 130 + figure.traces.reduce((sum, t) => sum + 26 * t.y.length, 0);
+  }
+
+  // What is drawn to scale needs no more height than it has itself.
+  function isLongAndFlat(figure) {
+    return figure.equal_axes && figure.fields.length === 0 && figure.traces.length > 0 && !figure.traces[0].z && flatness(figure) < 0.5;
+  }
+
+  function flatness(figure) {
+    const span = (r) => r[1] - r[0];
+    return span(range(figure.traces, "y")) / (span(range(figure.traces, "x")) || 1);
+  }
+
+  function flatHeight(figure, width) {
+    return 160 + Math.max(0.2, 1.2 * flatness(figure)) * (width - 76);
   }
 
   document.querySelectorAll(".drawing").forEach(function (element) {
     const figure = JSON.parse(element.querySelector("script").textContent);
-    const traces = figure.fields.flatMap(field).concat(figure.traces.map(trace));
+    const traces = figure.fields.flatMap(field).concat(figure.traces.map((t, i) => trace(t, i, figure.lying_bars)));
+    if (figure.lying_bars) element.style.height = lyingHeight(figure) + "px";
+    if (isLongAndFlat(figure)) element.style.height = Math.min(element.clientHeight, flatHeight(figure, element.clientWidth)) + "px";
     Plotly.newPlot(element, traces, layout(figure), { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"] });
   });
 })();

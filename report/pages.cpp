@@ -17,17 +17,6 @@ constexpr std::size_t kPictures = 6;
 constexpr const char* kX = "x (mm)";
 constexpr const char* kY = "y (mm)";
 constexpr const char* kZ = "z (mm)";
-void WriteWithPictures(const fs::path& folder, const std::string& title,
-                       const std::string& heading) {
-  Report report = BeginPage(folder, title);
-  auto pictures = PicturesIn(folder / "overlay", kPictures);
-  const auto beside = PicturesIn(folder, kPictures);
-  pictures.insert(pictures.end(), beside.begin(), beside.end());
-  AddPictureFiles(report, heading, pictures);
-  AddShortTable(report, folder / "shapes.csv", "Shapes");
-  report.Write(folder / "report.html");
-}
-
 }  // namespace
 
 void WriteEstimateReport(const fs::path& folder) {
@@ -50,11 +39,19 @@ void WriteEstimateReport(const fs::path& folder) {
 }
 
 void WriteShapeReport(const fs::path& folder) {
-  WriteWithPictures(folder, "Shape of the shaft", "The shaft");
+  Report report = BeginPage(folder, "Shape of the shaft");
+  if (fs::exists(folder / "figures.json")) {  // of a single shape
+    report.AddHeading("The shaft");
+    report.AddFigureFile(folder / "figures.json");
+  }
+  AddShortTable(report, folder / "shapes.csv", "Shapes");
+  report.Write(folder / "report.html");
 }
 
 void WriteDetectReport(const fs::path& folder) {
-  WriteWithPictures(folder, "Tags found in pictures", "What was found");
+  Report report = BeginPage(folder, "Tags found in pictures");
+  AddPictureFiles(report, "What was found", PicturesIn(folder / "overlay", kPictures));
+  report.Write(folder / "report.html");
 }
 
 }  // namespace flextip::report

@@ -13,11 +13,11 @@ function page(file) {
   const elements = figures.map((f) => {
     const height = f.equal_axes ? TALL : HEIGHT;
     const json = JSON.stringify(f).replace(/</g, "\\u003c");
-    return `<div class="drawing" data-name="${f.name}" data-height="${height}" style="width:${WIDTH}px;height:${height}px"><script type="application/json">${json}</script></div>`;
+    return `<div class="drawing" data-name="${f.name}" style="width:${WIDTH}px;height:${height}px"><script type="application/json">${json}</script></div>`;
   });
   const keep = `(async function () {
     for (const e of document.querySelectorAll(".drawing")) {
-      const url = await Plotly.toImage(e, { format: "svg", width: ${WIDTH}, height: Number(e.dataset.height) });
+      const url = await Plotly.toImage(e, { format: "svg", width: ${WIDTH}, height: e.clientHeight });
       const kept = document.createElement("i");
       kept.dataset.file = e.dataset.name;
       const svg = unescape(url.slice(url.indexOf(",") + 1));

@@ -13,12 +13,13 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/vector_option.h"
-#include "apps/shape/picture.h"
+#include "apps/shape/figures.h"
 #include "apps/shape/table.h"
 #include "core/error.h"
 #include "kinematics/shaft_shape.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
+#include "report/report.h"
 
 namespace flextip {
 namespace {
@@ -87,10 +88,14 @@ void RunSingle(const ShapeOptions& options) {
   } else {
     PrintShape(shape);
   }
-  if (!options.plot.empty()) WriteTextFile(options.plot, DrawShape(options.problem, shape));
+  if (!options.plot.empty()) {
+    report::Report page("Shape of the shaft");
+    page.AddFigures(ShapeFigures(options.problem, shape));
+    page.Write(options.plot);
+  }
   if (options.out.empty()) return;
   OutputFolder output(options.out, "shape", {.force = options.replace});
-  WriteTextFile(output.folder() / "shape.png", DrawShape(options.problem, shape));
+  report::WriteFigures(output.folder() / "figures.json", ShapeFigures(options.problem, shape));
   WriteResults(output, {options.problem}, {shape});
 }
 
@@ -157,6 +162,9 @@ void CheckUsage(const CLI::App& command, const ShapeOptions& options) {
     }
     return;
   }
+  if (!options.plot.empty() && options.plot.extension() != ".html") {
+    throw InputError("shape: --plot writes a page, expected a name that ends in .html");
+  }
   for (const char* name : {"--length", "--stiffness", "--wrist", "--port"}) {
     if (command.count(name) == 0) throw InputError(fmt::format("shape: {} is required", name));
   }
@@ -175,12 +183,12 @@ void AddShape(CLI::App& app, AppContext& context) {
       ->transform(CLI::CheckedTransformer(kModels).description(""))
       ->type_name("MODEL");
   command->add_flag("--json", options->json, "Print the shape as JSON");
-  command->add_option("--plot", options->plot, "Draw the shape into this PNG file");
+  command->add_option("--plot", options->plot, "Draw the shape on this page (HTML)");
   command->add_option("-o,--output", options->out, "Folder for the results");
   command->footer(
       "Examples:\n"
       "  flextip shape --length 0.6 --stiffness 0.304 --wrist 0,0,0 --port 0.28,0,0 \\\n"
-      "      --force 0,0,-2 --plot shape.png\n"
+      "      --force 0,0,-2 --plot shape.html\n"
       "  flextip shape --batch problems.csv -o shapes\n");
   OnRun(*command, context, [command, options, &context] {
     CheckUsage(*command, *options);

@@ -4,54 +4,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
+#include "apps/common/drawing.h"
 #include "core/linear_algebra.h"
 #include "vision/camera_model.h"
 
 namespace flextip {
 namespace {
 
-const cv::Scalar kGreen(80, 220, 60), kYellow(40, 220, 240), kOrange(0, 140, 255);
-const cv::Scalar kWhite(255, 255, 255), kBlack(0, 0, 0), kCyan(255, 230, 0), kDimCyan(140, 125, 20),
-    kRed(70, 70, 255);
+constexpr Colour kGreen{80, 220, 60}, kYellow{40, 220, 240}, kOrange{0, 140, 255};
+constexpr Colour kWhite{255, 255, 255}, kCyan{255, 230, 0}, kDimCyan{140, 125, 20},
+    kRed{70, 70, 255};
 constexpr std::size_t kPicturesOfReport = 6, kPicturesOfOverlay = 24, kEveryOfUnknown = 150;
 constexpr int kLargestWhole_px = 700;
 constexpr double kAxis_m = 0.01;
 constexpr double kChi2Of99Percent = 9.21;  // two degrees of freedom
-constexpr int kFractionBits = 4;           // OpenCV draws to 1/16 px
 
-cv::Mat View(Image& image) {
-  return cv::Mat(image.height_px, image.width_px, CV_8UC3, image.data.data());
+bool Near(const Eigen::Vector2d& px, const CameraModel& model) {
+  const CameraCalibration& camera = model.Calibration();
+  return px.cwiseAbs().maxCoeff() < 4.0 * std::max(camera.width_px, camera.height_px);
 }
 
-cv::Point Fine(const Eigen::Vector2d& px) {
-  const double scale = 1 << kFractionBits;
-  return {static_cast<int>(std::lround(px.x() * scale)),
-          static_cast<int>(std::lround(px.y() * scale))};
-}
-
-void Line(cv::Mat& canvas, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-          const cv::Scalar& color, int thickness = 1) {
-  cv::line(canvas, Fine(a), Fine(b), color, thickness, cv::LINE_AA, kFractionBits);
-}
-
-void Text(cv::Mat& canvas, const std::string& text, cv::Point at, double scale,
-          const cv::Scalar& color) {
-  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, scale, kBlack, 3, cv::LINE_AA);
-  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, scale, color, 1, cv::LINE_AA);
-}
-
-bool Near(const Eigen::Vector2d& px, const cv::Mat& canvas) {
-  return px.cwiseAbs().maxCoeff() < 4.0 * std::max(canvas.cols, canvas.rows);
-}
-
-void Quad(cv::Mat& canvas, const TagCorners& corners, const cv::Scalar& color) {
-  for (int i = 0; i < 4; ++i) Line(canvas, corners[i], corners[(i + 1) % 4], color);
+void Quad(Drawing& drawing, const TagCorners& corners, const Colour& color) {
+  for (int i = 0; i < 4; ++i) drawing.Line(corners[i], corners[(i + 1) % 4], color);
 }
 
 // Every face's outline; those turned away first, so that the near ones lie over them.
-void DrawCollar(cv::Mat& canvas, const CameraModel& model, const TagCollar& collar,
+void DrawCollar(Drawing& drawing, const CameraModel& model, const TagCollar& collar,
                 const Pose& T_CE) {
   for (const bool away : {true, false}) {
     for (const CollarTag& tag : collar.tags) {
@@ -62,48 +41,44 @@ void DrawCollar(cv::Mat& canvas, const CameraModel& model, const TagCollar& coll
       const auto corners_E = CornersInE(tag);
       for (int i = 0; i < 4; ++i) {
         const auto px = model.Project(T_CE * corners_E[i]);
-        seen = seen && px && Near(*px, canvas);
+        seen = seen && px && Near(*px, model);
         if (px) corners[i] = *px;
       }
-      if (seen) Quad(canvas, corners, away ? kDimCyan : kCyan);
+      if (seen) Quad(drawing, corners, away ? kDimCyan : kCyan);
     }
   }
 }
 
-void DrawAxes(cv::Mat& canvas, const CameraModel& model, const Pose& T_CE) {
+void DrawAxes(Drawing& drawing, const CameraModel& model, const Pose& T_CE) {
   const auto origin = model.Project(T_CE.p);
-  const cv::Scalar colors[] = {{60, 60, 240}, {60, 200, 60}, {240, 120, 40}};
+  constexpr Colour colors[] = {{60, 60, 240}, {60, 200, 60}, {240, 120, 40}};
   for (int axis = 0; axis < 3; ++axis) {
     const auto end = model.Project(T_CE * Eigen::Vector3d(kAxis_m * Eigen::Vector3d::Unit(axis)));
-    if (origin && end && Near(*origin, canvas) && Near(*end, canvas)) {
-      Line(canvas, *origin, *end, colors[axis], 2);
+    if (origin && end && Near(*origin, model) && Near(*end, model)) {
+      drawing.Line(*origin, *end, colors[axis], 2);
     }
   }
 }
 
-const cv::Scalar& ColorOf(TipStatus status) {
+const Colour& ColorOf(TipStatus status) {
   if (status == TipStatus::kOk) return kWhite;
   return status == TipStatus::kPredicted ? kOrange : kRed;
 }
 
 // The covariance seen through the lens: J C J^T.
-void DrawTip(cv::Mat& canvas, const CameraModel& model, const TipObservation& tip) {
+void DrawTip(Drawing& drawing, const CameraModel& model, const TipObservation& tip) {
   const Pose T_CR = model.Calibration().T_RC.Inverse();
   Eigen::Matrix<double, 2, 3> J;
   const auto px = model.Project(T_CR * tip.p_RE, &J);
-  if (!px || !Near(*px, canvas)) return;
+  if (!px || !Near(*px, model)) return;
   const Eigen::Matrix<double, 2, 3> J_R = J * T_CR.R;
   const SymmetricEigen axes(J_R * tip.covariance_m2 * J_R.transpose());
   const Eigen::Vector2d half = (kChi2Of99Percent * axes.values.cwiseMax(0)).cwiseSqrt();
   const Eigen::Vector2d minor_axis = axes.vectors.col(0);
   const double angle_deg = std::atan2(minor_axis.y(), minor_axis.x()) * 180 / M_PI;
-  const cv::Scalar color = ColorOf(tip.status);
-  const Eigen::Vector2d cross(3, 0), up(0, 3);
-  Line(canvas, *px - cross, *px + cross, color);
-  Line(canvas, *px - up, *px + up, color);
-  const auto size = Fine(half.cwiseMin(1000.0).cwiseMax(1.0));
-  cv::ellipse(canvas, Fine(*px), cv::Size(size.x, size.y), angle_deg, 0, 360, color, 1, cv::LINE_AA,
-              kFractionBits);
+  const Colour& color = ColorOf(tip.status);
+  drawing.Cross(*px, 3, color);
+  drawing.Ellipse(*px, half.cwiseMin(1000.0).cwiseMax(1.0), angle_deg, color);
 }
 
 std::string Describe(const TipTrack& track) {
@@ -119,17 +94,16 @@ std::string Describe(const TipTrack& track) {
 }  // namespace
 
 void DrawTags(Image& image, const std::vector<TagDetection>& tags) {
-  cv::Mat canvas = View(image);
+  Drawing drawing(image);
   for (const TagDetection& tag : tags) {
-    const cv::Scalar& color = tag.refined ? kGreen : kYellow;
-    Quad(canvas, tag.corners_px, color);
+    const Colour& color = tag.refined ? kGreen : kYellow;
+    Quad(drawing, tag.corners_px, color);
     // The first corner is where the tag's own bottom left is.
-    cv::circle(canvas, Fine(tag.corners_px[0]), 2 << kFractionBits, color, 1, cv::LINE_AA,
-               kFractionBits);
+    drawing.Ring(tag.corners_px[0], 2, color);
     Eigen::Vector2d right = tag.corners_px[0];
     for (const Eigen::Vector2d& c : tag.corners_px) right = c.x() > right.x() ? c : right;
-    const cv::Point at(static_cast<int>(right.x()) + 3, static_cast<int>(right.y()) + 3);
-    Text(canvas, std::to_string(tag.id), at, 0.4, color);
+    const Eigen::Vector2i at(static_cast<int>(right.x()) + 3, static_cast<int>(right.y()) + 3);
+    drawing.Text(std::to_string(tag.id), at, 0.4, color);
   }
 }
 
@@ -137,33 +111,20 @@ void DrawTrack(Image& image, const TipTrack& track, const CameraCalibration& cam
                const TagCollar& collar) {
   DrawTags(image, track.tags);
   const CameraModel model(camera);
-  cv::Mat canvas = View(image);
+  Drawing drawing(image);
   if (track.tip.status == TipStatus::kOk) {
     const Pose T_CE = camera.T_RC.Inverse() * track.T_RE;
-    DrawCollar(canvas, model, collar, T_CE);
-    DrawAxes(canvas, model, T_CE);
+    DrawCollar(drawing, model, collar, T_CE);
+    DrawAxes(drawing, model, T_CE);
   }
-  if (track.tip.status != TipStatus::kLost) DrawTip(canvas, model, track.tip);
+  if (track.tip.status != TipStatus::kLost) DrawTip(drawing, model, track.tip);
 }
 
 void DrawStatus(Image& image, const TipTrack& track) {
-  cv::Mat canvas = View(image);
+  Drawing drawing(image);
   const double scale = 0.6 * std::max(1.0, image.width_px / 960.0);
-  Text(canvas, Describe(track), {8, 4 + static_cast<int>(30 * scale)}, scale,
-       ColorOf(track.tip.status));
-}
-
-void DrawPoints(Image& image, const std::vector<Eigen::Vector2d>& points_px) {
-  cv::Mat canvas = View(image);
-  for (const Eigen::Vector2d& p : points_px) {
-    Line(canvas, p - Eigen::Vector2d(4, 0), p + Eigen::Vector2d(4, 0), kGreen);
-    Line(canvas, p - Eigen::Vector2d(0, 4), p + Eigen::Vector2d(0, 4), kGreen);
-  }
-}
-
-void DrawLabel(Image& image, const std::string& text) {
-  cv::Mat canvas = View(image);
-  Text(canvas, text, {8, 22}, 0.6, kWhite);
+  drawing.Text(Describe(track), {8, 4 + static_cast<int>(30 * scale)}, scale,
+               ColorOf(track.tip.status));
 }
 
 namespace {

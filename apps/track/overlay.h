@@ -27,11 +27,6 @@ void DrawTrack(Image& image, const TipTrack& track, const CameraCalibration& cam
 /// The status in its colour, and what the fit leaves.
 void DrawStatus(Image& image, const TipTrack& track);
 
-/// Crosses at the points.
-void DrawPoints(Image& image, const std::vector<Eigen::Vector2d>& points_px);
-
-void DrawLabel(Image& image, const std::string& text);
-
 /// Draws tracked frames into FOLDER/overlay.mp4, where that is wanted, and a few into
 /// FOLDER/overlay/*.png: some spread evenly, and the first ones after the status
 /// changed; of large frames the half around tip and tags.

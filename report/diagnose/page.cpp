@@ -58,12 +58,13 @@ void AddProbabilities(Report& report, const DiagnosedResult& result) {
   for (const auto& name : result.credible_set) {
     credible += (credible.empty() ? "" : "; ") + SpokenHypothesis(name);
   }
-  report.AddHtml("<div class=\"side\">\n");
-  report.AddHtml(BarsHtml("How likely each answer is", ProbabilityBars(result),
-                          credible.empty() ? "" : "90 % lie in: " + credible + "."));
-  report.AddHtml(
-      BarsHtml("How likely each effect is there, in whatever company", PresenceBars(result), ""));
-  report.AddHtml("</div>\n");
+  Figure answers = ProbabilityBars(result);
+  if (!credible.empty()) answers.caption = "90 % lie in: " + credible + ".";
+  std::vector<Figure> figures;
+  for (const Figure& bars : {answers, PresenceBars(result)}) {
+    if (!bars.traces.empty()) figures.push_back(bars);
+  }
+  report.AddFigures(figures);
 }
 
 void AddWhatIsWrong(Report& report, const DiagnosedResult& result, const ResultTable& residuals) {
@@ -113,12 +114,12 @@ void AddErrorBars(Report& report, const DiagnosedResult& result, const ResultTab
     if (b && e) whole.push_back({SpokenChannel(channel), *b, *e});
   }
   if (!heldout.empty()) {
-    report.AddHtml(
-        ErrorBarsHtml("Held-out error, in units of noise", heldout,
-                      "Root mean square on parts of the recording that were not fitted."));
+    report.AddFigure(ErrorBars("Held-out error, in units of noise", heldout,
+                               "Root mean square on parts of the recording that were not fitted."));
     return;
   }
-  report.AddHtml(ErrorBarsHtml(
+  if (whole.empty()) return;
+  report.AddFigure(ErrorBars(
       "Error by channel over the whole recording, in units of noise", whole,
       "Root mean square. What the unknown force on the tip explains is taken out, so noise alone "
       "may come to a little less than 1. Errors on parts that were not fitted are in the table."));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "report/report.h"
 
@@ -12,6 +13,11 @@ namespace {
 
 constexpr std::size_t kBars = 8;
 constexpr double kFaint = kChanceScore;
+constexpr const char* kStrong = "#00697d";
+constexpr const char* kFaintBar = "#9fb0bf";
+constexpr const char* kInk = "#1d2733";
+constexpr const char* kBase = "#d55e00";
+constexpr const char* kExtended = "#0072b2";
 
 std::string Paragraph(const char* style, const std::string& text) {
   return text.empty() ? "" : fmt::format("<p class=\"{}\">{}</p>\n", style, EscapeHtml(text));
@@ -57,6 +63,23 @@ std::string HeatRow(const std::string& channel, const std::vector<std::string>& 
   return row + "</tr>\n";
 }
 
+Figure EmptyBars(const std::string& title) {
+  return {.title = title, .x_label = "probability (%)", .lying_bars = true};
+}
+
+std::size_t BarsOf(const Figure& figure) {
+  return figure.traces.empty() ? 0 : figure.traces.front().y.size();
+}
+
+void AddBar(Figure& figure, const std::string& name, double probability, bool strong) {
+  if (figure.traces.empty()) figure.traces.push_back({.kind = FigureTrace::Kind::kBars});
+  FigureTrace& bars = figure.traces.front();
+  bars.labels.push_back(SpokenHypothesis(name));
+  bars.y.push_back(100.0 * std::clamp(probability, 0.0, 1.0));
+  bars.texts.push_back(Percent(probability));
+  bars.colors.emplace_back(strong ? kStrong : kFaintBar);
+}
+
 std::string ErrorText(double error) { return fmt::format("{:.{}f}", error, error < 10.0 ? 2 : 0); }
 
 }  // namespace
@@ -72,43 +95,28 @@ std::string HeadlineHtml(const Headline& headline) {
          "</section>\n";
 }
 
-std::string BarsHtml(const std::string& title, const std::vector<Bar>& bars,
-                     const std::string& caption) {
-  if (bars.empty()) return "";
-  std::string rows = "<div class=\"bars\">\n";
-  for (const auto& bar : bars) {
-    rows += fmt::format(
-        "<span class=\"label{0}\">{1}</span><span class=\"track\"><i class=\"bar{0}\" "
-        "style=\"width:{2:.2f}%\"></i></span><span class=\"number{0}\">{3}</span>\n",
-        bar.strong ? " strong" : "", EscapeHtml(bar.label), 100.0 * std::clamp(bar.share, 0.0, 1.0),
-        EscapeHtml(bar.value));
-  }
-  return FigureHtml("half", title, rows + "</div>\n", caption);
-}
-
-std::vector<Bar> ProbabilityBars(const DiagnosedResult& result) {
+Figure ProbabilityBars(const DiagnosedResult& result) {
   std::vector<std::string> found;  // the verdict and what this recording cannot tell from it
   for (const auto& set : result.Equivalents()) found.push_back(JoinedEffects(set));
-  std::vector<Bar> bars;
+  Figure figure = EmptyBars("How likely each answer is");
   for (const auto& [name, p] : result.probabilities) {
     const bool strong = std::find(found.begin(), found.end(), name) != found.end();
     const bool always = strong || name == "none" || name == "unknown";
-    if (!always && (bars.size() >= kBars || p < 5e-4)) continue;
-    bars.push_back({SpokenHypothesis(name), Percent(p), p, strong});
+    if (!always && (BarsOf(figure) >= kBars || p < 5e-4)) continue;
+    AddBar(figure, name, p, strong);
   }
-  return bars;
+  return figure;
 }
 
-std::vector<Bar> PresenceBars(const DiagnosedResult& result) {
+Figure PresenceBars(const DiagnosedResult& result) {
   std::vector<std::string> found;
   for (const auto& set : result.Equivalents()) found.insert(found.end(), set.begin(), set.end());
-  std::vector<Bar> bars;
+  Figure figure = EmptyBars("How likely each effect is there, in whatever company");
   for (const auto& [name, p] : result.presence) {
-    if (name == "none" || name == "unknown" || bars.size() >= kBars || p < 5e-4) continue;
-    const bool strong = std::find(found.begin(), found.end(), name) != found.end();
-    bars.push_back({SpokenHypothesis(name), Percent(p), p, strong});
+    if (name == "none" || name == "unknown" || BarsOf(figure) >= kBars || p < 5e-4) continue;
+    AddBar(figure, name, p, std::find(found.begin(), found.end(), name) != found.end());
   }
-  return bars;
+  return figure;
 }
 
 std::string HeatMapHtml(const std::vector<DiagnosedSignature>& signatures) {
@@ -130,25 +138,27 @@ std::string HeatMapHtml(const std::vector<DiagnosedSignature>& signatures) {
                     "3 is chance.");
 }
 
-std::string ErrorBarsHtml(const std::string& title, std::vector<ErrorPair> errors,
-                          const std::string& caption) {
-  if (errors.empty()) return "";
+Figure ErrorBars(const std::string& title, std::vector<ErrorPair> errors,
+                 const std::string& caption) {
   std::stable_sort(errors.begin(), errors.end(),
                    [](const auto& a, const auto& b) { return a.base > b.base; });
-  double longest = 2.0;
-  for (const auto& e : errors) longest = std::max({longest, 1.05 * e.base, 1.05 * e.extended});
-  std::string rows =
-      "<p class=\"key\"><b class=\"base\"></b>base simulation <b class=\"extended\"></b>extended "
-      "model <b class=\"mark\"></b>noise (1)</p>\n<div class=\"bars pairs\">\n";
+  FigureTrace base{.name = "base simulation", .kind = FigureTrace::Kind::kBars, .color = kBase};
+  FigureTrace extended{
+      .name = "extended model", .kind = FigureTrace::Kind::kBars, .color = kExtended};
   for (const auto& e : errors) {
-    rows += fmt::format(
-        "<span class=\"label\">{}</span><span class=\"track\"><i class=\"bar base\" "
-        "style=\"width:{:.2f}%\"></i><i class=\"bar extended\" style=\"width:{:.2f}%\"></i><u "
-        "style=\"left:{:.2f}%\"></u></span><span class=\"number\">{} → {}</span>\n",
-        EscapeHtml(e.label), 100.0 * e.base / longest, 100.0 * e.extended / longest,
-        100.0 / longest, ErrorText(e.base), ErrorText(e.extended));
+    for (const auto& [trace, error] :
+         {std::pair(&base, e.base), std::pair(&extended, e.extended)}) {
+      trace->labels.push_back(e.label);
+      trace->y.push_back(error);
+      trace->texts.push_back(ErrorText(error));
+    }
   }
-  return FigureHtml("wide", title, rows + "</div>\n", caption);
+  return {.title = title,
+          .caption = caption,
+          .x_label = "in units of noise (dashed: 1)",
+          .lying_bars = true,
+          .traces = {base, extended},
+          .bands = {{1.0, 1.0, kInk}}};
 }
 
 std::string FoldedTableHtml(const std::string& title, const std::vector<std::string>& header,

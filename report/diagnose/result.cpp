@@ -135,11 +135,11 @@ void ReadGain(const Json& json, DiagnosedResult& result) {
   const Json& loop = Member(json, "closed_loop");
   if (loop.empty()) return;
   const Json &before = Member(loop, "before"), &after = Member(loop, "after");
-  result.closed_loop = ClosedLoopGain{.controller = TextIn(loop, "controller"),
-                                      .max_before_m = NumberIn(before, "max_deviation_m"),
-                                      .max_after_m = NumberIn(after, "max_deviation_m"),
-                                      .rms_before_m = NumberIn(before, "rms_deviation_m"),
-                                      .rms_after_m = NumberIn(after, "rms_deviation_m")};
+  result.closed_loop = DiagnosedLoop{.controller = TextIn(loop, "controller"),
+                                     .max_before_m = NumberIn(before, "max_deviation_m"),
+                                     .max_after_m = NumberIn(after, "max_deviation_m"),
+                                     .rms_before_m = NumberIn(before, "rms_deviation_m"),
+                                     .rms_after_m = NumberIn(after, "rms_deviation_m")};
 }
 
 void ReadVerdict(const Json& json, DiagnosedResult& result) {

@@ -33,7 +33,8 @@ struct DiagnosedSignature {
   double score = 0.0;
 };
 
-struct ClosedLoopGain {
+/// `closed_loop` of the file: how far one controller strays from its path with either model.
+struct DiagnosedLoop {
   std::string controller;
   std::optional<double> max_before_m, max_after_m, rms_before_m, rms_after_m;
 };
@@ -56,7 +57,7 @@ struct DiagnosedResult {
   std::map<std::string, double> noise_scale;   ///< measured over data sheet's, by channel
   std::map<std::string, double> noise_sd;      ///< in the channel's unit, by channel
   std::map<std::string, std::string> summaries;
-  std::optional<ClosedLoopGain> closed_loop;
+  std::optional<DiagnosedLoop> closed_loop;
   std::vector<std::string> catalogue, warnings;
   std::vector<std::pair<std::string, double>> counts;  ///< samples, failed_samples, fits
 

@@ -161,16 +161,32 @@ TEST(ShapeCommand, RefusesWrongUsage) {
       IsRefused(RunProgram(With(kShape, {"--force", "0,0,1", "--model", "jelly"})), {"jelly"}));
   EXPECT_TRUE(IsRefused(RunProgram({"shape", "--batch", "t.csv"}), {"-o OUT"}));
   EXPECT_TRUE(IsRefused(RunProgram({"shape", "--length", "-1"}), {"--length"}));
+  EXPECT_TRUE(IsRefused(RunProgram(With(kShape, {"--force", "0,0,1", "--plot", "shape.png"})),
+                        {"--plot writes a page"}));
 }
 
 TEST(ShapeCommand, DrawsAPictureAndAPage) {
   const TestFolder folder;
-  const auto plot = (folder / "shape.png").string();
+  const auto plot = (folder / "shape.html").string();
   const auto out = (folder / "out").string();
   const auto arguments = With(kShape, {"--force", "0,0,-2", "--plot", plot, "-o", out});
   ASSERT_EQ(RunProgram(arguments).exit_code, 0);
-  EXPECT_THAT(ReadText(plot), StartsWith("\x89PNG"));
-  EXPECT_THAT(ReadText(folder / "out/report.html"), HasSubstr("data:image/png;base64,"));
+  const auto figures = nlohmann::json::parse(ReadText(folder / "out/figures.json"));
+  ASSERT_EQ(figures.size(), 2U);
+  for (const auto& page : {ReadText(plot), ReadText(folder / "out/report.html")}) {
+    EXPECT_THAT(page, HasSubstr("Plotly.newPlot"));
+    for (const auto& figure : figures) EXPECT_THAT(page, HasSubstr(figure.dump()));
+  }
+  // Seen from the side, the tip hangs below the wrist and the force points at it.
+  const auto& side = figures[0]["traces"];
+  EXPECT_EQ(side[1]["name"], "shaft");
+  EXPECT_LT(side[1]["y"].back().get<double>(), -10.0);
+  EXPECT_EQ(side[4]["texts"][0], "tip");
+  EXPECT_EQ(side[5]["name"], "force on the tip, 2 N");
+  EXPECT_EQ(side[5]["y"].back(), side[4]["y"].back());
+  EXPECT_GT(side[5]["y"].front(), side[5]["y"].back());
+  // From above the force points away from the viewer.
+  for (const auto& trace : figures[1]["traces"]) EXPECT_FALSE(trace.contains("arrow"));
   EXPECT_TRUE(PageIsMadeAgain(folder / "out"));
   EXPECT_TRUE(IsRefused(RunProgram(arguments), {"--force replaces it"}));
   EXPECT_EQ(RunProgram(With(arguments, {"--force"})).exit_code, 0);

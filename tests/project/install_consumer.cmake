@@ -1,4 +1,4 @@
-# Installs the built tree into a new prefix, then configures, builds and runs the consumer of it:
+# Installs the built tree into a new prefix, then configures, builds and runs its consumers:
 #   cmake -DBUILD=... -DSOURCE=... -DWORK=... -DCXX=... -DFLAGS=... -DTYPE=... -P install_consumer.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
@@ -15,6 +15,11 @@ run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G Ninja -DCMAKE_PREFIX_PATH=
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
 message(STATUS "${text}")
+run(${WORK}/build/control_cycle)
+message(STATUS "${text}")
+if(NOT text MATCHES "wrist to [^\n]* mm, ok")
+  message(FATAL_ERROR "the example did not say 'wrist to ... mm, ok'")
+endif()
 run(${WORK}/prefix/bin/flextip --version)
 message(STATUS "${text}")
 file(REMOVE_RECURSE ${WORK})

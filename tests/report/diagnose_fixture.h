@@ -48,6 +48,14 @@ class DiagnosePage : public testing::Test {
     return plots;
   }
 
+  static Json Plot(const std::string& html, const std::string& title) {
+    for (const Json& plot : Plots(html)) {
+      if (plot["title"] == title) return plot;
+    }
+    ADD_FAILURE() << "no figure " << title;
+    return {};
+  }
+
   /// The shaft rubs in the port, and the data say so.
   static Json Friction() {
     return Json::parse(R"({

@@ -13,6 +13,7 @@
 namespace flextip::report {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -68,10 +69,16 @@ TEST_F(DiagnosePage, AlwaysShowsNoneAndUnknown) {
     json["probabilities"][name] = 0.01;
   }
   const std::string html = Page(json);
-  EXPECT_THAT(html, HasSubstr(">none</span>"));
-  EXPECT_THAT(html, HasSubstr(">unknown</span>"));
-  EXPECT_THAT(html, Not(HasSubstr(">e9</span>")));
-  EXPECT_THAT(html, HasSubstr("<i class=\"bar strong\" style=\"width:98.10%\">"));
+  const Json bars = Plot(html, "How likely each answer is")["traces"][0];
+  const auto labels = bars["x"].get<std::vector<std::string>>();
+  EXPECT_THAT(labels, Contains("none"));
+  EXPECT_THAT(labels, Contains("unknown"));
+  EXPECT_THAT(labels, Not(Contains("e9")));
+  const auto verdict = std::find(labels.begin(), labels.end(), "port friction") - labels.begin();
+  EXPECT_DOUBLE_EQ(bars["y"][verdict].get<double>(), 98.1);
+  EXPECT_EQ(bars["texts"][verdict], "98 %");
+  const auto colors = bars["colors"].get<std::vector<std::string>>();
+  EXPECT_EQ(std::count(colors.begin(), colors.end(), colors[verdict]), 1);  // it alone is darker
 }
 
 TEST_F(DiagnosePage, CountsParametersInTolerances) {
@@ -95,7 +102,10 @@ TEST_F(DiagnosePage, ShowsErrorsInReadableUnits) {
   json["noise_sd"] = {{"em0_position_m", 0.0002}};
   html = Page(json);
   EXPECT_THAT(html, HasSubstr("Held-out error, in units of noise"));
-  EXPECT_THAT(html, HasSubstr("4.50 → 0.70"));
+  const Json errors = Plot(html, "Held-out error, in units of noise")["traces"];
+  EXPECT_EQ(errors[0]["x"].dump(), R"(["EM position"])");
+  EXPECT_EQ(errors[0]["texts"][0], "4.50");
+  EXPECT_EQ(errors[1]["texts"][0], "0.70");
   json.erase("noise_sd");
   Write("residuals.csv", Residuals(1000, 5.0));
   EXPECT_THAT(Page(json), HasSubstr("Error by channel over the whole recording"));
@@ -106,13 +116,13 @@ TEST_F(DiagnosePage, DrawsTheStrongestPatternOfTheTellingComponent) {
   const auto html = Page(Friction());
   EXPECT_THAT(html, HasSubstr("The strongest pattern: EM position, 2 against sliding velocity"));
   const auto plots = Plots(html);
-  ASSERT_EQ(plots.size(), 3U);  // pattern, time, memory
-  const auto& means = plots[0]["traces"][2];
+  ASSERT_EQ(plots.size(), 6U);  // probabilities, presence, pattern, time, errors, memory
+  const auto& means = plots[2]["traces"][2];
   EXPECT_EQ(means["name"], "base, mean");
   EXPECT_NEAR(means["y"].front().get<double>(), -5.0, 0.6);  // 5 sd of the mean of 50
   EXPECT_NEAR(means["y"].back().get<double>(), 5.0, 0.6);
-  EXPECT_NEAR(plots[0]["traces"][3]["y"].back().get<double>(), 0.0, 0.6);
-  EXPECT_EQ(plots[0]["x_label"], "sliding velocity (mm/s)");
+  EXPECT_NEAR(plots[2]["traces"][3]["y"].back().get<double>(), 0.0, 0.6);
+  EXPECT_EQ(plots[2]["x_label"], "sliding velocity (mm/s)");
   EXPECT_THAT(html, HasSubstr("within the band in every channel"));
 }
 
@@ -125,7 +135,7 @@ TEST_F(DiagnosePage, StaysSmallWithALongRecordingAndKeepsSpikes) {
     for (const auto& trace : plot["traces"]) EXPECT_LE(trace["x"].size(), 1500U);
   }
   EXPECT_LT(Own(html).size(), 500000U);
-  const auto y = Plots(html).at(1)["traces"][0]["y"].get<std::vector<double>>();
+  const auto y = Plots(html).at(3)["traces"][0]["y"].get<std::vector<double>>();
   EXPECT_EQ(*std::max_element(y.begin(), y.end()), 77.0);
 }
 

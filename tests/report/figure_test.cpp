@@ -75,6 +75,29 @@ TEST_F(FigureFiles, HoldBarsByTheirLabels) {
   EXPECT_EQ(trace.at("y_error").size(), 2U);
 }
 
+TEST_F(FigureFiles, SayWhatIsWrittenBesideAndWhichBarsStandOut) {
+  const auto figure = Written({.lying_bars = true,
+                               .traces = {{.kind = FigureTrace::Kind::kBars,
+                                           .y = {98.0, 2.0},
+                                           .labels = {"friction", "none"},
+                                           .texts = {"98 %", "2 %"},
+                                           .colors = {"#00697d", "#9fb0bf"}},
+                                          {.x = {0.0, 1.0}, .y = {0.0, 1.0}, .arrow = true}},
+                               .bands = {{1.0, 1.0, "#1d2733"}}});
+  EXPECT_EQ(figure.at("lying_bars"), true);
+  EXPECT_EQ(figure.at("traces").at(0).at("texts").dump(), R"(["98 %","2 %"])");
+  EXPECT_EQ(figure.at("traces").at(0).at("colors").at(1), "#9fb0bf");
+  EXPECT_EQ(figure.at("traces").at(1).at("arrow"), true);
+  EXPECT_EQ(figure.at("bands").at(0).at("from"), figure.at("bands").at(0).at("to"));
+}
+
+TEST_F(FigureFiles, HoldCells) {
+  const auto figure =
+      Written({.fields = {{.x = {0.5}, .y = {0.5}, .values = {3.0}, .cells = true}}});
+  EXPECT_EQ(figure.at("fields").at(0).at("cells"), true);
+  EXPECT_EQ(figure.at("fields").at(0).at("values").dump(), "[[3.0]]");
+}
+
 TEST_F(FigureFiles, AreDrawnOnThePageBesideTheTable) {
   Written({.name = "fig-2-4a", .title = "Norm < 1", .caption = "Where it converges"});
   Write("summary.json", R"({"command": "reproduce", "version": "0", "warnings": []})");

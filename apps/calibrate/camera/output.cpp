@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/calibrate/camera/board_shape_output.h"
+#include "apps/calibrate/camera/corner_figures.h"
 #include "apps/calibrate/camera/pictures.h"
 #include "apps/calibrate/camera/uncertainty_output.h"
 #include "apps/calibrate/verdict_json.h"
@@ -149,7 +150,8 @@ void WriteCameraResults(OutputFolder& output, const CornersFile& corners,
     output.Warn(fmt::format("the lens holds only where boards were seen: {}", folds));
   }
   DrawCameraPictures(folder, corners, result);
-  std::vector<report::Figure> figures;
+  std::vector<report::Figure> figures{ResidualsFigure(corners, result.solution),
+                                      CoverageFigure(corners, result.solution)};
   if (judged.uncertainty) {
     WriteUncertainty(folder, "cam0", *judged.uncertainty, result.solution.views, figures);
   }

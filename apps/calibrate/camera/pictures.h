@@ -8,9 +8,13 @@
 
 namespace flextip {
 
+inline constexpr double kResidualsLonger = 30.0;  ///< residuals are drawn so many times as long
+
+/// The residual as drawn: longer, but at most a fifth of the picture's width.
+Eigen::Vector2d DrawnResidual(const Eigen::Vector2d& residual_px, int width_px);
+
 /// FOLDER/overlay/*.png: each view, where its file is still there, with corners (green), outliers
-/// (red) and residuals, 30 times as long as they are. FOLDER/residuals.png: those of all views over
-/// the picture's plane. FOLDER/coverage.png: how many corners each part of the picture has seen.
+/// (red) and residuals.
 void DrawCameraPictures(const std::filesystem::path& folder, const CornersFile& corners,
                         const CameraCalibrationResult& result);
 

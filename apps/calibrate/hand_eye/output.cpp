@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "apps/calibrate/verdict_json.h"
-#include "apps/track/overlay.h"
+#include "apps/common/drawing.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "report/figure.h"
@@ -201,25 +200,17 @@ void WriteHandEyeTables(const std::filesystem::path& folder, const HandEyeResult
 }
 
 void DrawHandEyeView(Image& image, const HandEyeViewResult& view) {
-  cv::Mat canvas(image.height_px, image.width_px, CV_8UC3, image.data.data());
+  Drawing drawing(image);
   const int wide = std::max(1, image.width_px / 640);  // still seen where the picture is small
-  const auto at = [](const Eigen::Vector2d& p) {
-    return cv::Point(static_cast<int>(std::lround(16 * p.x())),
-                     static_cast<int>(std::lround(16 * p.y())));
-  };
-  const cv::Scalar seen(60, 200, 60), chain(60, 60, 240);
-  for (std::size_t i = 0; i < view.px_seen.size(); ++i) {
-    cv::circle(canvas, at(view.px_seen[i]), 2 * wide << 4, seen, cv::FILLED, cv::LINE_AA, 4);
+  constexpr Colour kSeen{60, 200, 60}, kChain{60, 60, 240};
+  for (const Eigen::Vector2d& p : view.px_seen) drawing.Disc(p, 2 * wide, kSeen);
+  for (const Eigen::Vector2d& p : view.px_chain) {
+    if (p.cwiseAbs().maxCoeff() <= 1e5) drawing.Ring(p, 4 * wide, kChain, wide);
   }
-  for (std::size_t i = 0; i < view.px_chain.size(); ++i) {
-    const Eigen::Vector2d& p = view.px_chain[i];
-    if (p.cwiseAbs().maxCoeff() > 1e5) continue;
-    cv::circle(canvas, at(p), 4 * wide << 4, chain, wide, cv::LINE_AA, 4);
-  }
-  DrawLabel(image, std::isfinite(view.px)
-                       ? fmt::format("{}: {:.2f} px, {:.2f} mm{}", view.name, view.px, view.mm,
-                                     view.used ? "" : ", not used")
-                       : fmt::format("{}: {}", view.name, view.reason));
+  drawing.Label(std::isfinite(view.px)
+                    ? fmt::format("{}: {:.2f} px, {:.2f} mm{}", view.name, view.px, view.mm,
+                                  view.used ? "" : ", not used")
+                    : fmt::format("{}: {}", view.name, view.reason));
 }
 
 std::string HandEyeInWords(const HandEyeResult& r, const Calibration& calibration) {

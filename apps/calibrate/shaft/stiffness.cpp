@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,15 +9,11 @@
 #include <vector>
 
 #include "apps/calibrate/calibrate.h"
-#include "apps/calibrate/verdict_json.h"
-#include "apps/common/output.h"
-#include "apps/common/recording_input.h"
+#include "apps/calibrate/shaft/run.h"
 #include "calibration/shaft/stiffness_calibration.h"
 #include "calibration/verdict/shaft.h"
 #include "recording/text/csv.h"
-#include "recording/text/text.h"
 #include "report/figure.h"
-#include "report/pages.h"
 
 namespace flextip {
 namespace {
@@ -43,13 +38,6 @@ nlohmann::json ModelJson(const StiffnessModel& m) {
 }
 
 nlohmann::json Summary(const StiffnessCalibration& result) {
-  const TimeNs start_ns = result.holds.front().hold.first_ns;
-  int used = 0;
-  nlohmann::json rejected = nlohmann::json::array();
-  for (const auto& h : result.holds) {
-    used += h.used;
-    if (!h.used) rejected.push_back({{"hold", SpanOf(h.hold, start_ns)}, {"reason", h.reason}});
-  }
   nlohmann::json bins = nlohmann::json::array();
   for (const auto& bin : result.by_insertion) {
     bins.push_back({{"inserted_m", bin.inserted_m},
@@ -61,16 +49,15 @@ nlohmann::json Summary(const StiffnessCalibration& result) {
   nlohmann::json models = nlohmann::json::object();
   if (result.constant) models["constant"] = ModelJson(*result.constant);
   if (result.tapered) models["taper"] = ModelJson(*result.tapered);
-  return {{"status", Name(result.status)},
-          {"model", result.taper_chosen ? "taper" : "constant"},
-          {"models", models},
-          {"holds_used", used},
-          {"holds_rejected", rejected},
-          {"unobservable", UnobservableJson(result.found.unobservable)},
-          {"largest_bend_m", result.bend_m},
-          {"port_shift_m", {port.x(), port.y(), port.z()}},
-          {"by_insertion", bins},
-          {"advice", result.advice}};
+  nlohmann::json summary = {{"status", Name(result.status)},
+                            {"model", result.taper_chosen ? "taper" : "constant"},
+                            {"models", models},
+                            {"largest_bend_m", result.bend_m},
+                            {"port_shift_m", {port.x(), port.y(), port.z()}},
+                            {"by_insertion", bins},
+                            {"advice", result.advice}};
+  summary.update(HoldsJson(result.holds));
+  return summary;
 }
 
 std::string ResidualsText(const StiffnessCalibration& result) {
@@ -78,7 +65,7 @@ std::string ResidualsText(const StiffnessCalibration& result) {
   CsvWriter csv({"t_s", "samples []", "f_x [N]", "f_y [N]", "f_z [N]", "s_port [m]", "e_x [m]",
                  "e_y [m]", "e_z [m]", "chi2 []", "measurements []", "used []", "reason"});
   for (const auto& h : result.holds) {
-    csv.Add(1e-9 * static_cast<double>(h.hold.first_ns - start_ns));
+    csv.Add(SecondsAfter(start_ns, h.hold));
     csv.Add(static_cast<double>(h.hold.samples));
     for (const double f : h.hold.f_tip_N) csv.Add(f);
     csv.Add(h.s_port_m);
@@ -130,10 +117,7 @@ report::Figure LoadFigure(const StiffnessCalibration& result) {
 }
 
 void Warn(const StiffnessCalibration& result, OutputFolder& output) {
-  const TimeNs start_ns = result.holds.front().hold.first_ns;
-  for (const auto& h : result.holds) {
-    if (!h.used) output.Warn(SpanOf(h.hold, start_ns) + ": " + h.reason);
-  }
+  WarnOfHolds(result.holds, output);
   for (const auto& u : result.found.unobservable) output.Warn(u.parameter + ": " + u.reason);
   output.Warn(StiffnessDoubts(result));
 }
@@ -153,28 +137,19 @@ void Run(Options options, bool quiet) {
       {"constant", StiffnessChoice::kConstant},
       {"taper", StiffnessChoice::kTaper}};
   options.stiffness.choice = choices.at(options.model);
-  const InputRead read = ReadInput(options.input);
-  OutputFolder output(options.input.out, "calibrate stiffness",
-                      {.force = options.force, .inputs = options.input.Files()});
-  output.Warn(read.warnings);
+  ShaftRun run(options.input, "calibrate stiffness", options.force);
   const StiffnessCalibration result =
-      CalibrateStiffness(read.recording, options.input.recording.string(), options.stiffness);
-  Warn(result, output);
-  WriteCalibration(output.folder() / "calibration.yaml", result.found);
-  WriteTextFile(output.folder() / "residuals.csv", ResidualsText(result));
-  report::WriteFigures(output.folder() / "figures.json",
-                       {InsertionFigure(result), LoadFigure(result)});
-  nlohmann::json summary = Summary(result);
-  summary["verdict"] = VerdictJson(JudgeStiffness(result));
-  if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
-  output.WriteSummary(summary);
-  report::WriteCalibrateReport(output.folder());
-  output.Commit();
+      CalibrateStiffness(run.read.recording, options.input.recording.string(), options.stiffness);
+  Warn(result, run.output);
+  run.Write({result.found,
+             ResidualsText(result),
+             {InsertionFigure(result), LoadFigure(result)},
+             Summary(result),
+             JudgeStiffness(result)});
   if (quiet) return;
   Print(result);
-  for (const std::string& warning : output.warnings()) fmt::print("beware: {}\n", warning);
-  if (!result.advice.empty()) fmt::print("next, this would help most: {}\n", result.advice);
-  fmt::print("{}\n", (options.input.out / "calibration.yaml").string());
+  for (const std::string& warning : run.output.warnings()) fmt::print("beware: {}\n", warning);
+  run.PrintNext(result.advice);
 }
 
 }  // namespace

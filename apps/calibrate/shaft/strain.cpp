@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,15 +10,11 @@
 #include <vector>
 
 #include "apps/calibrate/calibrate.h"
-#include "apps/calibrate/verdict_json.h"
-#include "apps/common/output.h"
-#include "apps/common/recording_input.h"
+#include "apps/calibrate/shaft/run.h"
 #include "calibration/shaft/strain_calibration.h"
 #include "calibration/verdict/shaft.h"
 #include "recording/text/csv.h"
-#include "recording/text/text.h"
 #include "report/figure.h"
-#include "report/pages.h"
 
 namespace flextip {
 namespace {
@@ -33,10 +28,6 @@ struct Options {
 constexpr const char* kChannels[] = {"m1_y", "m1_z", "m2_y", "m2_z"};
 
 TimeNs StartOf(const StrainCalibration& result) { return result.holds.front().hold.first_ns; }
-
-double Seconds(const LoadHold& hold, TimeNs start_ns) {
-  return 1e-9 * static_cast<double>(hold.first_ns - start_ns);
-}
 
 nlohmann::json Rows(const Eigen::Matrix4d& m) {
   nlohmann::json rows = nlohmann::json::array();
@@ -59,22 +50,13 @@ nlohmann::json CrossTalk(const StrainCalibration& result) {
 }
 
 nlohmann::json Summary(const StrainCalibration& result) {
-  int used = 0;
-  nlohmann::json rejected = nlohmann::json::array();
-  for (const auto& h : result.holds) {
-    used += h.used;
-    if (!h.used)
-      rejected.push_back({{"hold", SpanOf(h.hold, StartOf(result))}, {"reason", h.reason}});
-  }
   const auto& noise = result.reading_noise;
   nlohmann::json summary = {{"status", result.found.unobservable.empty() ? "ok" : "unobservable"},
-                            {"holds_used", used},
-                            {"holds_rejected", rejected},
-                            {"unobservable", UnobservableJson(result.found.unobservable)},
                             {"chi2_per_dof", result.chi2_per_dof},
                             {"reading_noise", {noise[0], noise[1], noise[2], noise[3]}},
                             {"largest_moment_Nm", result.largest_moment_Nm},
                             {"advice", result.advice}};
+  summary.update(HoldsJson(result.holds));
   if (result.gages_known) {
     summary["gage_matrix"] = Rows(result.gage_matrix);
     summary["gains_per_Nm"] = Rows(result.gains);
@@ -97,7 +79,7 @@ std::string ResidualsText(const StrainCalibration& result) {
   columns.emplace_back("reason");
   CsvWriter csv(columns);
   for (const auto& h : result.holds) {
-    csv.Add(Seconds(h.hold, StartOf(result))).Add(static_cast<double>(h.hold.samples));
+    csv.Add(SecondsAfter(StartOf(result), h.hold)).Add(static_cast<double>(h.hold.samples));
     for (const double f : h.hold.f_tip_N) csv.Add(f);
     csv.Add(h.s_port_m).Add(h.chi2).Add(h.used ? 1.0 : 0.0);
     for (const double m : h.m_stated_Nm) csv.Add(m);
@@ -165,7 +147,7 @@ report::Figure ResidualFigure(const StrainCalibration& result) {
   figure.x_label = "time (s)";
   figure.y_label = "residual (mNm)";
   figure.traces = ChannelTraces(result, [&](const auto& h, int c) {
-    return std::pair(Seconds(h.hold, StartOf(result)),
+    return std::pair(SecondsAfter(StartOf(result), h.hold),
                      1e3 * (h.m_measured_Nm[c] - h.m_stated_Nm[c]));
   });
   return figure;
@@ -178,9 +160,7 @@ std::string ReasonOf(const Calibration::Unobservable& u, const StrainCalibration
 }
 
 void Warn(const StrainCalibration& result, OutputFolder& output) {
-  for (const auto& h : result.holds) {
-    if (!h.used) output.Warn(SpanOf(h.hold, StartOf(result)) + ": " + h.reason);
-  }
+  WarnOfHolds(result.holds, output);
   for (const auto& u : result.found.unobservable) {
     output.Warn(u.parameter + ": " + ReasonOf(u, result));
   }
@@ -193,27 +173,15 @@ void Warn(const StrainCalibration& result, OutputFolder& output) {
 }
 
 void Run(const Options& options, bool quiet) {
-  const InputRead read = ReadInput(options.input);
-  OutputFolder output(options.input.out, "calibrate strain",
-                      {.force = options.force, .inputs = options.input.Files()});
-  output.Warn(read.warnings);
+  ShaftRun run(options.input, "calibrate strain", options.force);
   const StrainCalibration result =
-      CalibrateStrain(read.recording, options.input.recording.string(), options.strain);
-  Warn(result, output);
-  WriteCalibration(output.folder() / "calibration.yaml", result.found);
-  WriteTextFile(output.folder() / "residuals.csv", ResidualsText(result));
-  if (result.gages_known) {
-    report::WriteFigures(output.folder() / "figures.json",
-                         {MomentsFigure(result), ResidualFigure(result)});
-  }
-  nlohmann::json summary = Summary(result);
+      CalibrateStrain(run.read.recording, options.input.recording.string(), options.strain);
+  Warn(result, run.output);
   CalibrationVerdict verdict = JudgeStrain(result);
   for (auto& u : verdict.not_found) u.reason = ReasonOf(u, result);
-  summary["verdict"] = VerdictJson(verdict);
-  if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
-  output.WriteSummary(summary);
-  report::WriteCalibrateReport(output.folder());
-  output.Commit();
+  std::vector<report::Figure> figures;
+  if (result.gages_known) figures = {MomentsFigure(result), ResidualFigure(result)};
+  run.Write({result.found, ResidualsText(result), figures, Summary(result), verdict});
   if (quiet) return;
   if (result.gages_known) {
     fmt::print("moments to {:.3g} mNm RMS ({:.3g} mNm held out) of {:.3g} mNm\n",
@@ -222,8 +190,7 @@ void Run(const Options& options, bool quiet) {
   for (const auto& u : result.found.unobservable) {
     fmt::print("{}: {}\n", u.parameter, ReasonOf(u, result));
   }
-  if (!result.advice.empty()) fmt::print("next, this would help most: {}\n", result.advice);
-  fmt::print("{}\n", (options.input.out / "calibration.yaml").string());
+  run.PrintNext(result.advice);
 }
 
 }  // namespace
