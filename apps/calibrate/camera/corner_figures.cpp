@@ -104,8 +104,10 @@ report::Figure CoverageFigure(const CornersFile& corners, const CameraSolution& 
       ++field.values[std::clamp(y, 0, kDown - 1) * kAcross + std::clamp(x, 0, kAcross - 1)];
     }
   }
-  FigureTrace unseen{
-      .name = "no corner", .kind = FigureTrace::Kind::kPoints, .color = kBad, .symbol = "x-thin-open"};
+  FigureTrace unseen{.name = "no corner",
+                     .kind = FigureTrace::Kind::kPoints,
+                     .color = kBad,
+                     .symbol = "x-thin-open"};
   for (int y = 0; y < kDown; ++y) {
     for (int x = 0; x < kAcross; ++x) {
       double& count = field.values[y * kAcross + x];
