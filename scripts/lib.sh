@@ -5,7 +5,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # Compiler and libraries of the program, as Debian 12 names them.
 BUILD_PACKAGES=(
   cmake ninja-build g++ libopencv-dev libapriltag-dev libeigen3-dev libceres-dev libcli11-dev
-  libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev
+  libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev libcairo2-dev
+  pkg-config
 )
 # More for tests, benchmarks, the thesis's figures and checks; opencv-doc holds real chessboard
 # pictures.

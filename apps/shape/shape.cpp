@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "core/error.h"
 #include "kinematics/shaft_shape.h"
 #include "recording/text/text.h"
+#include "report/drawing/picture.h"
 #include "report/pages.h"
 #include "report/report.h"
 
@@ -81,6 +83,17 @@ void WriteResults(OutputFolder& output, const std::vector<RodProblem>& problems,
   output.Commit();
 }
 
+/// A page where the name ends in .html, else a picture.
+void WritePlot(const std::filesystem::path& file, const std::vector<report::Figure>& figures) {
+  if (file.extension() != ".html") {
+    report::WritePicture(file, figures);
+    return;
+  }
+  report::Report page("Shape of the shaft");
+  page.AddFigures(figures);
+  page.Write(file);
+}
+
 void RunSingle(const ShapeOptions& options) {
   const Shape shape = SolveOne(options);
   if (options.json) {
@@ -89,13 +102,13 @@ void RunSingle(const ShapeOptions& options) {
     PrintShape(shape);
   }
   if (!options.plot.empty()) {
-    report::Report page("Shape of the shaft");
-    page.AddFigures(ShapeFigures(options.problem, shape));
-    page.Write(options.plot);
+    WritePlot(options.plot, ShapeFigures(options.problem, shape));
   }
   if (options.out.empty()) return;
   OutputFolder output(options.out, "shape", {.force = options.replace});
-  report::WriteFigures(output.folder() / "figures.json", ShapeFigures(options.problem, shape));
+  const auto figures = ShapeFigures(options.problem, shape);
+  report::WriteFigures(output.folder() / "figures.json", figures);
+  report::WritePicture(output.folder() / "shape.png", figures);
   WriteResults(output, {options.problem}, {shape});
 }
 
@@ -162,8 +175,9 @@ void CheckUsage(const CLI::App& command, const ShapeOptions& options) {
     }
     return;
   }
-  if (!options.plot.empty() && options.plot.extension() != ".html") {
-    throw InputError("shape: --plot writes a page, expected a name that ends in .html");
+  const std::set<std::filesystem::path> endings{".html", ".pdf", ".png", ".svg"};
+  if (!options.plot.empty() && !endings.contains(options.plot.extension())) {
+    throw InputError("shape: --plot takes a name that ends in .png, .svg, .pdf or .html");
   }
   for (const char* name : {"--length", "--stiffness", "--wrist", "--port"}) {
     if (command.count(name) == 0) throw InputError(fmt::format("shape: {} is required", name));
@@ -183,12 +197,13 @@ void AddShape(CLI::App& app, AppContext& context) {
       ->transform(CLI::CheckedTransformer(kModels).description(""))
       ->type_name("MODEL");
   command->add_flag("--json", options->json, "Print the shape as JSON");
-  command->add_option("--plot", options->plot, "Draw the shape on this page (HTML)");
+  command->add_option("--plot", options->plot,
+                      "Draw the shape into this file: .png, .svg, .pdf or .html");
   command->add_option("-o,--output", options->out, "Folder for the results");
   command->footer(
       "Examples:\n"
       "  flextip shape --length 0.6 --stiffness 0.304 --wrist 0,0,0 --port 0.28,0,0 \\\n"
-      "      --force 0,0,-2 --plot shape.html\n"
+      "      --force 0,0,-2 --plot shape.png\n"
       "  flextip shape --batch problems.csv -o shapes\n");
   OnRun(*command, context, [command, options, &context] {
     CheckUsage(*command, *options);

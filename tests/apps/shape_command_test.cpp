@@ -161,8 +161,8 @@ TEST(ShapeCommand, RefusesWrongUsage) {
       IsRefused(RunProgram(With(kShape, {"--force", "0,0,1", "--model", "jelly"})), {"jelly"}));
   EXPECT_TRUE(IsRefused(RunProgram({"shape", "--batch", "t.csv"}), {"-o OUT"}));
   EXPECT_TRUE(IsRefused(RunProgram({"shape", "--length", "-1"}), {"--length"}));
-  EXPECT_TRUE(IsRefused(RunProgram(With(kShape, {"--force", "0,0,1", "--plot", "shape.png"})),
-                        {"--plot writes a page"}));
+  EXPECT_TRUE(IsRefused(RunProgram(With(kShape, {"--force", "0,0,1", "--plot", "shape.txt"})),
+                        {"--plot", ".png, .svg, .pdf or .html"}));
 }
 
 TEST(ShapeCommand, DrawsAPictureAndAPage) {
@@ -177,6 +177,7 @@ TEST(ShapeCommand, DrawsAPictureAndAPage) {
     EXPECT_THAT(page, HasSubstr("Plotly.newPlot"));
     for (const auto& figure : figures) EXPECT_THAT(page, HasSubstr(figure.dump()));
   }
+  EXPECT_THAT(ReadText(folder / "out/shape.png"), StartsWith("\x89PNG"));
   // Seen from the side, the tip hangs below the wrist and the force points at it.
   const auto& side = figures[0]["traces"];
   EXPECT_EQ(side[1]["name"], "shaft");
