@@ -26,7 +26,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MatrixRecord, made, key, motion, load, attemp
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 bool Holds(const EffectNames& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -49,7 +49,7 @@ std::string JoinedNames(const EffectNames& names) {
 }
 
 std::string JsonLine(const MatrixRecord& record) {
-  return json(record).dump(-1, ' ', false, json::error_handler_t::replace);
+  return Json(record).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::vector<MatrixRecord> ReadRecords(const std::filesystem::path& file) {
@@ -60,8 +60,8 @@ std::vector<MatrixRecord> ReadRecords(const std::filesystem::path& file) {
   std::string line;
   for (long number = 1; std::getline(lines, line); ++number) {
     try {
-      records.push_back(json::parse(line).get<MatrixRecord>());
-    } catch (const json::exception&) {
+      records.push_back(Json::parse(line).get<MatrixRecord>());
+    } catch (const Json::exception&) {
       throw InputError::At(file.string(), number, "not a case of the matrix");
     }
   }

@@ -21,7 +21,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SequenceScore, number, events, family, tag_px
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 // Chi-square of 3 degrees of freedom, 2.5 and 97.5 percent.
 constexpr double kLow95 = 0.2158, kHigh95 = 9.3484;
@@ -87,9 +87,9 @@ std::vector<std::pair<std::string, Sums>> AllSums(const std::vector<SequenceScor
   return rows;
 }
 
-json ToJson(const Sums& s) {
+Json ToJson(const Sums& s) {
   const auto of = [](const std::vector<double>& mm, const std::vector<double>& nees) {
-    return json{{"rms_mm", Rms(mm)},
+    return Json{{"rms_mm", Rms(mm)},
                 {"median_mm", LowerQuantile(mm, 0.5)},
                 {"largest_mm", LowerQuantile(mm, 1.0)},
                 {"nees_mean", Mean(nees)},
@@ -112,7 +112,7 @@ json ToJson(const Sums& s) {
 
 }  // namespace
 
-std::string JsonLine(const SequenceScore& score) { return json(score).dump(); }
+std::string JsonLine(const SequenceScore& score) { return Json(score).dump(); }
 
 std::vector<SequenceScore> ReadScores(const std::filesystem::path& file) {
   std::vector<SequenceScore> scores;
@@ -122,8 +122,8 @@ std::vector<SequenceScore> ReadScores(const std::filesystem::path& file) {
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
     try {
-      scores.push_back(json::parse(line).get<SequenceScore>());
-    } catch (const json::exception& error) {
+      scores.push_back(Json::parse(line).get<SequenceScore>());
+    } catch (const Json::exception& error) {
       throw InputError(fmt::format("{}:{}: {}", file.string(), number, error.what()));
     }
   }
@@ -151,7 +151,7 @@ std::string ScoreTable(const std::vector<SequenceScore>& scores) {
 }
 
 std::string ScoreJson(const std::vector<SequenceScore>& scores) {
-  json summary = {{"sequences", scores.size()}};
+  Json summary = {{"sequences", scores.size()}};
   for (const auto& [name, sums] : AllSums(scores)) summary["by_event"][name] = ToJson(sums);
   return summary.dump(2) + "\n";
 }

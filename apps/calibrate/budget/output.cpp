@@ -14,7 +14,7 @@
 namespace flextip {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 std::string Table(const std::vector<TimedBudget>& budgets) {
   std::vector<std::string> columns = {"p_RE_x [m]", "p_RE_y [m]", "p_RE_z [m]"};
@@ -108,12 +108,12 @@ std::string BudgetText(const std::vector<TimedBudget>& budgets) {
 }
 
 void WriteBudgetResults(OutputFolder& output, const std::vector<TimedBudget>& budgets,
-                        const std::vector<UnknownPart>& not_known, const json& calibrations) {
+                        const std::vector<UnknownPart>& not_known, const Json& calibrations) {
   const std::vector<BudgetPartSize> parts = SummariseBudgets(budgets);
   WriteTextFile(output.folder() / "budget.csv", Table(budgets));
   report::WriteFigures(output.folder() / "figures.json",
                        {BarFigure(parts), TimeFigure(budgets, parts)});
-  json list = json::array(), missing = json::array();
+  Json list = Json::array(), missing = Json::array();
   for (const BudgetPartSize& part : parts) {
     list.push_back({{"part", part.name},
                     {"depth_mm", part.depth_mm},

@@ -24,7 +24,7 @@ namespace flextip {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 std::vector<std::pair<std::string, double>> NamedIntrinsics(const CameraCalibration& c) {
   std::vector<std::pair<std::string, double>> named = {
@@ -40,8 +40,8 @@ std::vector<std::pair<std::string, double>> NamedIntrinsics(const CameraCalibrat
   return named;
 }
 
-json ParametersJson(const CameraCalibrationResult& r) {
-  json parameters = json::array();
+Json ParametersJson(const CameraCalibrationResult& r) {
+  Json parameters = Json::array();
   const auto named = NamedIntrinsics(r.solution.camera);
   const auto sd = r.StandardDeviations();
   for (std::size_t i = 0; i < named.size(); ++i) {
@@ -51,14 +51,14 @@ json ParametersJson(const CameraCalibrationResult& r) {
   return parameters;
 }
 
-json ViewsJson(const CameraCalibrationResult& result) {
-  json views = json::array();
+Json ViewsJson(const CameraCalibrationResult& result) {
+  Json views = Json::array();
   for (const CalibrationView& v : result.views) {
     views.push_back(
         {{"image", v.name}, {"used", v.used}, {"rms_px", nullptr}, {"reason", v.reason}});
   }
   for (const SolvedView& v : result.solution.views) {
-    json& view = views[v.index];
+    Json& view = views[v.index];
     view["rms_px"] = v.RmsPx();
     view["corners"] = v.px.size();
     view["outliers"] = static_cast<int>(v.px.size()) - v.CountUsed();
@@ -66,10 +66,10 @@ json ViewsJson(const CameraCalibrationResult& result) {
   return views;
 }
 
-json CandidatesJson(const CameraCalibrationResult& result) {
-  json candidates = json::array();
+Json CandidatesJson(const CameraCalibrationResult& result) {
+  Json candidates = Json::array();
   for (const LensCandidate& c : result.candidates) {
-    json one = {{"lens", c.model.Name()}, {"chosen", c.chosen}, {"reason", c.reason}};
+    Json one = {{"lens", c.model.Name()}, {"chosen", c.chosen}, {"reason", c.reason}};
     if (c.heldout) {
       one["heldout_rms_px"] = c.heldout->rms_px;
       one["rms_px"] = c.solution.RmsPx();
@@ -80,8 +80,8 @@ json CandidatesJson(const CameraCalibrationResult& result) {
   return candidates;
 }
 
-json WarpJson(const CameraCalibrationResult& r) {
-  json warp = {{"estimated", r.solution.warp_estimated}, {"reason", r.warp_reason}};
+Json WarpJson(const CameraCalibrationResult& r) {
+  Json warp = {{"estimated", r.solution.warp_estimated}, {"reason", r.warp_reason}};
   if (!r.solution.warp_estimated) return warp;
   const int at = r.solution.IntrinsicsCount();
   for (int i = 0; i < 2; ++i) {
@@ -92,10 +92,10 @@ json WarpJson(const CameraCalibrationResult& r) {
   return warp;
 }
 
-json Summary(const JudgedCamera& judged) {
+Json Summary(const JudgedCamera& judged) {
   const CameraCalibrationResult& r = judged.result;
   const CameraCalibration& c = r.solution.camera;
-  json summary = {{"rms_reprojection_error_px", r.solution.RmsPx()},
+  Json summary = {{"rms_reprojection_error_px", r.solution.RmsPx()},
                   {"heldout_error_px", r.heldout_rms_px},
                   {"views_used", r.views_used},
                   {"views_rejected", r.views_rejected},

@@ -14,14 +14,14 @@
 namespace flextip {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 constexpr double kDegrees = 180.0 / M_PI;
 
-json NumberOrNull(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 // Root of the trace of an entry's rotation and position, in deg and mm.
-json Deviations(const Calibration& calibration) {
-  json all = json::object();
+Json Deviations(const Calibration& calibration) {
+  Json all = Json::object();
   for (const auto& entry : calibration.poses) {
     const Eigen::MatrixXd C = calibration.CovarianceOf(entry.first);
     all[entry.first] = {{"orientation_sd_deg", kDegrees * std::sqrt(C.topLeftCorner(3, 3).trace())},
@@ -29,15 +29,15 @@ json Deviations(const Calibration& calibration) {
   }
   for (const auto& entry : calibration.numbers) {
     const Eigen::MatrixXd C = calibration.CovarianceOf(entry.first);
-    json sds = json::array();
+    Json sds = Json::array();
     for (Eigen::Index i = 0; i < C.rows(); ++i) sds.push_back(std::sqrt(C(i, i)));
     all[entry.first] = {{"value", entry.second}, {"sd", sds}};
   }
   return all;
 }
 
-json Views(const HandEyeResult& result) {
-  json views = json::array();
+Json Views(const HandEyeResult& result) {
+  Json views = Json::array();
   for (const HandEyeViewResult& v : result.views) {
     views.push_back({{"view", v.name},
                      {"used", v.used},
@@ -54,8 +54,8 @@ json Views(const HandEyeResult& result) {
   return views;
 }
 
-json Motions(const HandEyeResult& result) {
-  json motions = json::array();
+Json Motions(const HandEyeResult& result) {
+  Json motions = Json::array();
   for (const HandEyeMotion& m : result.motions) {
     motions.push_back({{"motion", m.words},
                        {"point_sd_before_mm", 1e3 * m.sd_before_m},
@@ -170,7 +170,7 @@ std::string Quoted(std::string text) {
 
 }  // namespace
 
-json HandEyeSummary(const HandEyeResult& r, const Calibration& calibration) {
+Json HandEyeSummary(const HandEyeResult& r, const Calibration& calibration) {
   return {{"views_used", r.views_used},
           {"views_rejected", r.views_rejected},
           {"rms_reprojection_error_px", NumberOrNull(r.rms_px)},

@@ -21,9 +21,9 @@ namespace flextip {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 
-json PoseJson(const StereoResult& r) {
+Json PoseJson(const StereoResult& r) {
   const Pose& T = r.solution.T_C0C1;
   const Eigen::Quaterniond q = T.Quaternion();
   const Eigen::VectorXd sd = r.PairCovariance().diagonal().cwiseSqrt();
@@ -33,8 +33,8 @@ json PoseJson(const StereoResult& r) {
           {"turn_sd_rad", {sd[0], sd[1], sd[2]}}};
 }
 
-json PairsJson(const StereoResult& r) {
-  json pairs = json::array();
+Json PairsJson(const StereoResult& r) {
+  Json pairs = Json::array();
   for (const StereoPairResult& pair : r.pairs) {
     pairs.push_back({{"left", pair.names[0]},
                      {"right", pair.names[1]},
@@ -53,13 +53,13 @@ json PairsJson(const StereoResult& r) {
   return pairs;
 }
 
-json EyeJson(const JudgedStereo& judged, int eye) {
+Json EyeJson(const JudgedStereo& judged, int eye) {
   const StereoResult& r = judged.result;
   const CameraCalibration& c = r.solution.cameras[eye];
   const int first = eye == 0 ? 0 : r.solution.IntrinsicsCount(0);
   std::vector<double> sd(4);
   for (int i = 0; i < 4; ++i) sd[i] = std::sqrt(r.covariance(first + i, first + i));
-  json json_of_eye = {{"lens", LensModelOf(c).Name()},
+  Json json_of_eye = {{"lens", LensModelOf(c).Name()},
                       {"rms_reprojection_error_px", r.solution.RmsPx(eye)},
                       {"rms_alone_px", r.alone[eye].solution.RmsPx()},
                       {"heldout_alone_px", r.alone[eye].heldout_rms_px},
@@ -71,9 +71,9 @@ json EyeJson(const JudgedStereo& judged, int eye) {
   return json_of_eye;
 }
 
-json Summary(const JudgedStereo& judged) {
+Json Summary(const JudgedStereo& judged) {
   const StereoResult& r = judged.result;
-  json summary = {{"rms_reprojection_error_px", r.solution.RmsPx()},
+  Json summary = {{"rms_reprojection_error_px", r.solution.RmsPx()},
                   {"noise_px", r.solution.noise_px},
                   {"pairs_used", r.pairs_used},
                   {"single_views_used", r.single_views_used},
