@@ -1,5 +1,7 @@
 #include "core/rotation.h"
 
+#include <cmath>
+
 namespace flextip {
 
 Eigen::Matrix3d ExpRotation(const Eigen::Vector3d& w) {
@@ -14,7 +16,21 @@ Eigen::Vector3d LogRotation(const Eigen::Matrix3d& R) {
 }
 
 Eigen::Matrix3d RotationWithoutTwist(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+  // As Eigen's FromTwoVectors, without the singular value decomposition it brings for opposite
+  // directions.
+  const Eigen::Vector3d a = from.normalized(), b = to.normalized();
+  const double c = b.dot(a);
+  // Twice the cosine of half the angle; the second form loses all digits near opposite directions.
+  const double s = c < -0.5 ? (a + b).norm() : std::sqrt(2.0 * (1.0 + c));
+  Eigen::Quaterniond q;
+  if (s < 1e-9) {  // opposite: half a turn about any normal
+    q.w() = 0.0;
+    q.vec() = NormalBasis(a).col(0);
+  } else {
+    q.w() = 0.5 * s;
+    q.vec() = a.cross(b) * (1.0 / s);
+  }
+  return q.normalized().toRotationMatrix();
 }
 
 Eigen::Matrix<double, 3, 2> NormalBasis(const Eigen::Vector3d& t) {

@@ -34,6 +34,20 @@ TEST(Rotation, WithoutTwistTakesOneVectorToTheOther) {
   }
 }
 
+TEST(Rotation, WithoutTwistTakesOppositeDirections) {
+  std::mt19937_64 rng(5);
+  for (const double off : {0.0, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3}) {
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector3d a = RandomVector(rng).normalized();
+      const Eigen::Vector3d b = (off * RandomVector(rng) - a).normalized();
+      const Eigen::Matrix3d R = RotationWithoutTwist(a, b);
+      EXPECT_LT((R * a - b).norm(), 1e-6) << off;
+      EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), 1e-14) << off;
+      EXPECT_GT(R.determinant(), 0.0);
+    }
+  }
+}
+
 TEST(Rotation, NormalBasisIsRightHanded) {
   std::mt19937_64 rng(3);
   for (int i = 0; i < 100; ++i) {
