@@ -15,28 +15,28 @@ namespace flextip::report {
 struct FigureTrace {
   enum class Kind : std::uint8_t { kLine, kPoints, kBars };
 
-  std::string name = {};  ///< in the legend; empty: not in it
+  std::string name = {};  ///< text in the legend; empty: no entry
   Kind kind = Kind::kLine;
   std::vector<double> x = {}, y = {}, z = {};
   std::vector<std::string> labels = {};  ///< in place of `x`: categories
   std::vector<double> y_error = {};      ///< half lengths of error bars; empty: none
   std::vector<std::string> texts = {};   ///< written beside each point or bar; empty: none
   std::string color = {};                ///< as in CSS; empty: the page chooses
-  std::vector<std::string> colors = {};  ///< of each bar, in place of `color`
-  std::string symbol = {};               ///< of points, as Plotly names it ("circle-open", "x")
+  std::vector<std::string> colors = {};  ///< the bars' colours, in place of `color`
+  std::string symbol = {};               ///< the points' symbol, named by Plotly ("circle-open")
   bool dashed = false;
-  bool arrow = false;  ///< of a line: its last point has a head
+  bool arrow = false;  ///< the line's last point has a head
 };
 
 /// A quantity over a grid, as colours with contour lines, or as cells with numbers.
 struct FigureField {
-  std::string name = {};               ///< of the colours' scale, with the unit
+  std::string name = {};               ///< label of the colours' scale, with the unit
   std::vector<double> x = {}, y = {};  ///< the grid's lines
   std::vector<double> values = {};     ///< y.size() rows of x.size(); NaN: nothing there
-  std::vector<double> levels = {};     ///< of the contour lines
-  double low = std::numeric_limits<double>::quiet_NaN();  ///< of the colours; NaN: the least value
+  std::vector<double> levels = {};     ///< values of the contour lines
+  double low = std::numeric_limits<double>::quiet_NaN();  ///< the first colour; NaN: the least value
   double high = std::numeric_limits<double>::quiet_NaN();
-  bool cells = false;  ///< x, y are middles of cells, each of one colour with its value in it
+  bool cells = false;  ///< x, y are middles of cells; each cell has a colour and its value as text
 };
 
 /// A stretch of the x axis behind the curves; a dashed line where it has no length.

@@ -8,7 +8,7 @@ namespace flextip::report {
 
 struct Lead {
   std::string says = {};  ///< the result; empty where the files do not tell
-  std::string more = {};  ///< what else matters first
+  std::string more = {};  ///< the next facts in importance
 };
 
 /// Returns the lead of a result folder by summary.json, for commands whose page has no verdict of

@@ -20,7 +20,7 @@ struct ThinnedBucket {
   struct Range {
     double first, least, greatest, t_least_s, t_greatest_s;
   };
-  double t_s = 0.0;  ///< of its first row
+  double t_s = 0.0;  ///< time of the first row
   std::string first_text, worst_text;
   std::vector<Range> columns;
 };

@@ -15,10 +15,10 @@ namespace flextip::reproduction {
 /// One line of table.csv.
 struct TableRow {
   std::string quantity;           ///< "2.3.1 part of the workspace with ||G|| > 1"
-  std::optional<double> thesis;   ///< as published; empty where it gives no number
-  std::optional<double> flextip;  ///< what came out here; empty where it could not be had
+  std::optional<double> thesis;   ///< as published; empty: no number there
+  std::optional<double> flextip;  ///< the result here; empty: no result
   std::string unit = {};          ///< "mm", "deg", ""
-  std::string note = {};          ///< what differs and why, or what agrees by construction
+  std::string note = {};          ///< differences and causes, or agreement by construction
 };
 
 struct ChapterResult {
@@ -28,7 +28,7 @@ struct ChapterResult {
 
 struct ReproduceOptions {
   bool quick = false;  ///< coarse grids and few repetitions, for tests; numbers are not the same
-  std::uint64_t seed = 1;  ///< of every random draw
+  std::uint64_t seed = 1;  ///< seed of every random draw
 };
 
 /// Told how much of the chapter is done, 0 to 1; called by one thread at a time.

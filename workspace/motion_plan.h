@@ -30,7 +30,7 @@ Path PlanMotion(const WorkspaceMap<N>& map, const Eigen::Vector2d& start,
 enum class FollowStatus {
   kOk,
   kStartOutside,  ///< the tip cannot be at the path's beginning
-  kLost,          ///< the arm or the shaft came to where it cannot be
+  kLost,          ///< the arm or the shaft reached an impossible place
   kNotArrived,    ///< a move did not end within `arrived_m` of its goal
 };
 const char* Name(FollowStatus status);
@@ -38,7 +38,7 @@ const char* Name(FollowStatus status);
 /// As in 2.3.2: moves to goals `move_m` apart along the path, each made in small steps.
 struct FollowOptions {
   double move_m = 0.02;
-  double gain = 0.02;  ///< of the steps, in place of the setup's
+  double gain = 0.02;  ///< gain of the steps, in place of the setup's
   double arrived_m = 5e-4;
   int cycles_per_move = 2000;
 };

@@ -13,8 +13,8 @@ using PathCost = std::function<double(const Eigen::Vector2d& p, const Eigen::Vec
 
 struct PathProblem {
   Eigen::Vector2d start, goal;
-  Eigen::Vector2d low, high;  ///< corners of the region that is searched, with start and goal in it
-  double spacing_m = 0.005;   ///< of the search grid
+  Eigen::Vector2d low, high;  ///< corners of the searched region, which holds start and goal
+  double spacing_m = 0.005;   ///< spacing of the search grid
 };
 
 enum class PathStatus {

@@ -21,7 +21,7 @@ struct ToleranceQuestion {
 enum class ToleranceStatus {
   kOk,
   kFailsAlready,  ///< the limit is passed with the setup's own errors: the scale is zero
-  kNoLimit,       ///< nothing within 1000 times the bounds passes it
+  kNoLimit,       ///< no errors within 1000 times the bounds pass the limit
   kEmptyPart,     ///< no point of the map lies in the part
 };
 const char* Name(ToleranceStatus status);
@@ -30,8 +30,8 @@ template <int N>
 struct Tolerance {
   ToleranceStatus status = ToleranceStatus::kEmptyPart;
   double scale = 0.0;        ///< largest multiple of the bounds that stays below the limit
-  std::size_t point = 0;     ///< of the map, where the limit is passed first
-  WorstError<N> first = {};  ///< the errors that pass it there, at `scale` and a little more
+  std::size_t point = 0;     ///< the map's point where the limit is passed first
+  WorstError<N> first = {};  ///< the errors that pass the limit there, just above `scale`
   std::size_t points = 0;    ///< how many were looked at
 };
 

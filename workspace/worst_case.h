@@ -19,8 +19,8 @@ struct ErrorBounds {
 
 template <int N>
 struct WorstError {
-  double value = 0.0;         ///< of the measure; see FindWorst for infinite and pi
-  BeliefError<N> error = {};  ///< of the set, added to the setup's
+  double value = 0.0;         ///< largest value of the measure; infinite and pi: see FindWorst
+  BeliefError<N> error = {};  ///< error of the set, added to the setup's
 };
 
 /// Returns the largest value of the measure at a state, over `scale` times the bounds, by a climb

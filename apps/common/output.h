@@ -11,8 +11,8 @@ namespace flextip {
 
 struct OutputOptions {
   bool force = false;                              ///< replace a folder that holds something
-  std::vector<std::filesystem::path> inputs = {};  ///< what the command reads: never replaced
-  bool resume = false;  ///< take over what an interrupted run left, where there is such
+  std::vector<std::filesystem::path> inputs = {};  ///< inputs of the command: never replaced
+  bool resume = false;  ///< continue an interrupted run, where one was left
 };
 
 /// Results are written to `folder()`, NAME.partial-PID beside NAME, which becomes NAME with Commit.

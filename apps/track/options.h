@@ -16,13 +16,13 @@ struct TrackOptions {
   std::filesystem::path source;          ///< a recording, a folder of pictures, a video
   std::string live;                      ///< instead: a device number, URL or file
   std::filesystem::path camera, collar;  ///< files, for all but a recording
-  double rate_hz = 0.0;                  ///< of pictures or a video; 0: not given
-  std::vector<double> black_white;       ///< of 16-bit pictures; empty: not given
+  double rate_hz = 0.0;                  ///< rate of pictures or a video; 0: not given
+  std::vector<double> black_white;       ///< levels in 16-bit pictures; empty: not given
   CalibrationFiles calibrations;
   std::filesystem::path out, truth;
   TrackerOptions tracker;
-  std::string end;          ///< of the shaft, "round" or "flat", where its outline is used
-  double diameter_m = 0.0;  ///< of the shaft; 0: the recording's
+  std::string end;          ///< the shaft's end, "round" or "flat", where the outline is used
+  double diameter_m = 0.0;  ///< the shaft's diameter; 0: the recording's
   long max_frames = 0;      ///< 0: all
   bool no_model = false, overlay = false, force = false, resume = false;
 

@@ -18,12 +18,12 @@ namespace flextip {
 /// What the summary needs of all frames so far.
 struct TrackSums {
   long frames = 0, ok = 0, predicted = 0, lost = 0, tags = 0;
-  long by_pixels = 0, by_corners = 0;    ///< how the ok ones were found
+  long by_pixels = 0, by_corners = 0;    ///< ok frames by the way the tip was found
   double squared_direction_noise = 0.0;  ///< over ok
   double squared_rms_px = 0.0;           ///< over by_corners
   double squared_noise_grey = 0.0;       ///< over by_pixels
   double seconds = 0.0;                  ///< reading and tracking
-  TipScore score, score_predicted;       ///< of the ok and the predicted ones
+  TipScore score, score_predicted;       ///< scores of ok frames, of predicted frames
 };
 
 /// FOLDER/vision0, FOLDER/tags0 and FOLDER/frames.csv. Rows reach the disk every ten frames, and

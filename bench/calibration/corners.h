@@ -17,7 +17,7 @@ struct CornerSet {
   double working_distance_m = 0;  ///< at which the uncertainty is compared
   double focal_px = 0;            ///< a rough one, for peers that want a start
   std::vector<std::string> names;
-  std::vector<BoardSighting> seen;  ///< of `names`; views without a board have no corners
+  std::vector<BoardSighting> seen;  ///< views of `names`; views without a board have no corners
 };
 
 /// Corners of pictures, all of one size. Throws InputError for other sizes.

@@ -15,10 +15,10 @@ struct CalibrationAnswer {
   CameraCalibration camera;
   BoardWarp warp;
   BoardShape shape;
-  std::vector<double> sd;  ///< of fu, fv, cu, cv (px) and the coefficients, as the peer has them
-  double rms_px = 0;       ///< of the corners it used, per distance
+  std::vector<double> sd;  ///< deviations of fu, fv, cu, cv (px) and the peer's coefficients
+  double rms_px = 0;       ///< error of the corners used, per distance
   int outliers = 0;
-  double seconds = 0;                      ///< of the processor, all threads
+  double seconds = 0;                      ///< processor time, all threads
   std::optional<CameraSolution> solution;  ///< this program's
 };
 

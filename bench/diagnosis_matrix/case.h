@@ -14,14 +14,14 @@ struct MatrixCase {
   std::string part;                  ///< one of MatrixParts()
   std::vector<std::string> effects;  ///< by name; empty: none, or `drawn`
   int drawn = 0;                     ///< effects drawn by the recording's seed
-  std::string size = "any";          ///< subtle, plain, strong; any where it means nothing
+  std::string size = "any";          ///< subtle, plain, strong; any: without meaning
   bool load = true;                  ///< load0 is recorded
   std::string left_out;              ///< a sensor
   std::string without;               ///< an effect the diagnosis does not know
-  std::string family = "tuning";     ///< of motions
+  std::string family = "tuning";     ///< family of motions
   double duration_s = 20.0;
   int index = 0;           ///< within the cell
-  std::uint64_t seed = 0;  ///< of the recording
+  std::uint64_t seed = 0;  ///< seed of the recording
 
   /// Everything above in one line: what resuming recognises a case by.
   std::string Key() const;
@@ -34,8 +34,8 @@ struct MatrixPlan {
   std::vector<std::string> parts = {"singles", "healthy", "pairs", "unknown"};
   std::vector<std::string> sizes = {"plain"};
   std::vector<std::string> loads = {"known", "unknown"};
-  std::vector<std::string> effects;  ///< of singles and leave-outs; empty: the whole catalogue
-  int seeds_per_cell = 1;            ///< a cell: part, effect or form, size, load, what is left out
+  std::vector<std::string> effects;  ///< for singles and leave-outs; empty: the whole catalogue
+  int seeds_per_cell = 1;            ///< a cell: part, effect or form, size, load, left-out part
   int healthy = 10, pairs = 5;       ///< for each load; pairs for each size too
   std::uint64_t first_seed = 1;
   std::string family = "tuning";

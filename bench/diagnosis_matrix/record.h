@@ -34,7 +34,7 @@ struct MatrixRecord {
   /// catalogue from all that is in it (matrix_form.h).
   double separation = 0.0;
   std::string rival;  ///< empty where that was not measured
-  std::string error;  ///< a refusal's message; what follows is empty then
+  std::string error;  ///< a refusal's message; the members below are empty then
 
   EffectNames verdict;
   std::vector<std::pair<EffectNames, double>> probabilities;  ///< the eight most likely
@@ -53,7 +53,7 @@ struct MatrixRecord {
   double base_chi2_per_dof = 0.0, extended_chi2_per_dof = 0.0;
   int fits = 0;
   bool converged = false;
-  double seconds = 0.0;  ///< of Diagnose alone
+  double seconds = 0.0;  ///< time of Diagnose alone
   EffectNames warnings;
 
   bool IsRight() const { return verdict == label; }

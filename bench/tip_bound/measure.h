@@ -8,7 +8,7 @@ namespace flextip::bench {
 /// Over the frames in which the estimator gave a tip.
 struct TipScore {
   int frames = 0, found = 0;
-  double rms_m = 0.0;   ///< of the tip's position against the truth
+  double rms_m = 0.0;   ///< error of the tip's position
   double bias_m = 0.0;  ///< the mean error's length
   double nees = 0.0;  ///< mean normalised squared error of the tip; 3 when the covariance is right
 };

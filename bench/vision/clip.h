@@ -13,7 +13,7 @@ struct ClipCase {
   std::string name;
   int width_px = 1280;
   double step_px = 5;  ///< the way of the collar's middle between two frames, without distortion
-  int tags = 0;        ///< in a row along the shaft, all to the camera; 0: a hexagon around it
+  int tags = 0;        ///< in a row along the shaft, facing the camera; 0: a hexagon around
   double tag_px = 45;
 };
 

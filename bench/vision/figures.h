@@ -12,7 +12,7 @@ namespace flextip::bench {
 
 /// What is known of a picture. Without a pose only corners are compared.
 struct PictureTruth {
-  TagsFound corners_px;  ///< of the tags that can be seen
+  TagsFound corners_px;  ///< corners of the tags that can be seen
   std::optional<Pose> T_CE;
 };
 

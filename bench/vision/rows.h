@@ -13,7 +13,7 @@ namespace flextip::bench {
 
 /// All peers under one condition.
 struct CompareRow {
-  std::string sweep;  ///< what is swept, or the name of a set of pictures
+  std::string sweep;  ///< the swept quantity, or the name of a set of pictures
   std::string unit;   ///< empty where nothing is swept
   double value = 0, gamma = 0;
   bool with_pose = true;  ///< false: tags are known alone

@@ -12,7 +12,7 @@ struct FrameScore {
   std::string status;  ///< ok, predicted or lost
   bool in_event = false;
   bool in_view = false;  ///< a tag faces the camera by less than 70 degrees, wholly in the picture
-  double error_mm = 0, turn_deg = 0;  ///< of the tip, and of its frame's rotation (ok alone)
+  double error_mm = 0, turn_deg = 0;  ///< errors of the tip and of its frame's rotation (ok alone)
   double nees = 0;                    ///< normalised squared error of the position, 3 in the mean
   double ms = 0;
 

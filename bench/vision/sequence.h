@@ -35,12 +35,12 @@ struct VisionSequence {
   int number = 0;
   std::vector<std::string> events;               ///< one or two
   std::vector<simulation::FrameRange> in_event;  ///< when
-  CameraCalibration camera;                      ///< as the tracker knows it
+  CameraCalibration camera;                      ///< the tracker's calibration
   TagCollar collar;
   simulation::LaparoscopeOptions options;
   TipMotion motion;
   simulation::FrameRange motion_blur{0, -1};
-  double exposure_s = 0;  ///< of the frames in `motion_blur`
+  double exposure_s = 0;  ///< exposure of the frames in `motion_blur`
   double shaft_radius_m = 1, shaft_diameter_m = 0.005;
   double tag_px = 0, speed_m_s = 0;  ///< side of a tag as drawn; the tip's greatest speed
 

@@ -15,7 +15,7 @@
 namespace flextip::report {
 namespace {
 
-constexpr std::size_t kPoints = 1500;  ///< of a trace, so that the page stays small
+constexpr std::size_t kPoints = 1500;  ///< most points of a trace, so that the page stays small
 constexpr std::size_t kBins = 20;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kBaseColor = "#d55e00";

@@ -39,7 +39,7 @@ std::optional<Figure> TimePlot(const ResultTable& residuals, const DiagnosedSign
 /// seconds, with the band that white noise keeps to (95 %).
 struct Memory {
   Figure plot = {};
-  std::vector<std::string> not_white = {};  ///< channels, as spoken, with what is left
+  std::vector<std::string> not_white = {};  ///< channels, as spoken, with the remaining correlation
 };
 Memory ResidualMemory(const ResultTable& residuals, const std::string& model);
 

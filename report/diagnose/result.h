@@ -15,8 +15,8 @@ namespace flextip::report {
 struct DiagnosedParameter {
   std::string effect = {}, name = {};
   std::vector<double> value = {}, sd = {};
-  std::vector<double> nominal = {};    ///< what the base simulation takes
-  std::vector<double> tolerance = {};  ///< one standard deviation of what is within specification
+  std::vector<double> nominal = {};    ///< values of the base simulation
+  std::vector<double> tolerance = {};  ///< one standard deviation of values within specification
   bool is_list = false;
 
   /// How far component `i` is from nominal, in tolerances; nothing where it has none.
@@ -45,7 +45,7 @@ std::string JoinedEffects(std::vector<std::string> effects);
 struct DiagnosedResult {
   std::vector<std::string> verdicts;
   std::vector<std::pair<std::string, double>> probabilities;  ///< most likely first
-  std::vector<std::pair<std::string, double>> presence;       ///< of each effect, likeliest first
+  std::vector<std::pair<std::string, double>> presence;       ///< for each effect, likeliest first
   std::vector<std::string> credible_set;                      ///< names as in probabilities
   std::vector<std::vector<std::string>> indistinguishable;    ///< one group for each verdict
   std::string separating_motion;

@@ -11,10 +11,10 @@ namespace flextip::report {
 /// The verdict's sentences, as text (not HTML).
 struct Headline {
   std::string title;                ///< a few words for the page's title
-  std::string verdict;              ///< what is wrong and how sure
+  std::string verdict;              ///< the answer and its probability
   std::vector<std::string> causes;  ///< one line for each where there are several
-  std::string gain;                 ///< what the extended model gains
-  std::string advice;               ///< the motion that would separate what is alike
+  std::string gain;                 ///< the gain of the extended model
+  std::string advice;               ///< the motion that would separate indistinguishable effects
 };
 Headline MakeHeadline(const DiagnosedResult& result);
 
@@ -28,7 +28,7 @@ std::string SpokenChannel(const std::string& channel);
 /// How a parameter is shown, by the suffix of its name: "offset_m" in mm.
 struct ShownUnit {
   std::string name = {};  ///< without the suffix, in words
-  std::string unit = {};  ///< empty where it has none
+  std::string unit = {};  ///< empty: no unit
   double per_si = 1.0;    ///< shown = SI value times this
 };
 ShownUnit ShownUnitOf(const std::string& parameter);

@@ -27,7 +27,7 @@ struct BeamState {
   double length_m = 0.0;
   double F = 0.0;    ///< F_p/EI of (3.1): negative where the port pushes along +y
   double a = 0.0;    ///< port along the chord (m)
-  double phi = 0.0;  ///< of the chord in the world (rad)
+  double phi = 0.0;  ///< angle of the chord in the world (rad)
   Eigen::Vector2d p_wrist = Eigen::Vector2d::Zero();
 
   Eigen::Vector2d Port() const;  ///< (3.8)

@@ -18,7 +18,7 @@ struct SensorNoiseLevel {
 /// What an estimate is worth.
 struct EstimateErrors {
   double metric = 0.0;  ///< (2.6) of its Jacobian against the true state's, of the same form
-  double force = 0.0;   ///< of F_p/EI, relative
+  double force = 0.0;   ///< error of F_p/EI, relative
   double port_m = 0.0;
 };
 

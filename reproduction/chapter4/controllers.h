@@ -30,12 +30,12 @@ struct Ch4Setup {
   Instrument instrument;
   Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();  ///< port, as registered
   Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();
-  bool tissue = false;  ///< the load may change with the tip (the rod's estimator looks for it)
+  bool tissue = false;  ///< the load may change with the tip; the rod's estimator looks for that
 };
 
 struct Ch4Step {
   Eigen::Vector3d wrist_step = Eigen::Vector3d::Zero();  ///< (5.1)
-  Eigen::Vector3d p_RE_known = Eigen::Vector3d::Zero();  ///< the tip it started from
+  Eigen::Vector3d p_RE_known = Eigen::Vector3d::Zero();  ///< the known tip before the step
   bool straight_instead = false;                         ///< no flexion to be seen, or no beam fits
 };
 

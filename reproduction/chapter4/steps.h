@@ -47,7 +47,7 @@ struct Ch4Noise {
   bool uniform = true;  ///< the figures are the largest magnitudes; else standard deviations
   double position_m = 0.0, angle_rad = 0.0;
   bool tip_too =
-      true;         ///< false: only in what the model is fitted to; the tip's error is seen true
+      true;         ///< false: noise only in the data of the model's fit, none in the tip's error
   int samples = 1;  ///< averaged for one update
 };
 
@@ -68,8 +68,8 @@ struct Ch4Move {
 
 struct Ch4Run {
   std::vector<Eigen::Vector3d> p_RE, p_RE_measured;  ///< the start and after each update
-  double max_m = 0.0;                                ///< of the true tip, from the straight path
-  double max_measured_m = 0.0;                       ///< of the measured tip
+  double max_m = 0.0;                                ///< the true tip from the straight path
+  double max_measured_m = 0.0;                       ///< the same for the measured tip
   int updates = 0;
   bool lost = false;  ///< the shaft lost its equilibrium
 };

@@ -13,7 +13,7 @@ namespace flextip::reproduction {
 struct SensorSet {
   const char* name = "";
   bool load = false, strain = false;
-  bool em_direction = false, em_position = false;  ///< of a sensor 20 mm from the tip
+  bool em_direction = false, em_position = false;  ///< by a sensor 20 mm from the tip
   bool tip = false, tip_direction = false;         ///< by vision
 
   /// The tip's position is measured, by whichever sensor.
@@ -28,16 +28,16 @@ enum class SensorMove {
 
 struct SensorCase {
   SensorSet sensors;
-  SensorModel model = SensorModel::kRod;  ///< tracks the tip where it is seen, else calculates it
+  SensorModel model = SensorModel::kRod;  ///< tracks a seen tip, else calculates the tip
   SensorMove move = SensorMove::kPress;
   double port_off_m = 0.0;  ///< true port from the registered one, across the shaft
-  double port_prior_m = kPortRegistration_m;  ///< how well the estimator believes it knows the port
+  double port_prior_m = kPortRegistration_m;  ///< standard deviation of the port's prior
   bool window = false;                        ///< estimate over a window
   std::uint64_t seed = 1;
 };
 
 struct SensorRun {
-  double tip_rms_m = 0.0;   ///< of the tip the controller went by, against the true one
+  double tip_rms_m = 0.0;   ///< error of the controller's tip against the true tip
   double path_max_m = 0.0;  ///< true tip from the path
   double path_rms_m = 0.0;
   int updates = 0;

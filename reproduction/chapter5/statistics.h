@@ -12,7 +12,7 @@ namespace flextip::reproduction {
 /// The measures of 5.3, for tip positions at a constant rate and a wall at x = `wall_x_m` with the
 /// forbidden region beyond it.
 struct Incursion {
-  double time_part = 0.0;        ///< of the positions inside, 0 to 1
+  double time_part = 0.0;        ///< share of the positions inside, 0 to 1
   double max_depth_m = 0.0;      ///< 0 where there was none
   double swept_area_m2 = 0.0;    ///< between the wall and pairs of following positions inside
   double outline_area_m2 = 0.0;  ///< the same without counting a place twice, in two planes, summed

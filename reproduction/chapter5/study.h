@@ -16,7 +16,7 @@ struct StudyGroup {
   std::string name;
   TrialSetup setup;
   int operators = 10;
-  int position = -1;  ///< in the controllers' order of the thesis's four; -1: not in it, done last
+  int position = -1;  ///< place in the order of the thesis's four controllers; -1: none, done last
   bool keep_paths = false;
   bool outline = false;  ///< also the areas, which take time
 };
@@ -29,7 +29,7 @@ struct OperatorResult {
   double worst_m = 0.0;  ///< the deepest true x less the wall's, below zero where there was none
   bool lost = false;
   double rate_hz = 0.0;
-  std::vector<Eigen::Vector3d> recorded_path;  ///< where it was to be kept
+  std::vector<Eigen::Vector3d> recorded_path;  ///< only where the options keep paths
 };
 
 struct GroupResult {

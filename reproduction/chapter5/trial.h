@@ -17,7 +17,7 @@ enum class TipSense : std::uint8_t { kEm, kVision };
 struct TrialSetup {
   ControllerKind kind = ControllerKind::kFlexTrack;
   TipSense sense = TipSense::kEm;
-  double update_rate_hz = 144.0;  ///< of the tip's sensor and the controller
+  double update_rate_hz = 144.0;  ///< rate of the tip's sensor and the controller
   /// Of EM, per axis.
   double em_position_noise_m = 1.3e-4, em_orientation_noise_rad = 5.6e-4;
   double vision_latency_s = 0.0;
@@ -29,15 +29,15 @@ struct TrialSetup {
   /// Lasting differences between the rod's tip and the sensor's are settled in the sensor's favour.
   bool level_tip = false;
   double margin_sd = 0.0;       ///< the wall is taken this many of the estimate's deviations early
-  double silicone_scale = 1.0;  ///< of all its forces
-  double arm_stiffness_N_m = 1000.0;  ///< of the PD control
+  double silicone_scale = 1.0;  ///< factor of all the silicone's forces
+  double arm_stiffness_N_m = 1000.0;  ///< stiffness of the PD control
   /// What the instrument is beyond its data: stiffness (relative), length, port, all at once.
   double stiffness_error = 0.0, length_error_m = 0.0, port_error_m = 0.0;
   double em_offset_m = 0.0;   ///< EM positions are off by this along x
   double em_latency_s = 0.0;  ///< EM is late by this, the arm's encoders are not
   bool hold_still = false;    ///< no operator: the tip is held in the middle, above the surface
   double seconds = 60.0;
-  int links = 50;  ///< of the plant, on each side of the port
+  int links = 50;  ///< links of the plant on each side of the port
   std::uint64_t operator_seed = 1, noise_seed = 1;
 };
 
@@ -51,18 +51,18 @@ struct TrialPlaces {
 };
 
 struct Trial {
-  double rate_hz = 0.0;                   ///< of the two series
+  double rate_hz = 0.0;                   ///< rate of `tips` and `recorded`
   std::vector<Eigen::Vector3d> tips;      ///< true
-  std::vector<Eigen::Vector3d> recorded;  ///< by the EM sensor, as the thesis took it
-  double max_flexion_m = 0.0;             ///< of the tip from the straight line through the port
+  std::vector<Eigen::Vector3d> recorded;  ///< by the EM sensor, as in the thesis
+  double max_flexion_m = 0.0;             ///< tip from the straight line through the port
   double rms_flexion_m = 0.0;
   double max_side_force_N = 0.0, rms_side_force_N = 0.0;
   double max_push_N = 0.0;            ///< along the axis, by the silicone
-  double cut_part = 0.0;              ///< of the outline's inside
-  double rms_error_m = 0.0;           ///< of the true tip from what was desired, per axis
+  double cut_part = 0.0;              ///< part of the outline's inside that is cut
+  double rms_error_m = 0.0;           ///< error of the true tip against the desired tip, per axis
   double rms_recorded_error_m = 0.0;  ///< the same as recorded
-  double straight_part = 0.0;         ///< of the updates that fell back on the straight shaft
-  double no_tip_part = 0.0;           ///< of the updates without a tip
+  double straight_part = 0.0;         ///< part of the updates that fell back on the straight shaft
+  double no_tip_part = 0.0;           ///< part of the updates without a tip
   bool lost = false;                  ///< the simulated shaft found no equilibrium: ended early
 };
 

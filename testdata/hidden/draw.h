@@ -17,7 +17,7 @@ enum class EffectSize : std::uint8_t { kSubtle, kPlain, kStrong };
 
 struct HiddenLabel {
   std::vector<std::string> present;     ///< catalogue effects and other forms
-  simulation::EffectValues parameters;  ///< of every catalogue effect
+  simulation::EffectValues parameters;  ///< values of every catalogue effect
 };
 
 /// Forms the catalogue lacks: port_grip, taper, shaft_tissue, second_contact, strain_clip. What
@@ -27,9 +27,9 @@ const std::vector<std::string>& OtherForms();
 struct EffectDraw {
   std::vector<std::string> present = {};  ///< throws InputError for a name that is neither
   EffectSize size = EffectSize::kPlain;
-  bool exact = false;    ///< what is not present is exactly nominal
+  bool exact = false;    ///< all values but the present effects' are exactly nominal
   bool massless = true;  ///< nominally: then the weight drawn is not negative
-  Eigen::Vector3d mean_axis = Eigen::Vector3d::UnitX();  ///< of the shaft, in R, unit
+  Eigen::Vector3d mean_axis = Eigen::Vector3d::UnitX();  ///< mean axis of the shaft in R, unit
 };
 
 /// Absent effects: each number normal with its tolerance as standard deviation, cut off at two

@@ -33,7 +33,7 @@ std::vector<MotionKind> Kinds(MotionFamily family);
 /// Everything in R.
 struct MotionSetup {
   MotionKind kind = MotionKind::kSines;
-  double length_m = 0.0;                            ///< of the shaft
+  double length_m = 0.0;                            ///< length of the shaft
   Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();   ///< port
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< mean direction of the shaft, unit
   double depth_from = 0.4, depth_to = 0.7;          ///< part of the shaft beyond the port

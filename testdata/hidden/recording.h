@@ -25,11 +25,11 @@ struct HiddenOptions {
   /// em0, strain0, vision0 (then also cam0), wrist0_orientation.
   std::vector<std::string> left_out = {};
   SceneDraw scene = {};            ///< motion, load, duration
-  double noise_scale = 1.0;        ///< of the true noise over the stated one
+  double noise_scale = 1.0;        ///< true noise over the stated noise
   double noise_correlation = 0.0;  ///< AR(1) coefficient from sample to sample
   bool noise_free = false;         ///< stated all the same
-  double tick_rate_hz = 100.0;     ///< of the plant: a multiple of 50
-  int links_per_side = 60;         ///< of the plant's chain, before and behind the port
+  double tick_rate_hz = 100.0;     ///< rate of the plant: a multiple of 50
+  int links_per_side = 60;         ///< links of the plant's chain, before and behind the port
 };
 
 struct HiddenRecording {

@@ -12,7 +12,7 @@ namespace flextip::bench {
 struct MatrixFigure {
   std::string figure, group;
   double value = 0.0;
-  int of = 0;  ///< so many cases (or numbers) it is a figure of
+  int of = 0;  ///< number of cases (or values) behind the figure
   std::string target;
 };
 

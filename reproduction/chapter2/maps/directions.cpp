@@ -31,7 +31,7 @@ std::vector<Eigen::Vector2d> Evenly(const std::vector<Eigen::Vector2d>& line, do
 struct EdgePoint {
   Point at;
   Eigen::Vector2d normal;
-  double along_shaft_deg = 0.0;  ///< between v_sigma and the shaft as it is believed
+  double along_shaft_deg = 0.0;  ///< angle between v_sigma and the believed shaft
 };
 
 std::vector<EdgePoint> EdgePoints() {

@@ -17,7 +17,7 @@ MapSetup<2> ThesisSetup(const Eigen::Vector2d& port_error_m);
 inline const Eigen::Vector2d kThesisError{0.010, 0.020};
 
 struct NamedError {
-  const char* name;      ///< of the figures: "1" to "4"
+  const char* name;      ///< name of the figures: "1" to "4"
   const char* in_words;  ///< "+z"
   Eigen::Vector2d port_error_m;
 };

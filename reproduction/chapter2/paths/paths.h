@@ -13,13 +13,13 @@ namespace flextip::reproduction {
 
 struct TrajectoryMove {
   PlanarInstrument instrument;
-  Eigen::Vector2d p_port_estimated = {0.170, 0.020};  ///< what the controller's Jacobian is of
+  Eigen::Vector2d p_port_estimated = {0.170, 0.020};  ///< the port in the controller's Jacobian
   Eigen::Vector2d p_start = Eigen::Vector2d::Zero(), p_goal = Eigen::Vector2d::Zero();
 };
 
 struct TrajectoryPath {
   std::vector<Eigen::Vector2d> p_tip;
-  std::vector<double> t_s;  ///< of dynamic paths
+  std::vector<double> t_s;  ///< times of a dynamic path
   bool reached = false;     ///< came within kGoalReached_m and stayed there
   bool left_port = false;   ///< ended early: the shaft no longer reached the port
 };
@@ -30,14 +30,14 @@ TrajectoryPath QuasiStaticPath(const TrajectoryMove& move, double gain);
 
 /// How the joints' desired angles follow from (2.1).
 enum class JointGoal : std::uint8_t {
-  kFromMeasured,  ///< theta_d = theta + k J_hat^-1 (x_d - x), as (3.4) has it
+  kFromMeasured,  ///< theta_d = theta + k J_hat^-1 (x_d - x), as in (3.4)
   kAccumulated,   ///< theta_d += k J_hat^-1 (x_d - x)
 };
 
 struct ArmRig {
   simulation::ArmBody body;
   double shaft_mass_kg = 0.011;  ///< 320 mm of chapter 4's rod
-  double gravity_m_s2 = 0.0;     ///< of the shaft; balanced by default
+  double gravity_m_s2 = 0.0;     ///< gravity on the shaft; balanced by default
   double friction_N = 0.0;
   JointGoal joint_goal = JointGoal::kFromMeasured;
   double gain = 1.0;
@@ -45,8 +45,8 @@ struct ArmRig {
   simulation::PidGains pid{5.0, 0.1, 1.5};
   double link_error = 0.0;   ///< the links are longer than the controller's by this part
   double encoder_rad = 0.0;  ///< resolution of the joints' angles
-  double rate_hz = 1000.0;   ///< of the PID and of (2.1)
-  int substeps = 20;         ///< of the integration in a period
+  double rate_hz = 1000.0;   ///< rate of the PID and of (2.1)
+  int substeps = 20;         ///< steps of the integration in a period
   double longest_s = 10.0;
 };
 
