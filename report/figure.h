@@ -34,7 +34,7 @@ struct FigureField {
   std::vector<double> x = {}, y = {};  ///< the grid's lines
   std::vector<double> values = {};     ///< y.size() rows of x.size(); NaN: nothing there
   std::vector<double> levels = {};     ///< values of the contour lines
-  double low = std::numeric_limits<double>::quiet_NaN();  ///< the first colour; NaN: the least value
+  double low = std::numeric_limits<double>::quiet_NaN();  ///< the first colour; NaN: least value
   double high = std::numeric_limits<double>::quiet_NaN();
   bool cells = false;  ///< x, y are middles of cells; each cell has a colour and its value as text
 };
