@@ -63,24 +63,26 @@ WindowOptions Options(double port_prior_m = 0.004) {
 }
 
 TEST(WindowEstimator, FindsAPortSeveralMillimetresOffByVisionAndTheWristAlone) {
-  Wandering shaft(1);
-  shaft.p_port += Eigen::Vector3d(0.0, 0.004, -0.003);
-  WindowEstimator window(Options());
-  WindowEstimate e;
-  for (int i = 0; i < 40; ++i) e = window.Update(shaft.Next());
-  EXPECT_EQ(e.status, WindowStatus::kOk);
-  EXPECT_EQ(e.samples, 30);
-  const Eigen::Vector3d miss = kPort + e.port_shift_m - shaft.p_port;
-  EXPECT_LT(miss.tail<2>().norm(), 4e-4);  // along the shaft it is not known
-  // One sample with the same prior does not know, and one that trusts the registration is wrong.
-  ShaftEstimator trusting(Options(0.0003).estimator);
   double by_window = 0.0, by_trust = 0.0;
-  for (int i = 0; i < 30; ++i) {
-    const Measurements z = shaft.Next();
-    by_window += (window.Update(z).shaft.d_RE - shaft.rod.tip.t).squaredNorm();
-    by_trust += (trusting.Update(z).d_RE - shaft.rod.tip.t).squaredNorm();
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    Wandering shaft(seed);
+    shaft.p_port += Eigen::Vector3d(0.0, 0.004, -0.003);
+    WindowEstimator window(Options());
+    WindowEstimate e;
+    for (int i = 0; i < 40; ++i) e = window.Update(shaft.Next());
+    EXPECT_EQ(e.status, WindowStatus::kOk);
+    EXPECT_EQ(e.samples, 30);
+    const Eigen::Vector3d miss = kPort + e.port_shift_m - shaft.p_port;
+    EXPECT_LT(miss.tail<2>().norm(), 4e-4) << seed;  // along the shaft it is not known
+    // One sample with the same prior does not know, and one that trusts the registration is wrong.
+    ShaftEstimator trusting(Options(0.0003).estimator);
+    for (int i = 0; i < 10; ++i) {
+      const Measurements z = shaft.Next();
+      by_window += (window.Update(z).shaft.d_RE - shaft.rod.tip.t).squaredNorm();
+      by_trust += (trusting.Update(z).d_RE - shaft.rod.tip.t).squaredNorm();
+    }
   }
-  EXPECT_LT(by_window, 0.1 * by_trust);
+  EXPECT_LT(by_window, 0.25 * by_trust);  // 0.07 to 0.26 in single draws
 }
 
 TEST(WindowEstimator, CovarianceOfThePortMatchesMonteCarlo) {
