@@ -243,14 +243,14 @@ NamedColumns NameRoles(const std::vector<std::string>& columns) {
         name.resize(bracket);
       }
     }
-    Words words = WordsOf(name);
-    auto found = RoleOf(words);
-    if (unit.empty() && words.size() > 1 && ParseUnit(words.back())) {
-      Words shorter(words.begin(), words.end() - 1);
-      const auto by_shorter = RoleOf(shorter);
+    auto found = RoleOf(WordsOf(name));
+    const auto mark = name.find_last_of("_ .");
+    const std::string suffix = mark == std::string::npos ? "" : name.substr(mark + 1);
+    if (unit.empty() && ParseUnit(suffix)) {
+      const auto by_shorter = RoleOf(WordsOf(name.substr(0, mark)));
       if (by_shorter && (!found || found->role.starts_with("plain"))) {
         found = by_shorter;
-        unit = words.back();
+        unit = suffix;
       }
     }
     named.units.push_back(unit);

@@ -288,13 +288,18 @@ std::string StreamNamed(const std::string& name) {
       {"wrist0",
        {"wrist0", "wrist", "robot", "tcp", "flange", "ee", "effector", "endeffector", "tool0", "rw",
         "arm"}}};
-  const auto words = WordsOf(name);
-  for (const auto& [stream, hints] : kHints) {
-    for (const auto& word : words) {
-      if (hints.contains(word)) return stream;
+  auto words = WordsOf(name);
+  const auto match = [&]() -> std::string {
+    for (const auto& [stream, hints] : kHints) {
+      for (const auto& word : words) {
+        if (hints.contains(word)) return stream;
+      }
     }
-  }
-  return "";
+    return "";
+  };
+  if (std::string stream = match(); !stream.empty()) return stream;
+  for (auto& word : words) word.erase(word.find_last_not_of("0123456789") + 1);  // robot2
+  return match();
 }
 
 DelimitedTable OpenTable(const StreamPlan& plan) {

@@ -69,7 +69,7 @@ TEST(ColumnRoles, KnowForcesMomentsAndTimes) {
 
 TEST(ColumnRoles, TakeUnitsFromNames) {
   EXPECT_THAT(NameRoles({"x [mm]", "x (mm)", "x_mm", "t_s", "fx_mN", "x"}).units,
-              ElementsAre("mm", "mm", "mm", "s", "mn", ""));
+              ElementsAre("mm", "mm", "mm", "s", "mN", ""));
 }
 
 TEST(ColumnRoles, KeepThingsApart) {

@@ -32,7 +32,7 @@ class Refusals : public testing::Test {
     return Refusal(Plan(text, stream));
   }
 
- private:
+ protected:
   TemporaryFolder folder_;
 };
 
@@ -113,9 +113,8 @@ TEST_F(Refusals, WhatNothingTells) {
   short_table.sensors.clear();
   EXPECT_THAT(keys(short_table), ElementsAre("sensors.wrist0.position_noise_m"));
   ImportPlan nameless = PlanWithSettings();
-  const TemporaryFolder folder;
-  WriteText(folder / "data.csv", kHead + "0,1,2,3\n0.1,1,2,3\n");
-  nameless.files = {folder / "data.csv"};
+  WriteText(folder_ / "data.csv", kHead + "0,1,2,3\n0.1,1,2,3\n");
+  nameless.files = {folder_ / "data.csv"};
   EXPECT_THAT(keys(nameless), ElementsAre("streams"));
 }
 
@@ -150,10 +149,9 @@ TEST_F(Refusals, ColumnsOfOneKindInTwoUnits) {
 }
 
 TEST_F(Refusals, ClocksApartAreSaid) {
-  const TemporaryFolder folder;
-  WriteText(folder / "f.csv", "t [s],fx [N],fy [N],fz [N]\n900,1,2,3\n900.1,1,2,4\n900.2,1,2,3\n");
+  WriteText(folder_ / "f.csv", "t [s],fx [N],fy [N],fz [N]\n900,1,2,3\n900.1,1,2,4\n900.2,1,2,3\n");
   ImportPlan plan = Plan(kHead + "0,1,2,3\n0.1,1,2,3\n");
-  plan.streams["load0"].file = folder / "f.csv";
+  plan.streams["load0"].file = folder_ / "f.csv";
   EXPECT_THAT(Import(plan).log.warnings,
               testing::Contains(HasSubstr("wrist0 and load0 have no time in common")));
 }
