@@ -115,10 +115,10 @@ std::optional<Found> AsOneWord(const std::string& last, const Words& rest) {
 }
 
 std::optional<Found> AsAngle(const std::string& last, const Words& rest) {
-  static const std::map<std::string, std::string> kAngles{
+  static const std::map<std::string, std::string> by_name{
       {"roll", "ax"}, {"pitch", "ay"}, {"yaw", "az"}};
-  const auto found = kAngles.find(last);
-  if (found == kAngles.end()) return {};
+  const auto found = by_name.find(last);
+  if (found == by_name.end()) return {};
   WordSet kinds = kRotations;
   kinds.insert(kQuaternions.begin(), kQuaternions.end());
   kinds.insert("rpy");
