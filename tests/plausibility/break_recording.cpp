@@ -393,9 +393,8 @@ std::vector<BrokenWay> CameraWays() {
       {"cam0 of half the resolution", "cam0.resolution", false,
        [=](Recording& r, Rng&) { camera(r).width_px *= 2, camera(r).height_px *= 2; }},
       {"tags0 too large", "tags0.size", false,
-       [](Recording& r, Rng& rng) {
+       [](Recording& r, Rng&) {
          for (auto& tag : r.tags0->tags) tag.size_m *= 1.5;
-         (void)rng;
        }},
       {"tags0 in mm", "tags0.unit", false,
        [](Recording& r, Rng&) {
