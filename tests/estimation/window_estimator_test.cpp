@@ -63,7 +63,7 @@ WindowOptions Options(double port_prior_m = 0.004) {
 }
 
 TEST(WindowEstimator, FindsAPortSeveralMillimetresOffByVisionAndTheWristAlone) {
-  double by_window = 0.0, by_trust = 0.0;
+  double by_window = 0.0, by_trust = 0.0, by_truth = 0.0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Wandering shaft(seed);
     shaft.p_port += Eigen::Vector3d(0.0, 0.004, -0.003);
@@ -74,15 +74,21 @@ TEST(WindowEstimator, FindsAPortSeveralMillimetresOffByVisionAndTheWristAlone) {
     EXPECT_EQ(e.samples, 30);
     const Eigen::Vector3d miss = kPort + e.port_shift_m - shaft.p_port;
     EXPECT_LT(miss.tail<2>().norm(), 4e-4) << seed;  // along the shaft it is not known
-    // One sample with the same prior does not know, and one that trusts the registration is wrong.
+    // One sample that trusts the registration is wrong; one that is told the port does best.
     ShaftEstimator trusting(Options(0.0003).estimator);
-    for (int i = 0; i < 10; ++i) {
+    EstimatorOptions known = Options(0.0003).estimator;
+    known.p_RP = shaft.p_port;
+    ShaftEstimator told(known);
+    for (int i = 0; i < 15; ++i) {
       const Measurements z = shaft.Next();
       by_window += (window.Update(z).shaft.d_RE - shaft.rod.tip.t).squaredNorm();
       by_trust += (trusting.Update(z).d_RE - shaft.rod.tip.t).squaredNorm();
+      by_truth += (told.Update(z).d_RE - shaft.rod.tip.t).squaredNorm();
     }
   }
-  EXPECT_LT(by_window, 0.25 * by_trust);  // 0.07 to 0.26 in single draws
+  // Squared error of the direction. What is left of the port costs little beside the tip's noise.
+  EXPECT_LT(by_window, 1.5 * by_truth);
+  EXPECT_LT(by_window, 0.25 * by_trust);
 }
 
 TEST(WindowEstimator, CovarianceOfThePortMatchesMonteCarlo) {
