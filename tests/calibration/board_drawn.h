@@ -29,7 +29,7 @@ inline BoardTexture ChessboardTexture(int columns, int rows) {
 /// `unit_m` is a unit's side, `origin` where frame B's origin is on the face, in units.
 inline Image DrawBoard(const CameraCalibration& camera, const Pose& T_CB, const BoardTexture& board,
                        double unit_m, const Eigen::Vector2d& origin, unsigned seed) {
-  constexpr int kSub = 6;
+  constexpr int kSubPixels = 6;
   const CameraModel model(camera);
   const Pose T_BC = T_CB.Inverse();
   std::mt19937 random(seed);
@@ -48,8 +48,9 @@ inline Image DrawBoard(const CameraCalibration& camera, const Pose& T_CB, const 
   for (int y = 0; y < camera.height_px; ++y) {
     for (int x = 0; x < camera.width_px; ++x) {
       double sum = 0;
-      for (int k = 0; k < kSub * kSub; ++k) {
-        const double a = (k % kSub + 0.5) / kSub, b = (k / kSub + 0.5) / kSub;
+      for (int k = 0; k < kSubPixels * kSubPixels; ++k) {
+        const double a = (k % kSubPixels + 0.5) / kSubPixels,
+                     b = (k / kSubPixels + 0.5) / kSubPixels;
         const cv::Vec2d at = (1 - b) * ((1 - a) * on_board(y, x) + a * on_board(y, x + 1)) +
                              b * ((1 - a) * on_board(y + 1, x) + a * on_board(y + 1, x + 1));
         const bool inside =
@@ -57,7 +58,7 @@ inline Image DrawBoard(const CameraCalibration& camera, const Pose& T_CB, const 
         sum +=
             inside && board.face(static_cast<int>(at[1]), static_cast<int>(at[0])) < 128 ? 40 : 200;
       }
-      canvas(y, x) = static_cast<float>(sum / (kSub * kSub));
+      canvas(y, x) = static_cast<float>(sum / (kSubPixels * kSubPixels));
     }
   }
   cv::GaussianBlur(canvas, canvas, cv::Size(0, 0), 0.7);
