@@ -92,8 +92,9 @@ void ExpectParameters(const hidden::HiddenLabel& label, const DiagnosisResult& r
                                   [&](const EffectFit& f) { return f.effect == effect; });
     ASSERT_NE(fit, result.parameters.end()) << effect;
     for (const auto& [name, truth] : label.parameters.at(effect)) {
-      const auto found = std::find_if(fit->parameters.begin(), fit->parameters.end(),
-                                      [&](const ReportedParameter& p) { return p.name == name; });
+      const auto found =
+          std::find_if(fit->parameters.begin(), fit->parameters.end(),
+                       [&name = name](const ReportedParameter& p) { return p.name == name; });
       ASSERT_NE(found, fit->parameters.end()) << effect << '.' << name;
       ASSERT_EQ(found->value.size(), truth.size());
       for (std::size_t i = 0; i < truth.size(); ++i) {

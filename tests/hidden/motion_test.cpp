@@ -12,7 +12,7 @@ namespace {
 
 class MotionTest : public testing::TestWithParam<int> {
  protected:
-  MotionSetup Setup(int seed) const {
+  MotionSetup SetupOf(int seed) const {
     MotionSetup setup;
     setup.kind = static_cast<MotionKind>(GetParam());
     setup.length_m = 0.35 + 0.025 * (seed % 11);
@@ -25,7 +25,7 @@ class MotionTest : public testing::TestWithParam<int> {
 
 TEST_P(MotionTest, StaysWithinDepthAngleAndSpeed) {
   for (int seed = 0; seed < 30; ++seed) {
-    const MotionSetup setup = Setup(seed);
+    const MotionSetup setup = SetupOf(seed);
     const WristCourse motion(setup, seed, 20.0);
     double peak = 0.0, way = 0.0;
     for (int i = -50; i < 1000; ++i) {
@@ -51,7 +51,7 @@ TEST_P(MotionTest, StaysWithinDepthAngleAndSpeed) {
 
 TEST_P(MotionTest, IsSmooth) {
   for (int seed = 0; seed < 10; ++seed) {
-    const WristCourse motion(Setup(seed), seed, 20.0);
+    const WristCourse motion(SetupOf(seed), seed, 20.0);
     // A jump of the velocity would show as one that does not shrink with the step.
     const auto worst = [&](double h) {
       double jump = 0.0;
@@ -66,7 +66,7 @@ TEST_P(MotionTest, IsSmooth) {
 }
 
 TEST_P(MotionTest, SameSeedSameMotion) {
-  const WristCourse a(Setup(1), 7, 20.0), b(Setup(1), 7, 20.0), other(Setup(1), 8, 20.0);
+  const WristCourse a(SetupOf(1), 7, 20.0), b(SetupOf(1), 7, 20.0), other(SetupOf(1), 8, 20.0);
   EXPECT_EQ(a.At(3.3), b.At(3.3));
   EXPECT_NE(a.At(3.3), other.At(3.3));
 }
