@@ -2,18 +2,20 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "apps/common/commands.h"
+#include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
+#include "diagnosis/model/latency.h"
 #include "pipeline/estimate_recording.h"
+#include "pipeline/judge_estimates.h"
 #include "pipeline/sensor_readings.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
@@ -112,15 +114,16 @@ std::optional<TipScore> ScoreAgainstTruth(const std::filesystem::path& recording
 }
 
 nlohmann::json Summary(const EstimateOptions& options, const Recording& recording,
-                       const Estimates& estimates, const WindowEstimate* window) {
-  std::map<std::string, int> statuses;
-  double chi2 = 0.0;
-  int measurements = 0;
-  for (const auto& e : estimates) {
-    ++statuses[Name(e.value.status)];
-    chi2 += e.value.chi2;
-    measurements += e.value.measurements;
-  }
+                       const Estimates& estimates, const EstimateTotals& totals,
+                       const WindowEstimate* window) {
+  nlohmann::json statuses = nlohmann::json::object();
+  const auto count = [&](EstimateStatus status, int samples) {
+    if (samples > 0) statuses[Name(status)] = samples;
+  };
+  count(EstimateStatus::kOk, totals.ok);
+  count(EstimateStatus::kUnobservable, totals.unobservable);
+  count(EstimateStatus::kNotConverged, totals.not_converged);
+  count(EstimateStatus::kBadInput, totals.bad_input);
   nlohmann::json sensors = nlohmann::json::array();
   const auto present = [&](bool is, const char* name) {
     if (is) sensors.push_back(name);
@@ -135,7 +138,14 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
       {"samples", estimates.size()}, {"statuses", statuses}, {"sensors", sensors}};
   if (!options.model.empty()) summary["model"] = options.model.filename().string();
   if (window != nullptr) summary["window"] = WindowJson(*window);
-  if (measurements > 0) summary["chi2_per_measurement"] = chi2 / measurements;
+  if (totals.chi2_per_measurement > 0.0) {
+    summary["chi2_per_measurement"] = totals.chi2_per_measurement;
+  }
+  if (totals.ok > 0) {
+    summary["tip_sd_m"] = totals.tip_sd_m;
+    summary["force_across_sd_N"] = totals.force_across_sd_N;
+    summary["force_along_sd_N"] = totals.force_along_sd_N;
+  }
   const auto score = ScoreAgainstTruth(options.input.recording, estimates);
   if (score && score->frames > 0) {
     summary["scored_samples"] = score->frames;
@@ -166,15 +176,20 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   CsvWriter csv(kColumns);
   for (const auto& e : estimates) AddRow(csv, e.t_ns, e.value);
   WriteTextFile(output.folder() / "state0" / "data.csv", csv.text());
-  nlohmann::json summary = Summary(options, recording, estimates, estimator.Window());
+  const EstimateTotals totals = TotalsOf(estimates);
+  const Judgement judged = JudgeEstimates(totals);
+  nlohmann::json summary = Summary(options, recording, estimates, totals, estimator.Window());
+  summary["verdict"] = JudgementJson(judged);
+  summary["streams_not_used"] = read.NotUsed();
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   output.WriteSummary(summary);
   report::WriteEstimateReport(output.folder());
   output.Commit();
-  if (!quiet) {
-    fmt::print("{} samples in {}\n", estimates.size(),
-               (options.input.out / "state0" / "data.csv").string());
-  }
+  PrintJudgement(judged, quiet);
+  RequireFound(judged, options.input.out);
+  if (quiet) return;
+  if (!read.NotUsed().empty()) fmt::print("Not used: {}\n", read.NotUsed());
+  fmt::print("{}\n", (options.input.out / "report.html").string());
 }
 
 }  // namespace

@@ -1,10 +1,14 @@
 // flextip: the program. Exit codes: 0 done, 1 the work failed, 2 wrong usage or unreadable input.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/common/commands.h"
 #include "apps/common/exit_code.h"
+#include "apps/common/usage.h"
 #include "core/version.h"
 
 namespace flextip {
@@ -18,6 +22,7 @@ std::string Typed(int argc, char** argv) {
 
 void AddCommands(CLI::App& app, AppContext& context) {
   AddCalibrate(app, context);
+  AddCompare(app, context);
   AddConvert(app, context);
   AddDetect(app, context);
   AddDiagnose(app, context);
@@ -36,21 +41,18 @@ int Run(int argc, char** argv) {
   CLI::App app("Control of thin, bending surgical instruments by sight", "flextip");
   app.set_version_flag("--version", std::string("flextip ") + kVersion);
   app.add_flag("-q,--quiet", context.quiet, "No progress bar and no remarks, only errors");
-  app.footer("Every command explains itself: flextip COMMAND --help\n");
+  app.footer("Every command explains itself: flextip help COMMAND\n");
   app.require_subcommand(1);
   app.fallthrough();
   AddCommands(app, context);
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> arguments = WithHelpAndVersion({argv + 1, argv + argc});
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    app.parse(std::move(arguments));
   } catch (const CLI::Success& done) {  // --help, --version
     return app.exit(done);
   } catch (const CLI::ParseError& e) {
-    const auto unknown = app.remaining();
-    if (app.get_subcommands().empty() && !unknown.empty()) {
-      return Complain(fmt::format("'{}' is no command (see flextip --help)", unknown.front()),
-                      kBadUsage);
-    }
-    return Complain(fmt::format("{} (see flextip --help)", e.what()), kBadUsage);
+    return Complain(UsageMessage(app, e), kBadUsage);
   }
   context.work();
   return kDone;

@@ -59,10 +59,12 @@ set(FLEXTIP_PUBLIC_HEADERS
   core/version.h
   diagnosis/diagnose.h
   diagnosis/effects/periodic.h
+  diagnosis/evidence/residual_memory.h
   diagnosis/model/catalogue.h
   diagnosis/model/effect.h
   diagnosis/model/extended_instrument.h
   diagnosis/model/extended_model.h
+  diagnosis/model/latency.h
   diagnosis/replay/sample_input.h
   diagnosis/samples/sample_set.h
   estimation/instrument_model.h

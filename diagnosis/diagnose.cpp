@@ -12,6 +12,8 @@
 namespace flextip::diagnosis {
 namespace {
 
+constexpr double kMemoryWorthAWord = 2.0;  // samples that count as one
+
 /// What the stages work on. The layout refers to the samples, the replays to both.
 struct Work {
   SampleSet samples;
@@ -154,6 +156,13 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
     result.warnings.push_back(
         fmt::format("{} of {} samples are far from what any model says: left out",
                     selection.far_samples, work.samples.samples.size()));
+  }
+  result.memory = selection.memory;
+  if (selection.memory.samples_as_one > kMemoryWorthAWord) {
+    result.warnings.push_back(fmt::format(
+        "what is left of {} remembers itself ({:.2f} from sample to sample): {:.1f} samples count "
+        "as one",
+        selection.memory.channel, selection.memory.correlation, selection.memory.samples_as_one));
   }
   const Probabilities probabilities = MakeProbabilities(selection, work.layout, selection_options);
   result.probabilities = probabilities.hypotheses;

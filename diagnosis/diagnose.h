@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/evidence/residual_memory.h"
 #include "diagnosis/model/effect.h"
 #include "recording/recording.h"
 
@@ -82,6 +83,7 @@ struct DiagnosisResult {
   TimeNs start_ns = 0;                                 ///< when t = 0, for phases and drifts
   ModelScore base, extended;
   Gain gain;
+  ResidualMemory memory;  ///< of what the answer leaves; probabilities and deviations count it
   std::vector<Signature> signatures;  ///< of the base residual, strongest first
   ResidualTable residuals;
   std::array<double, 7> noise_scale{};  ///< measured noise over the data sheet's, by channel

@@ -13,6 +13,7 @@
 #include "report/report.h"
 #include "report/result_files.h"
 #include "report/summary_parts.h"
+#include "report/verdict.h"
 
 namespace flextip::report {
 namespace {
@@ -39,25 +40,6 @@ std::string TitleOf(const std::string& command) {
 
 std::string Text(const Json& object, const char* key) {
   return object.contains(key) && object[key].is_string() ? object[key].get<std::string>() : "";
-}
-
-std::string VerdictHtml(const Json& verdict) {
-  const std::string grade = Text(verdict, "grade");
-  std::string html =
-      fmt::format("<section class=\"verdict {}\">\n<p class=\"says\">{}</p>\n",
-                  grade == "good" ? "good" : "beware", EscapeHtml(Text(verdict, "says")));
-  if (verdict.contains("reasons") && !verdict["reasons"].empty()) {
-    html += "<ul class=\"reasons\">\n";
-    for (const auto& r : verdict["reasons"]) {
-      html += fmt::format("<li>{}</li>\n", EscapeHtml(r.get<std::string>()));
-    }
-    html += "</ul>\n";
-  }
-  const std::string next = Text(verdict, "next");
-  if (!next.empty()) {
-    html += fmt::format("<p class=\"advice\"><b>Next:</b> {}.</p>\n", EscapeHtml(next));
-  }
-  return html + "</section>\n";
 }
 
 std::string ValuesHtml(const Json& values) {

@@ -32,6 +32,7 @@ constexpr std::array<UnitSuffix, 15> kUnits{{{"_m_N", "mm/N", 1000},
 const std::map<std::string, std::string>& Labels() {
   static const std::map<std::string, std::string> labels{
       {"seconds", "time taken"},
+      {"streams_not_used", "streams that were not used"},
       // track
       {"track ok", "frames with the tip seen"},
       {"track predicted", "frames with the tip predicted"},
@@ -62,6 +63,9 @@ const std::map<std::string, std::string>& Labels() {
       {"steps_limited", "steps cut to their bound"},
       {"steps_damped", "steps damped near a singularity"},
       // estimate
+      {"tip_sd_m", "standard deviation of the tip, an axis"},
+      {"force_across_sd_N", "standard deviation of the tip's force across the shaft"},
+      {"force_along_sd_N", "standard deviation of the tip's force along the shaft"},
       {"chi2_per_measurement", "residual² over variance, a measurement (noise alone: 1)"},
       {"scored_samples", "samples compared with the truth"},
       // shape

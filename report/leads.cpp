@@ -54,40 +54,6 @@ Lead SimulateLead(const Json& summary) {
   return lead;
 }
 
-Lead TrackLead(const Json& summary) {
-  if (!Has(summary, "frames") || !Has(summary, "ok")) return {};
-  Lead lead{.says = fmt::format("The tip was seen in {} of {} frames.", Count(summary, "ok"),
-                                Count(summary, "frames"))};
-  const double predicted = Number(summary, "predicted"), lost = Number(summary, "lost");
-  if (predicted > 0) lead.says += fmt::format(" In {:.0f} more it was predicted.", predicted);
-  if (lost > 0) lead.says += fmt::format(" In {:.0f} it was lost.", lost);
-  if (Has(summary, "tip_rms_error_m")) {
-    lead.more = fmt::format(
-        "Against the truth it was {} off (RMS), {} at most; {} of the errors lie inside their "
-        "95 % ellipsoid.",
-        Value(summary, "tip_rms_error_m"), Value(summary, "tip_max_error_m"),
-        Value(summary, "tip_share_inside_95"));
-  }
-  return lead;
-}
-
-Lead EstimateLead(const Json& summary) {
-  if (!Has(summary, "samples")) return {};
-  const Json statuses = summary.value("statuses", Json::object());
-  Lead lead{.says = fmt::format("Load, port and shape were found at {} of {} samples.",
-                                Count(statuses, "ok"), Count(summary, "samples"))};
-  if (Has(summary, "chi2_per_measurement")) {
-    lead.more =
-        fmt::format("The fit leaves {} of the sensors' variance a measurement; 1 is noise alone.",
-                    Value(summary, "chi2_per_measurement"));
-  }
-  if (Has(summary, "tip_rms_error_m")) {
-    lead.more += fmt::format("{}Against the truth the tip was {} off (RMS).",
-                             lead.more.empty() ? "" : " ", Value(summary, "tip_rms_error_m"));
-  }
-  return lead;
-}
-
 /// The tip and the port's force of a single shape, by its row of shapes.csv.
 std::string SingleShape(const std::filesystem::path& table) {
   if (!std::filesystem::exists(table)) return "";
@@ -154,8 +120,6 @@ Lead LeadOf(const std::filesystem::path& folder) {
   const std::string command =
       summary.contains("command") && summary["command"].is_string() ? summary["command"] : "";
   if (command == "simulate") return SimulateLead(summary);
-  if (command == "track") return TrackLead(summary);
-  if (command == "estimate") return EstimateLead(summary);
   if (command == "shape") return ShapeLead(summary, folder);
   if (command == "detect") return DetectLead(summary);
   if (command == "map") return MapLead(summary);

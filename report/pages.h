@@ -35,5 +35,7 @@ void WriteDiagnoseReport(const std::filesystem::path& folder);
 void WriteReproduceReport(const std::filesystem::path& folder);
 /// The figures of figures.json (which must be there) and table.csv.
 void WriteMapReport(const std::filesystem::path& folder);
+/// The numbers of several runs side by side, and figures.json (which must be there).
+void WriteCompareReport(const std::filesystem::path& folder);
 
 }  // namespace flextip::report

@@ -12,6 +12,7 @@
 #include "report/labels.h"
 #include "report/leads.h"
 #include "report/result_files.h"
+#include "report/verdict.h"
 
 namespace flextip::report {
 namespace {
@@ -127,7 +128,10 @@ void AddSummaryNumbers(Report& report, const std::filesystem::path& folder) {
   const Json summary = ReadSummary(folder);
   const std::string command = TextOf(summary, "command");
   for (const auto& [key, value] : summary.items()) {
-    if (IsScalar(value)) numbers.emplace_back(Label(key, command), Shown(key, value));
+    const bool not_used = key == "streams_not_used" && value.is_string() && value != "";
+    if (IsScalar(value) || not_used) {
+      numbers.emplace_back(Label(key, command), Shown(key, value));
+    }
   }
   report.AddNumbers(numbers);
 }
@@ -135,16 +139,20 @@ void AddSummaryNumbers(Report& report, const std::filesystem::path& folder) {
 void AddSummaryTables(Report& report, const std::filesystem::path& folder) {
   const Json summary = ReadSummary(folder);
   for (const auto& [key, value] : summary.items()) {
-    if (key != "warnings" && IsTable(value)) AddJsonTable(report, key, value);
+    if (key != "warnings" && key != "verdict" && IsTable(value)) AddJsonTable(report, key, value);
   }
 }
 
 Report BeginPage(const std::filesystem::path& folder, const std::string& title) {
   Report report = TitledPage(folder, title);
-  const Lead lead = LeadOf(folder);
-  report.AddLead(lead.says, lead.more);
-  AddSummaryNumbers(report, folder);
   const Json summary = ReadSummary(folder);
+  if (summary.contains("verdict") && summary["verdict"].is_object()) {
+    report.AddHtml(VerdictHtml(summary["verdict"]));
+  } else {
+    const Lead lead = LeadOf(folder);
+    report.AddLead(lead.says, lead.more);
+  }
+  AddSummaryNumbers(report, folder);
   std::vector<std::string> warnings;
   for (const auto& w : summary.value("warnings", Json::array())) warnings.push_back(Shown("", w));
   report.AddWarnings(warnings);

@@ -28,6 +28,7 @@ const std::vector<CommandPage>& Pages() {
       {"shape", WriteShapeReport, {"shapes.csv"}},
       {"detect", WriteDetectReport, {"tags.csv"}},
       {"calibrate", WriteCalibrateReport},
+      {"compare", WriteCompareReport, {"figures.json"}},
       {"diagnose", WriteDiagnoseReport, {"diagnosis.json", "residuals.csv"}},
       {"map", WriteMapReport, {"figures.json", "table.csv"}},
       {"reproduce", WriteReproduceReport, {"figures.json", "table.csv"}}};

@@ -1,5 +1,7 @@
 #include "apps/calibrate/verdict_json.h"
 
+#include "apps/common/judgement.h"
+
 namespace flextip {
 
 nlohmann::json UnobservableJson(const std::vector<Calibration::Unobservable>& unobservable) {
@@ -15,10 +17,10 @@ nlohmann::json VerdictJson(const CalibrationVerdict& verdict) {
   for (const auto& v : verdict.values) {
     values.push_back({{"name", v.name}, {"value", v.value}, {"sd", v.sd}});
   }
-  return {
-      {"grade", Name(verdict.grade)}, {"says", verdict.says},
-      {"reasons", verdict.reasons},   {"values", values},
-      {"next", verdict.next},         {"not_found", UnobservableJson(verdict.NotFoundByReason())}};
+  nlohmann::json json = JudgementJson(verdict);
+  json["values"] = values;
+  json["not_found"] = UnobservableJson(verdict.NotFoundByReason());
+  return json;
 }
 
 }  // namespace flextip

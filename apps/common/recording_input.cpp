@@ -1,6 +1,7 @@
 #include "apps/common/recording_input.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "recording/streams/sensor_streams.h"
 
@@ -23,6 +24,19 @@ std::vector<std::filesystem::path> RecordingInput::Files() const {
   files.push_back(recording);
   if (!tracked.empty()) files.push_back(tracked);
   return files;
+}
+
+std::string InputRead::NotUsed() const {
+  std::vector<std::string> names;
+  const auto add = [&](bool there, const char* name) {
+    if (there) names.emplace_back(name);
+  };
+  const bool seen = recording.vision0.has_value();  // with tips the camera's pose counts
+  add(recording.cam0 && !seen, "cam0");
+  add(recording.cam1.has_value(), "cam1");
+  add(recording.command0.has_value(), "command0");
+  add(recording.tags0 && !seen, "tags0");
+  return fmt::to_string(fmt::join(names, ", "));
 }
 
 InputRead ReadInput(const RecordingInput& input) {

@@ -20,6 +20,9 @@ struct RecordingInput {
 
 struct InputRead : ReadResult {
   std::vector<UsedCalibration> calibrations;
+
+  /// Returns the streams of which estimation and diagnosis use nothing: "cam0, command0".
+  std::string NotUsed() const;
 };
 
 /// RECORDING, --output, --tracked and --calibration. `input` must outlive the parsing.

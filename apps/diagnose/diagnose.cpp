@@ -93,12 +93,15 @@ void Run(const Options& options, bool quiet) {
   nlohmann::json summary = {{"verdicts", result.verdict},
                             {"samples", result.samples},
                             {"fits", result.fits},
-                            {"converged", result.converged}};
+                            {"converged", result.converged},
+                            {"streams_not_used", read.NotUsed()}};
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   output.WriteSummary(summary);
   report::WriteDiagnoseReport(output.folder());
   output.Commit();
-  if (!quiet) PrintAnswer(result, options);
+  if (quiet) return;
+  PrintAnswer(result, options);
+  if (!read.NotUsed().empty()) fmt::print("not used: {}\n", read.NotUsed());
 }
 
 }  // namespace

@@ -107,6 +107,9 @@ std::string DiagnosisJson(const DiagnosisResult& result, const simulation::Close
                      {result.gain.heldout_error_ratio_low, result.gain.heldout_error_ratio_high}},
                     {"tip_error_ratio", result.gain.tip_error_ratio}};
   json["residual_signature"] = Signatures(result.signatures);
+  json["residual_memory"] = {{"channel", result.memory.channel},
+                             {"correlation", result.memory.correlation},
+                             {"samples_as_one", result.memory.samples_as_one}};
   json["noise_scale"] = ByChannel(result, result.noise_scale);
   json["noise_sd"] = ByChannel(result, result.noise_sd);
   json["nominals"] = Nominal(result, false);

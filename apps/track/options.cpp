@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
+
 #include "core/error.h"
 
 namespace flextip {
@@ -13,7 +15,9 @@ void AddInputOptions(CLI::App& command, TrackOptions& options) {
                   "Recording with cam0/ and tags0/; or a folder of pictures or a video, with "
                   "--camera and --collar")
       ->type_name("RECORDING");
-  command.add_option("--live", options.live, "A device number, URL or file, until Ctrl-C")
+  command
+      .add_option("--live", options.live,
+                  "A device number or URL, until Ctrl-C (a file: as without --live)")
       ->type_name("SOURCE");
   command.add_option("--camera", options.camera, "Camera file: EuRoC, Kalibr, ROS or OpenCV")
       ->type_name("FILE");
@@ -60,6 +64,17 @@ void AddTrackerOptions(CLI::App& command, TrackOptions& options) {
       ->type_name("METRES");
   command.add_flag("--force", options.force, "Replace the folder of an earlier run");
   command.add_flag("--resume", options.resume, "Go on where an interrupted run ended");
+}
+
+/// A file waits for its reader: it is tracked like any video, with its own times.
+void TakeLiveFileAsVideo(TrackOptions& options) {
+  options.until_stopped = !options.live.empty();
+  constexpr std::string_view kScheme = "file://";
+  std::string_view path = options.live;
+  if (path.starts_with(kScheme)) path.remove_prefix(kScheme.size());
+  if (!options.source.empty() || !std::filesystem::is_regular_file(path)) return;
+  options.source = path;
+  options.live.clear();
 }
 
 /// Throws InputError where camera, collar and rate are given with a recording, or missing without.
@@ -137,6 +152,7 @@ void AddTrackOptions(CLI::App& command, TrackOptions& options) {
 }
 
 void CheckTrackOptions(TrackOptions& options) {
+  TakeLiveFileAsVideo(options);
   const auto& range = options.black_white;
   if (!range.empty() && range[0] >= range[1]) {
     throw InputError(fmt::format("--black-white: found {},{}, expected the first below the second",

@@ -14,7 +14,7 @@ namespace flextip {
 
 struct TrackOptions {
   std::filesystem::path source;          ///< a recording, a folder of pictures, a video
-  std::string live;                      ///< instead: a device number, URL or file
+  std::string live;                      ///< instead: a device number or URL
   std::filesystem::path camera, collar;  ///< files, for all but a recording
   double rate_hz = 0.0;                  ///< rate of pictures or a video; 0: not given
   std::vector<double> black_white;       ///< levels in 16-bit pictures; empty: not given
@@ -25,6 +25,7 @@ struct TrackOptions {
   double diameter_m = 0.0;  ///< the shaft's diameter; 0: the recording's
   long max_frames = 0;      ///< 0: all
   bool no_model = false, overlay = false, force = false, resume = false;
+  bool until_stopped = false;  ///< --live was given: Ctrl-C ends the run with its results
 
   /// Whether the source has its own camera, collar and times.
   bool IsRecording() const;
@@ -38,7 +39,8 @@ struct TrackOptions {
 /// Adds all options and the examples. `options` must outlive the parsing.
 void AddTrackOptions(CLI::App& command, TrackOptions& options);
 
-/// Fills `options.tracker` and throws InputError for options that contradict each other.
+/// Fills `options.tracker`, takes a file given as live for what it is, and throws InputError for
+/// options that contradict each other.
 void CheckTrackOptions(TrackOptions& options);
 
 /// Opens the input that the checked options name. Throws InputError.

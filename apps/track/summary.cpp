@@ -51,4 +51,16 @@ nlohmann::json TrackSummary(const TrackSums& sums, int cameras, bool scored) {
   return summary;
 }
 
+TrackTotals TrackTotalsOf(const TrackSums& sums, const TrackInput& input) {
+  return {.frames = sums.frames,
+          .ok = sums.ok,
+          .predicted = sums.predicted,
+          .lost = sums.lost,
+          .tags = sums.tags,
+          .rms_px = sums.by_corners > 0 ? Rms(sums.squared_rms_px, sums.by_corners) : 0.0,
+          .family = input.recording.tags0->family,
+          .camera_has_pose = input.camera_has_pose,
+          .score = sums.score};
+}
+
 }  // namespace flextip

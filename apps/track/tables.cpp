@@ -204,11 +204,11 @@ void TrackTables::Save(const std::string& state) {
   fs::rename(fresh, mark_);  // at once: the mark is whole at any time
 }
 
-void TrackTables::Finish(const TagCollar& collar, double rate_hz) {
+void TrackTables::Finish(const TagCollar& collar, double rate_hz, bool camera_has_pose) {
   Save("");
   VisionStream stream;
   stream.rate_hz = rate_hz;
-  stream.comment = "tip by tags";
+  stream.comment = camera_has_pose ? "tip by tags" : "tip by tags, in the camera's frame";
   stream.direction_noise_rad =
       std::sqrt(sums.squared_direction_noise / static_cast<double>(std::max(1L, sums.ok)));
   WriteVisionSettings(folder_ / "vision0", stream);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/common/commands.h"
+#include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/stop_signal.h"
@@ -89,10 +90,7 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
 }
 
 void PrintResult(const TrackOptions& options, const nlohmann::json& summary) {
-  fmt::print("{} frames: {} ok, {} predicted, {} lost, {:.1f} frames per second\n",
-             summary["frames"].get<int>(), summary["ok"].get<int>(),
-             summary["predicted"].get<int>(), summary["lost"].get<int>(),
-             summary["frames_per_second"].get<double>());
+  fmt::print("{:.1f} frames per second\n", summary["frames_per_second"].get<double>());
   if (summary.contains("tip_rms_error_m")) {
     fmt::print("tip error {:.3f} mm RMS ({:.3f} mm across the view, {:.3f} mm in depth)\n",
                1e3 * summary["tip_rms_error_m"].get<double>(),
@@ -124,7 +122,7 @@ void RunTrack(TrackOptions options, bool quiet) {
     if (output.resumed()) output.KeepUnfinished();
   }
   std::optional<StopSignal> stop;
-  if (!options.live.empty()) stop.emplace();
+  if (options.until_stopped) stop.emplace();
   TrackFrames(options, input, truth, output, tables, quiet);
   const TrackSums& sums = tables.sums;
   const int cameras = static_cast<int>(input.frames->Cameras());
@@ -133,10 +131,15 @@ void RunTrack(TrackOptions options, bool quiet) {
   if (truth && sums.score.frames == 0) {
     output.Warn("no frame with the tip seen falls into the truth's time");
   }
-  tables.Finish(*input.recording.tags0, input.recording.cam0->calibration.rate_hz);
+  tables.Finish(*input.recording.tags0, input.recording.cam0->calibration.rate_hz,
+                input.camera_has_pose);
+  const Judgement judged = JudgeTrack(TrackTotalsOf(sums, input));
+  summary["verdict"] = JudgementJson(judged);
   output.WriteSummary(summary);
   report::WriteTrackReport(output.folder());
   output.Commit();
+  PrintJudgement(judged, quiet);
+  RequireFound(judged, options.out);
   if (!quiet) PrintResult(options, summary);
 }
 

@@ -73,7 +73,7 @@ CalibrationVerdict JudgeEm(const EmResult& r) {
     verdict.next = "move the sensor through more of the space it will work in, in all directions";
   }
   if (!r.IsUsable()) {
-    verdict.grade = CalibrationGrade::kNotFound;
+    verdict.grade = Grade::kNotFound;
     verdict.says = "These samples do not tell where the EM system is.";
     if (!r.message.empty()) verdict.reasons.push_back(r.message);
     return verdict;

@@ -81,7 +81,7 @@ CalibrationVerdict JudgeHandEye(const HandEyeResult& r, const Calibration& found
   verdict.not_found = found.unobservable;
   AddReasons(r, verdict);
   if (!r.knows_camera) {
-    verdict.grade = CalibrationGrade::kNotFound;
+    verdict.grade = Grade::kNotFound;
     verdict.says = r.knows_board ? "Where the board is was found, but not where the camera is."
                                  : "These views do not tell where camera and board are.";
   } else {

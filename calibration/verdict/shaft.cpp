@@ -28,7 +28,7 @@ CalibrationVerdict JudgeStrain(const StrainCalibration& r) {
   verdict.next = r.advice;
   verdict.not_found = r.found.unobservable;
   if (!r.gages_known) {
-    verdict.grade = CalibrationGrade::kNotFound;
+    verdict.grade = Grade::kNotFound;
     verdict.says = "These loads do not tell what the gages read of a moment.";
     JudgeHolds(r.holds, verdict);
     return verdict;
@@ -103,7 +103,7 @@ CalibrationVerdict JudgeStiffness(const StiffnessCalibration& r) {
   verdict.Add("port shifted by", fmt::format("{:.2f} mm", 1e3 * r.port_shift_m.norm()));
   JudgeHolds(r.holds, verdict);
   if (r.status == StiffnessStatus::kUnobservable) {
-    verdict.grade = CalibrationGrade::kNotFound;
+    verdict.grade = Grade::kNotFound;
     verdict.says = "These loads bend the shaft too little to tell its stiffness.";
     return verdict;
   }

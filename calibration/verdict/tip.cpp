@@ -66,7 +66,7 @@ CalibrationVerdict JudgeTip(const PivotResult& r, const std::string& tip_name,
   CalibrationVerdict verdict;
   if (!r.residuals.empty()) verdict.next = AdviceText(r, body);
   if (!r.IsUsable()) {
-    verdict.grade = CalibrationGrade::kNotFound;
+    verdict.grade = Grade::kNotFound;
     verdict.says = "These poses do not tell where the tip is.";
     verdict.not_found = {{tip_name, r.unobservable}, {"pivot.p_R", r.unobservable}};
     return verdict;

@@ -6,38 +6,13 @@
 
 namespace flextip {
 
-const char* Name(CalibrationGrade grade) {
-  switch (grade) {
-    case CalibrationGrade::kGood:
-      return "good";
-    case CalibrationGrade::kBeware:
-      return "beware";
-    case CalibrationGrade::kNotFound:
-      break;
-  }
-  return "not found";
-}
-
-void CalibrationVerdict::Beware(const std::string& reason) {
-  if (grade == CalibrationGrade::kGood) grade = CalibrationGrade::kBeware;
-  reasons.push_back(reason);
-}
-
-void CalibrationVerdict::Mention(const std::string& reason, bool careful) {
-  if (careful) {
-    Beware(reason);
-  } else {
-    reasons.push_back(reason);
-  }
-}
-
 void CalibrationVerdict::MentionCount(std::size_t count, double all, double many,
                                       const std::string& text) {
   if (count > 0) Mention(text, static_cast<double>(count) > many * all);
 }
 
 std::string CalibrationVerdict::Judged() const {
-  return grade == CalibrationGrade::kGood ? "Good." : "To be used with care.";
+  return grade == Grade::kGood ? "Good." : "To be used with care.";
 }
 
 std::vector<Calibration::Unobservable> CalibrationVerdict::NotFoundByReason() const {

@@ -2,34 +2,21 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "core/judgement.h"
 #include "recording/calibrations/file.h"
 
 namespace flextip {
 
-enum class CalibrationGrade : std::uint8_t { kGood, kBeware, kNotFound };
-/// Returns "good", "beware" or "not found".
-const char* Name(CalibrationGrade grade);
-
-/// Texts are in a user's words and stand on the page as they are.
-struct CalibrationVerdict {
+struct CalibrationVerdict : Judgement {
   struct Value {
     std::string name, value, sd;  ///< with units; `sd` may be empty
   };
-  CalibrationGrade grade = CalibrationGrade::kGood;
-  std::string says;                                  ///< one sentence
-  std::vector<std::string> reasons;                  ///< to be careful, and to know
   std::vector<Value> values;                         ///< found, and how well it fits
   std::vector<Calibration::Unobservable> not_found;  ///< as in calibration.yaml
-  std::string next;                                  ///< the next step
 
-  /// Adds a reason to be careful, which takes a good grade down.
-  void Beware(const std::string& reason);
-  /// Adds `reason` as one to be careful where `careful`, else as one to know.
-  void Mention(const std::string& reason, bool careful);
   /// Mentions `text` where `count` is not 0; to be careful above the share `many` of `all`.
   void MentionCount(std::size_t count, double all, double many, const std::string& text);
   void Add(const std::string& name, const std::string& value, const std::string& sd = {}) {

@@ -98,6 +98,17 @@ void NormalSums::Add(const NormalSums& other, double weight) {
   rows += std::lround(weight * double(other.rows));
 }
 
+void LinearProblem::CountAsOne(double samples) {
+  const auto divide = [&](NormalSums& sums) {
+    sums.H /= samples;
+    sums.g /= samples;
+    sums.c /= samples;
+    sums.volume /= samples;
+  };
+  divide(total);
+  for (NormalSums& block : blocks) divide(block);
+}
+
 LinearProblem MakeLinearProblem(const Replay& replay, const Eigen::MatrixXd& basis, int blocks) {
   const WhitenedRows rows = replay.Whiten();
   LinearProblem problem;

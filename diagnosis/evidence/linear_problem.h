@@ -35,6 +35,8 @@ struct LinearProblem {
   Rows residual_size = Rows::Zero();
 
   int Size() const { return parameters + int(generic_row.size()); }
+  /// Lets `samples` of them count as one: all sums are divided by it.
+  void CountAsOne(double samples);
 };
 
 /// `basis` has one row a sample (generic_basis.h); empty: no generic terms.

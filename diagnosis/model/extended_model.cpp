@@ -157,25 +157,6 @@ void CheckFormat(const YamlMap& top) {
   }
 }
 
-/// Returns the delay (s) of a sensor's stamps by all effects that act on its delay.
-double Delay(const ExtendedModel& model, int delay_input, const EffectMakers& own) {
-  double delay_s = 0.0;
-  for (const auto* list : {&model.effects, &model.within_tolerance}) {
-    for (const EffectFit& fit : *list) {
-      const auto effect = MakeEffectOfModel(fit.effect, own);
-      if (effect && effect->DelayInput() == delay_input)
-        delay_s += fit.parameters.at(0).value.at(0);
-    }
-  }
-  return delay_s;
-}
-
-template <class Samples>
-void MoveBack(Samples& samples, double delay_s) {
-  const auto delay_ns = static_cast<TimeNs>(std::llround(1e9 * delay_s));
-  for (auto& sample : samples) sample.t_ns -= delay_ns;
-}
-
 }  // namespace
 
 const EffectFit* ExtendedModel::Find(const std::string& effect) const {
@@ -244,15 +225,6 @@ ExtendedModel ReadModel(const std::filesystem::path& file, const EffectMakers& o
     model.covariance = ReadCovariance(top.Map("covariance"), model.effects);
   RejectUnknownKeys(top);
   return model;
-}
-
-Recording WithoutLatency(Recording recording, const ExtendedModel& model, const EffectMakers& own) {
-  const double em_s = Delay(model, sample_input::kEmDelay, own);
-  const double camera_s = Delay(model, sample_input::kCameraDelay, own);
-  if (recording.em0) MoveBack(recording.em0->samples, em_s);
-  if (recording.em1) MoveBack(recording.em1->samples, em_s);
-  if (recording.vision0) MoveBack(recording.vision0->tips, camera_s);
-  return recording;
 }
 
 }  // namespace flextip::diagnosis

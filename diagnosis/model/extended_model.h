@@ -40,9 +40,4 @@ ExtendedModel ReadModel(const std::filesystem::path& file, const EffectMakers& o
 /// Returns the names of the covariance's rows: "port_offset.offset_m[0]" and so on.
 std::vector<std::string> NumberNames(const std::vector<EffectFit>& effects);
 
-/// Returns `recording` with the streams that `model` says are stamped late moved to when they were
-/// taken.
-Recording WithoutLatency(Recording recording, const ExtendedModel& model,
-                         const EffectMakers& own = {});
-
 }  // namespace flextip::diagnosis

@@ -210,12 +210,30 @@ class Search {
       const double log = Shortfall(s, weighing) - (tried ? common : 0.0);
       if (log != 0.0) selection_.corrections.push_back({s.weighed.hypothesis, log});
     }
+    CountMemory(weighing);
     selection_.scored = Score({weighing.problem.total, layout_, weighing.generic_sd},
                               layout_.EffectCount(), all, options_, selection_.corrections);
     selection_.chi2_per_dof = replay_.ChiSquaredPerDof();
     selection_.converged = best_.distance < kNearRest && !rivals_left_;
     selection_.problem = std::move(weighing.problem);
     selection_.generic_sd = std::move(weighing.generic_sd);
+  }
+
+  /// Where the best answer's residuals remember themselves, everything that was weighed counts
+  /// less.
+  void CountMemory(Weighing& weighing) {
+    const Evidence evidence(weighing.problem.total, layout_, weighing.generic_sd,
+                            {.unknown_sd = {}});
+    const WeighedHypothesis best = evidence.Weigh(best_.hypothesis);
+    const Eigen::VectorXd mode = evidence.Mode(best, evidence.Covariance(best));
+    selection_.memory = MemoryOfResiduals(replay_, basis_, weighing.problem, mode);
+    const double as_one = selection_.memory.samples_as_one;
+    if (getenv("MEMDEBUG"))
+      fprintf(stderr, "MEMORY %s %g %g\n", selection_.memory.channel.c_str(),
+              selection_.memory.correlation, as_one);
+    if (getenv("MEMOFF")) return;
+    weighing.problem.CountAsOne(as_one);
+    for (Correction& correction : selection_.corrections) correction.log /= as_one;
   }
 
   Replay& replay_;

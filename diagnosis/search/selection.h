@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "diagnosis/evidence/residual_memory.h"
 #include "diagnosis/search/hypotheses.h"
 
 namespace flextip::diagnosis {
@@ -15,7 +16,8 @@ struct Selection {
   int far_samples = 0;                   ///< left out (FarSamples)
   double chi2_per_dof = 0.0;             ///< of the best that the catalogue has
   std::vector<ScoredHypothesis> scored;  ///< best first
-  LinearProblem problem;                 ///< about the best point
+  LinearProblem problem;  ///< about the best point, with samples that remember counted as fewer
+  ResidualMemory memory;  ///< of what the best answer leaves
   Eigen::VectorXd generic_sd;
   std::vector<Correction> corrections;  ///< of those that were fitted
 

@@ -57,7 +57,7 @@ std::unique_ptr<FrameSource> OpenPlainFrames(const std::filesystem::path& source
 Series<std::string> PicturesInFolder(const std::filesystem::path& folder, double rate_hz,
                                      bool times_from_names);
 
-/// Opens a device number, a URL or a file. Stamps by the clock (nanoseconds since 1970).
+/// Opens a device number, a URL or a pipe. Stamps by the clock (nanoseconds since 1970).
 std::unique_ptr<FrameSource> OpenLiveFrames(const std::string& source,
                                             const CameraCalibration& camera);
 

@@ -43,11 +43,13 @@ TrackInput ReadCameraFiles(const CameraFiles& files, const TrackInputOptions& op
   ReadLog log;
   CameraStream& camera = input.recording.cam0.emplace();
   const auto format = GuessCameraFormat(files.camera);
-  camera.calibration = ReadCameraDescription(files.camera, format).calibration;
+  const CameraDescription description = ReadCameraDescription(files.camera, format);
+  camera.calibration = description.calibration;
   input.recording.tags0 = ReadCollarFile(files.collar, log);
   if (files.rate_hz) camera.calibration.rate_hz = *files.rate_hz;
   input.warnings = std::move(log.warnings);
   input.calibrations = ApplyCalibrations(options.calibrations, input.recording, input.warnings);
+  input.camera_has_pose = description.has_T_RC || !camera.calibration.T_RC.Matrix().isIdentity(0.0);
   return input;
 }
 

@@ -38,6 +38,29 @@ TEST(Program, RefusesWrongUsageInOneLine) {
   }
 }
 
+TEST(Program, NamesWhatMayHaveBeenMeant) {
+  EXPECT_TRUE(
+      IsRefused(RunProgram({"trak", "rec"}), {"'trak' is no command; did you mean track?"}));
+  EXPECT_TRUE(
+      IsRefused(RunProgram({"calibrate", "camra"}),
+                {"'camra' is no command; did you mean camera?", "flextip calibrate --help"}));
+  // The unknown option comes before the missing -o that follows from it.
+  EXPECT_TRUE(IsRefused(RunProgram({"diagnose", "rec", "--ouput", "out"}),
+                        {"flextip diagnose has no option --ouput; did you mean --output?",
+                         "flextip diagnose --help"}));
+  EXPECT_TRUE(IsRefused(RunProgram({"estimate", "rec", "--window=many", "-o", "out"}),
+                        {"--window", "flextip estimate --help"}));
+  const auto far = RunProgram({"dance"});
+  EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;
+}
+
+TEST(Program, TakesHelpAndVersionAsWords) {
+  EXPECT_EQ(RunProgram({"version"}).out, RunProgram({"--version"}).out);
+  EXPECT_EQ(RunProgram({"help"}).out, RunProgram({"--help"}).out);
+  EXPECT_EQ(RunProgram({"help", "calibrate", "tip"}).out,
+            RunProgram({"calibrate", "tip", "--help"}).out);
+}
+
 TEST(Program, SaysHowToBuildTheReproductionWhereItIsMissing) {
   const TestFolder folder;
   const auto alone = folder / "flextip";

@@ -28,14 +28,14 @@ std::string ValueOf(const CalibrationVerdict& verdict, const std::string& name) 
 TEST(Verdict, GoesDownButNeverUp) {
   CalibrationVerdict verdict;
   verdict.Mention("to know", false);
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kGood);
+  EXPECT_EQ(verdict.grade, Grade::kGood);
   EXPECT_EQ(verdict.Judged(), "Good.");
   verdict.Beware("to be careful");
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(verdict.grade, Grade::kBeware);
   EXPECT_EQ(verdict.Judged(), "To be used with care.");
-  verdict.grade = CalibrationGrade::kNotFound;
+  verdict.grade = Grade::kNotFound;
   verdict.Beware("more");
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kNotFound);
+  EXPECT_EQ(verdict.grade, Grade::kNotFound);
   EXPECT_THAT(verdict.reasons, ElementsAre("to know", "to be careful", "more"));
 }
 
@@ -43,9 +43,9 @@ TEST(Verdict, CountsMatterByTheirShare) {
   CalibrationVerdict verdict;
   verdict.MentionCount(0, 10, 0.1, "none");
   verdict.MentionCount(1, 10, 0.1, "a tenth");
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kGood);
+  EXPECT_EQ(verdict.grade, Grade::kGood);
   verdict.MentionCount(2, 10, 0.1, "a fifth");
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(verdict.grade, Grade::kBeware);
   EXPECT_THAT(verdict.reasons, ElementsAre("a tenth", "a fifth"));
   EXPECT_EQ(Counted(1, "view"), "1 view");
   EXPECT_EQ(Counted(3, "view"), "3 views");
@@ -79,7 +79,7 @@ PivotResult GoodPivot() {
 
 TEST(TipVerdict, IsGoodWhereAllPosesAgree) {
   const CalibrationVerdict verdict = JudgeTip(GoodPivot(), "tip.p_WE", "W");
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kGood);
+  EXPECT_EQ(verdict.grade, Grade::kGood);
   EXPECT_THAT(verdict.reasons, IsEmpty());
   EXPECT_EQ(ValueOf(verdict, "tip in W, tip.p_WE"), "(100.00, 0.00, 0.00) mm");
   EXPECT_THAT(verdict.says, HasSubstr("Good. The tip is known to 0.17 mm"));
@@ -90,10 +90,10 @@ TEST(TipVerdict, IsGoodWhereAllPosesAgree) {
 TEST(TipVerdict, SaysWhatIsWrong) {
   PivotResult r = GoodPivot();
   r.used = 19;
-  EXPECT_EQ(JudgeTip(r, "tip.p_WE", "W").grade, CalibrationGrade::kGood);
+  EXPECT_EQ(JudgeTip(r, "tip.p_WE", "W").grade, Grade::kGood);
   EXPECT_THAT(JudgeTip(r, "tip.p_WE", "W").reasons, Contains(HasSubstr("1 pose put the tip")));
   r.used = 15;
-  EXPECT_EQ(JudgeTip(r, "tip.p_WE", "W").grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(JudgeTip(r, "tip.p_WE", "W").grade, Grade::kBeware);
   r = GoodPivot();
   r.orientation_noise_scale = 3;
   EXPECT_THAT(JudgeTip(r, "tip.p_WE", "W").reasons, Contains(HasSubstr("scatter 3.0 times")));
@@ -106,7 +106,7 @@ TEST(TipVerdict, NamesWhatItDidNotFind) {
   PivotResult r;
   r.unobservable = "the poses hardly turn";
   const CalibrationVerdict verdict = JudgeTip(r, "tip.p_SE", "S");
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kNotFound);
+  EXPECT_EQ(verdict.grade, Grade::kNotFound);
   ASSERT_EQ(verdict.NotFoundByReason().size(), 1u);
   EXPECT_EQ(verdict.NotFoundByReason()[0].parameter, "tip.p_SE, pivot.p_R");
   EXPECT_THAT(verdict.values, IsEmpty());
@@ -120,7 +120,7 @@ TEST(EmVerdict, BewaresOfALateSensorAndOfScatter) {
   r.noise_scale = 1.0;
   r.rms_after_m = 2e-4;
   r.solution.covariance = 1e-8 * Eigen::MatrixXd::Identity(7, 7);
-  EXPECT_EQ(JudgeEm(r).grade, CalibrationGrade::kGood);
+  EXPECT_EQ(JudgeEm(r).grade, Grade::kGood);
   EXPECT_EQ(LagText(r), "");
   r.lag = {.late_s = 0.02, .sd_s = 0.001};
   EXPECT_THAT(JudgeEm(r).reasons, Contains(HasSubstr("the sensor is 20.0 ms behind")));
@@ -128,10 +128,10 @@ TEST(EmVerdict, BewaresOfALateSensorAndOfScatter) {
   r.lag = {};
   r.noise_scale = 4;
   EXPECT_THAT(JudgeEm(r).reasons, Contains(HasSubstr("scatter 4.0 times")));
-  EXPECT_EQ(JudgeEm(r).grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(JudgeEm(r).grade, Grade::kBeware);
   r.status = EmStatus::kUnobservable;
   r.message = "in a plane";
-  EXPECT_EQ(JudgeEm(r).grade, CalibrationGrade::kNotFound);
+  EXPECT_EQ(JudgeEm(r).grade, Grade::kNotFound);
   EXPECT_THAT(JudgeEm(r).reasons, ElementsAre("in a plane"));
 }
 
@@ -151,13 +151,13 @@ HandEyeResult GoodHandEye() {
 TEST(HandEyeVerdict, JudgesViewsNoiseAndWhatIsKnown) {
   HandEyeResult r = GoodHandEye();
   const auto judge = [&] { return JudgeHandEye(r, HandEyeCalibration(r)); };
-  EXPECT_EQ(judge().grade, CalibrationGrade::kGood);
+  EXPECT_EQ(judge().grade, Grade::kGood);
   EXPECT_EQ(judge().next,
             "turn it about x (1.00 mm would become 0.50 mm for a point on the board)");
   EXPECT_NE(ValueOf(judge(), "camera in R, cam0.T_RC"), "absent");
   for (int i = 0; i < 3; ++i) r.views[static_cast<std::size_t>(i)].used = false;
   EXPECT_THAT(judge().reasons, Contains(HasSubstr("3 views did not agree")));
-  EXPECT_EQ(judge().grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(judge().grade, Grade::kBeware);
   r = GoodHandEye();
   r.position_noise_scale = 5;
   EXPECT_THAT(judge().reasons, Contains(HasSubstr("the wrist scatters 5.0 times")));
@@ -166,7 +166,7 @@ TEST(HandEyeVerdict, JudgesViewsNoiseAndWhatIsKnown) {
   EXPECT_THAT(judge().reasons, Contains(HasSubstr("2.0 times as far off")));
   r = GoodHandEye();
   r.knows_camera = false;
-  EXPECT_EQ(judge().grade, CalibrationGrade::kNotFound);
+  EXPECT_EQ(judge().grade, Grade::kNotFound);
   EXPECT_THAT(judge().says, HasSubstr("not where the camera is"));
 }
 
@@ -186,16 +186,16 @@ StrainCalibration GoodStrain() {
 
 TEST(StrainVerdict, JudgesScatterAndHeldOutLoads) {
   StrainCalibration r = GoodStrain();
-  EXPECT_EQ(JudgeStrain(r).grade, CalibrationGrade::kGood);
+  EXPECT_EQ(JudgeStrain(r).grade, Grade::kGood);
   EXPECT_EQ(ValueOf(JudgeStrain(r), "most cross-talk"), "2.00 %");
   EXPECT_THAT(JudgeStrain(r).says, HasSubstr("0.1 mNm, 1.0 % of the largest"));
   r.chi2_per_dof = 9;
   EXPECT_THAT(JudgeStrain(r).reasons, Contains(HasSubstr("scatter 3.0 times")));
   r = GoodStrain();
   r.heldout_rms_Nm = 3e-4;
-  EXPECT_EQ(JudgeStrain(r).grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(JudgeStrain(r).grade, Grade::kBeware);
   r.gages_known = false;
-  EXPECT_EQ(JudgeStrain(r).grade, CalibrationGrade::kNotFound);
+  EXPECT_EQ(JudgeStrain(r).grade, Grade::kNotFound);
 }
 
 TEST(StiffnessVerdict, DoubtsAModelThatDoesNotExplainTheShapes) {
@@ -208,15 +208,15 @@ TEST(StiffnessVerdict, DoubtsAModelThatDoesNotExplainTheShapes) {
   r.port_noise_m = 3e-4;
   r.holds.resize(10);
   for (auto& hold : r.holds) hold.used = true;
-  EXPECT_EQ(JudgeStiffness(r).grade, CalibrationGrade::kGood);
+  EXPECT_EQ(JudgeStiffness(r).grade, Grade::kGood);
   EXPECT_THAT(JudgeStiffness(r).says, HasSubstr("known to 1 %"));
   r.port_shift_m = {0, 0.002, 0};
   EXPECT_THAT(StiffnessDoubts(r), ElementsAre(HasSubstr("2.00 mm from where it is registered")));
   r.status = StiffnessStatus::kModelIncomplete;
   EXPECT_THAT(StiffnessDoubts(r), Contains(HasSubstr("something else gives way too")));
-  EXPECT_EQ(JudgeStiffness(r).grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(JudgeStiffness(r).grade, Grade::kBeware);
   r.status = StiffnessStatus::kUnobservable;
-  EXPECT_EQ(JudgeStiffness(r).grade, CalibrationGrade::kNotFound);
+  EXPECT_EQ(JudgeStiffness(r).grade, Grade::kNotFound);
 }
 
 CameraCalibrationResult GoodCamera() {
@@ -243,17 +243,17 @@ CameraUncertainty Uncertain(double centre_px, double border_px) {
 TEST(CameraVerdict, JudgesCoverageAndHalves) {
   const CameraCalibrationResult r = GoodCamera();
   const CalibrationVerdict good = JudgeCamera(r, Uncertain(0.05, 0.1), {});
-  EXPECT_EQ(good.grade, CalibrationGrade::kGood);
+  EXPECT_EQ(good.grade, Grade::kGood);
   EXPECT_EQ(good.next, "hold the board upright (the mean would fall from 0.500 to 0.250 px)");
   EXPECT_EQ(ValueOf(good, "lens"), "opencv 5");
   EXPECT_EQ(ValueOf(good, "halves of the views differ by"), "absent");
   const CalibrationVerdict bare = JudgeCamera(r, Uncertain(0.05, 5), {});
-  EXPECT_EQ(bare.grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(bare.grade, Grade::kBeware);
   EXPECT_THAT(bare.reasons, Contains(HasSubstr("hardly covered")));
   const CalibrationVerdict halves =
       JudgeCamera(r, Uncertain(0.05, 0.1), ProjectionDifference{.rms_px = 2, .max_px = 4});
   EXPECT_THAT(halves.reasons, Contains(HasSubstr("not as modelled")));
-  EXPECT_EQ(halves.grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(halves.grade, Grade::kBeware);
 }
 
 TEST(CameraVerdict, TellsRejectedViewsAndABoardThatIsNotTrue) {
@@ -262,12 +262,12 @@ TEST(CameraVerdict, TellsRejectedViewsAndABoardThatIsNotTrue) {
   r.solution.shape.sd_m = 1e-4;
   r.solution.shape.offset_B[0] = {1e-4, 0, 0};
   const CalibrationVerdict verdict = JudgeCamera(r, {}, {});
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kGood);
+  EXPECT_EQ(verdict.grade, Grade::kGood);
   EXPECT_THAT(verdict.reasons, ElementsAre("1 view did not fit and do not count",
                                            HasSubstr("the board is not as described")));
   EXPECT_EQ(verdict.next, "");
   r.views_rejected = 4;
-  EXPECT_EQ(JudgeCamera(r, {}, {}).grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(JudgeCamera(r, {}, {}).grade, Grade::kBeware);
 }
 
 TEST(BudgetVerdict, SaysWhatToImproveAndWhatIsMissing) {
@@ -276,12 +276,12 @@ TEST(BudgetVerdict, SaysWhatToImproveAndWhatIsMissing) {
                                              {"pixels", 0.2, 0.1, true},
                                              {"total", 0.54, 0.14, true}};
   const CalibrationVerdict verdict = JudgeBudget(parts, {}, 50);
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kGood);
+  EXPECT_EQ(verdict.grade, Grade::kGood);
   EXPECT_THAT(verdict.next, HasSubstr("most is from the lens"));
   EXPECT_NE(ValueOf(verdict, "bending (if bending were corrected)"), "absent");
   EXPECT_THAT(verdict.says, HasSubstr("0.54 mm along"));
   const CalibrationVerdict missing = JudgeBudget(parts, {{"hand-eye", "not given"}}, 50);
-  EXPECT_EQ(missing.grade, CalibrationGrade::kBeware);
+  EXPECT_EQ(missing.grade, Grade::kBeware);
   EXPECT_THAT(missing.reasons, Contains(HasSubstr("1 part of the chain")));
   EXPECT_EQ(missing.not_found.at(0).parameter, "hand-eye");
 }

@@ -13,6 +13,7 @@
 #include "diagnosis/model/catalogue.h"
 #include "diagnosis/model/extended_effect.h"
 #include "diagnosis/model/extended_instrument.h"
+#include "diagnosis/model/latency.h"
 #include "estimation/shaft_rod.h"
 #include "testdata/hidden/draw.h"
 
@@ -190,18 +191,59 @@ TEST_F(ModelFile, BadFilesAreRefusedInOneLine) {
   EXPECT_THROW(diagnosis::ReadModel("/no/such/model.yaml"), InputError);
 }
 
-TEST(ExtendedInstrument, LatenciesMoveTheirStreamsOnly) {
+TEST(WithoutLatency, MovesStampsBeyondTolerance) {
   Recording recording;
   recording.wrist0.emplace().samples = {{100, {}}};
   recording.em0.emplace().samples = {{1'000'000'000, {}}};
   recording.vision0.emplace().tips = {{1'000'000'000, {}}};
   diagnosis::ExtendedModel model;
   model.effects = {{"camera_latency", {{"delay_s", {0.02}, {}}}}};
-  model.within_tolerance = {{"em_latency", {{"delay_s", {0.003}, {}}}}};
   const Recording moved = diagnosis::WithoutLatency(recording, model);
   EXPECT_EQ(moved.wrist0->samples[0].t_ns, 100);
-  EXPECT_EQ(moved.em0->samples[0].t_ns, 997'000'000);
+  EXPECT_EQ(moved.em0->samples[0].t_ns, 1'000'000'000);
   EXPECT_EQ(moved.vision0->tips[0].t_ns, 980'000'000);
+}
+
+// Sensors that move along x at 0.1 m/s and turn about z at 0.5 rad/s, stamped 2 +- 1 ms late.
+TEST(WithoutLatency, MovesValuesWithinTolerance) {
+  constexpr double kSpeed_m_s = 0.1, kTurning_rad_s = 0.5, kDelay_s = 0.002, kSd_s = 0.001;
+  const auto place = [](double t_s) { return Eigen::Vector3d(kSpeed_m_s * t_s, 0.02, 0.03); };
+  const auto turn = [](double t_s) { return ExpRotation({0.0, 0.0, kTurning_rad_s * t_s}); };
+  Recording recording;
+  recording.em0.emplace().position_noise_m = 3e-5;
+  recording.vision0.emplace();
+  for (int i = 0; i < 5; ++i) {
+    const double taken_s = 0.1 * i - kDelay_s;
+    const TimeNs stamp_ns = 100'000'000 * i;
+    recording.em0->samples.push_back(
+        {stamp_ns, {place(taken_s), Eigen::Quaterniond(turn(taken_s))}});
+    recording.vision0->tips.push_back(
+        {stamp_ns,
+         {TipStatus::kOk, place(taken_s), 1e-10 * Eigen::Matrix3d::Identity(),
+          Eigen::Vector3d(turn(taken_s).col(0))}});
+  }
+  recording.vision0->tips[4].value.status = TipStatus::kLost;
+  diagnosis::ExtendedModel model;
+  model.within_tolerance = {{"camera_latency", {{"delay_s", {kDelay_s}, {kSd_s}}}},
+                            {"em_latency", {{"delay_s", {kDelay_s}, {kSd_s}}}}};
+  const Recording right = diagnosis::WithoutLatency(recording, model);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(right.em0->samples[i].t_ns, recording.em0->samples[i].t_ns);
+    EXPECT_EQ(right.vision0->tips[i].t_ns, recording.em0->samples[i].t_ns);
+    const EmSample& em = right.em0->samples[i].value;
+    EXPECT_LT((em.p_RS - place(0.1 * i)).norm(), 1e-12);
+    EXPECT_LT((em.q_RS.toRotationMatrix() - turn(0.1 * i)).norm(), 1e-9);
+  }
+  EXPECT_NEAR(right.em0->position_noise_m, std::hypot(3e-5, kSpeed_m_s * kSd_s / std::sqrt(3.0)),
+              1e-12);
+  EXPECT_NEAR(right.em0->orientation_noise_rad, kTurning_rad_s * kSd_s / std::sqrt(3.0), 1e-9);
+  const TipObservation& tip = right.vision0->tips[2].value;
+  EXPECT_LT((tip.p_RE - place(0.2)).norm(), 1e-12);
+  EXPECT_LT((*tip.d_RE - turn(0.2).col(0)).norm(), 2e-6);  // a chord for an arc
+  EXPECT_NEAR(tip.covariance_m2(0, 0), 1e-10 + std::pow(kSpeed_m_s * kSd_s, 2), 1e-16);
+  EXPECT_NEAR(tip.covariance_m2(1, 1), 1e-10, 1e-16);
+  // Beside a lost tip there is no path.
+  EXPECT_EQ(right.vision0->tips[3].value.p_RE, recording.vision0->tips[3].value.p_RE);
 }
 
 TEST(ExtendedInstrument, AnEmptyModelChangesNothing) {

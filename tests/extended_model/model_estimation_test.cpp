@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "diagnosis/model/extended_instrument.h"
+#include "diagnosis/model/latency.h"
 #include "pipeline/estimate_recording.h"
 #include "tests/extended_model/model_of_label.h"
 

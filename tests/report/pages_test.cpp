@@ -199,12 +199,13 @@ TEST_F(Pages, LeadWithTheResult) {
                                 "(0.12 mm RMS)."));
   EXPECT_THAT(Page(), HasSubstr("the worst, straight-track, lets it go 5 mm astray."));
   Write("summary.json", R"({"command": "track", "version": "1", "frames": 120, "ok": 118,
-    "predicted": 2, "lost": 0, "tip_rms_error_m": 0.0001, "tip_max_error_m": 0.0004,
-    "tip_share_inside_95": 0.951})");
+    "verdict": {"grade": "beware", "says": "The tip was seen in 118 of 120 frames",
+      "reasons": ["the lens is bent"], "next": "calibrate the camera"}})");
   WriteTrackReport(folder_);
-  EXPECT_THAT(Page(), HasSubstr("The tip was seen in 118 of 120 frames. In 2 more it was "
-                                "predicted."));
-  EXPECT_THAT(Page(), HasSubstr("0.1 mm off (RMS), 0.4 mm at most; 95.1 %"));
+  EXPECT_THAT(Page(), HasSubstr("<section class=\"verdict beware\">\n<p class=\"says\">The tip was "
+                                "seen in 118 of 120 frames</p>"));
+  EXPECT_THAT(Page(), HasSubstr("<li>the lens is bent</li>"));
+  EXPECT_THAT(Page(), HasSubstr("<b>Next:</b> calibrate the camera."));
   EXPECT_LT(Page().find("The tip was seen in"), Page().find("<dl class=\"figures\">"));
 }
 

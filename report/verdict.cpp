@@ -1,0 +1,37 @@
+#include "report/verdict.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "report/report.h"
+
+namespace flextip::report {
+namespace {
+
+std::string Text(const nlohmann::ordered_json& object, const char* key) {
+  return object.contains(key) && object[key].is_string() ? object[key].get<std::string>() : "";
+}
+
+}  // namespace
+
+std::string VerdictHtml(const nlohmann::ordered_json& verdict) {
+  const std::string grade = Text(verdict, "grade");
+  std::string html =
+      fmt::format("<section class=\"verdict {}\">\n<p class=\"says\">{}</p>\n",
+                  grade == "good" ? "good" : "beware", EscapeHtml(Text(verdict, "says")));
+  if (verdict.contains("reasons") && !verdict["reasons"].empty()) {
+    html += "<ul class=\"reasons\">\n";
+    for (const auto& reason : verdict["reasons"]) {
+      html += fmt::format("<li>{}</li>\n", EscapeHtml(reason.get<std::string>()));
+    }
+    html += "</ul>\n";
+  }
+  const std::string next = Text(verdict, "next");
+  if (!next.empty()) {
+    html += fmt::format("<p class=\"advice\"><b>Next:</b> {}.</p>\n", EscapeHtml(next));
+  }
+  return html + "</section>\n";
+}
+
+}  // namespace flextip::report
