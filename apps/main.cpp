@@ -23,6 +23,7 @@ std::string Typed(int argc, char** argv) {
 void AddCommands(CLI::App& app, AppContext& context) {
   AddCalibrate(app, context);
   AddCompare(app, context);
+  AddCompletion(app, context);
   AddConvert(app, context);
   AddDetect(app, context);
   AddDiagnose(app, context);

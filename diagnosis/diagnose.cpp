@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/error.h"
 #include "diagnosis/evidence/probabilities.h"
@@ -73,6 +74,28 @@ Eigen::MatrixXd ReportedCovariance(const ParameterLayout& layout, const std::vec
   return J * covariance.topLeftCorner(theta.size(), theta.size()) * J.transpose();
 }
 
+/// Of the effects that are not `present`, those that act on sensors' readings and nothing else.
+std::vector<int> SensorBlocks(const Work& work, const std::vector<int>& present) {
+  std::set<int> sensors, others;
+  for (const ReplayedSample& sample : work.extended.Samples()) {
+    for (const InputChange::Column& column : sample.columns) {
+      const bool reading = column.input > sample_input::kTipCompliance &&
+                           column.input != sample_input::kEmDelay &&
+                           column.input != sample_input::kCameraDelay;
+      (reading ? sensors : others).insert(column.parameter);
+    }
+  }
+  std::vector<int> blocks;
+  for (int b = 0; b < work.layout.EffectCount(); ++b) {
+    const auto& block = work.layout.Blocks()[b];
+    bool alone = std::find(present.begin(), present.end(), b) == present.end();
+    for (int j = block.first; j < block.first + block.size; ++j)
+      alone = alone && sensors.contains(j) && !others.contains(j);
+    if (alone) blocks.push_back(b);
+  }
+  return blocks;
+}
+
 /// The catalogue's best answer, whatever the verdict: what the extended model is made of.
 void DescribeParameters(const Work& work, const Selection& selection,
                         const WeighedHypothesis& weighed, DiagnosisResult& result) {
@@ -84,6 +107,10 @@ void DescribeParameters(const Work& work, const Selection& selection,
     if (work.layout.Parameter(j).positive) theta[j] = std::max(0.0, theta[j]);
   result.covariance =
       ReportedCovariance(work.layout, weighed.hypothesis.effects, theta, covariance);
+  const std::vector<int> sensors = SensorBlocks(work, weighed.hypothesis.effects);
+  result.sensor_tolerance.covariance = ReportedCovariance(work.layout, sensors, theta, covariance);
+  for (const int b : sensors)
+    result.sensor_tolerance.effects.push_back(work.layout.Blocks()[b].effect->Name());
   for (int b = 0; b < work.layout.EffectCount(); ++b) {
     const auto& block = work.layout.Blocks()[b];
     EffectFit fit{

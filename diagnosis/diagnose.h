@@ -36,6 +36,13 @@ struct EffectFit {
   std::vector<ReportedParameter> parameters;
 };
 
+/// How surely effects within tolerance are known that act on sensors alone. Hand-eye and tag
+/// offset, say, are known together much better than each is.
+struct SensorTolerance {
+  std::vector<std::string> effects;
+  Eigen::MatrixXd covariance;  ///< of their reported numbers, in the order of `effects`
+};
+
 /// Errors on parts of the recording that were not fitted; channels without measurements are left
 /// out. Root mean squares in the channel's unit, of a position's or direction's whole vector and of
 /// single gages.
@@ -79,6 +86,7 @@ struct DiagnosisResult {
   std::vector<EffectFit> parameters;        ///< of the verdict's effects
   std::vector<EffectFit> within_tolerance;  ///< of all others, as far as the data moved them
   Eigen::MatrixXd covariance;  ///< of the verdict's parameters as listed, all numbers in order
+  SensorTolerance sensor_tolerance;                    ///< of `within_tolerance`
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< in R, which EM gradients are about
   TimeNs start_ns = 0;                                 ///< when t = 0, for phases and drifts
   ModelScore base, extended;

@@ -2,9 +2,9 @@
 // BOARD is chessboard:9x6:0.025 and its like (docs/usage/calibrate.md).
 #include <fmt/format.h>
 
-#include "calibration/boards/board_pictures.h"
-#include "calibration/verdict/camera.h"
-#include "core/error.h"
+#include <flextip/calibration/boards/board_pictures.h>
+#include <flextip/calibration/verdict/camera.h>
+#include <flextip/core/error.h>
 
 using namespace flextip;
 

@@ -1,7 +1,7 @@
 // One control cycle on made-up sensors: samples in, the wrist's command out.
 #include <fmt/format.h>
 
-#include "pipeline/instrument_controller.h"
+#include <flextip/pipeline/instrument_controller.h>
 
 using namespace flextip;
 

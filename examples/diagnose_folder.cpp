@@ -2,10 +2,10 @@
 //   diagnose_folder RECORDING [model.yaml]
 #include <cstdio>
 
-#include "core/error.h"
-#include "diagnosis/diagnose.h"
-#include "diagnosis/model/extended_model.h"
-#include "recording/recording_reader.h"
+#include <flextip/core/error.h>
+#include <flextip/diagnosis/diagnose.h>
+#include <flextip/diagnosis/model/extended_model.h>
+#include <flextip/recording/recording_reader.h>
 
 namespace {
 

@@ -1,11 +1,11 @@
 // Follows the tip in a video or a folder of pictures: follow_tip VIDEO CAMERA.yaml COLLAR.yaml
 #include <fmt/format.h>
 
-#include "core/error.h"
-#include "pipeline/instrument_tracker.h"
-#include "recording/cameras/camera_file.h"
-#include "recording/frames/frame_source.h"
-#include "recording/streams/sensor_streams.h"
+#include <flextip/core/error.h>
+#include <flextip/pipeline/instrument_tracker.h>
+#include <flextip/recording/cameras/camera_file.h>
+#include <flextip/recording/frames/frame_source.h>
+#include <flextip/recording/streams/sensor_streams.h>
 
 using namespace flextip;
 

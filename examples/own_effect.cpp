@@ -3,10 +3,10 @@
 //   own_effect RECORDING
 #include <fmt/format.h>
 
-#include "core/error.h"
-#include "diagnosis/diagnose.h"
-#include "diagnosis/effects/periodic.h"
-#include "recording/recording_reader.h"
+#include <flextip/core/error.h>
+#include <flextip/diagnosis/diagnose.h>
+#include <flextip/diagnosis/effects/periodic.h>
+#include <flextip/recording/recording_reader.h>
 
 namespace {
 

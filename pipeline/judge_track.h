@@ -12,7 +12,7 @@ namespace flextip {
 struct TrackTotals {
   long frames = 0, ok = 0, predicted = 0, lost = 0, tags = 0;
   double rms_px = 0.0;          ///< of the corners about the fit; 0 where pixels were fitted
-  std::string family;           ///< of the collar's tags
+  std::string family = {};      ///< of the collar's tags
   bool camera_has_pose = true;  ///< else the tips are in the camera's frame
   TipScore score = {};          ///< of the ok frames, where there is a truth
 };

@@ -31,6 +31,7 @@ inline void OnRun(CLI::App& command, AppContext& context, std::function<void()> 
 void AddCalibrate(CLI::App& app, AppContext& context);
 void AddCompare(CLI::App& app, AppContext& context);
 void AddDiagnose(CLI::App& app, AppContext& context);
+void AddCompletion(CLI::App& app, AppContext& context);
 void AddConvert(CLI::App& app, AppContext& context);
 void AddDetect(CLI::App& app, AppContext& context);
 void AddEstimate(CLI::App& app, AppContext& context);

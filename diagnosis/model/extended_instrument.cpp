@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.h"
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "diagnosis/model/extended_effect.h"
 #include "diagnosis/replay/geometry.h"
@@ -16,6 +18,8 @@ struct ExtendedInstrument::Acting {
   std::unique_ptr<Effect> effect;
   Eigen::VectorXd theta;
   EffectMemory memory{};
+  std::vector<std::vector<double>> reported = {};
+  Eigen::MatrixXd spread = {};  ///< of theta, each column one standard deviation; empty: exact
 };
 
 ExtendedInstrument::~ExtendedInstrument() = default;
@@ -32,18 +36,49 @@ ExtendedInstrument::ExtendedInstrument(const ExtendedModel& model, const Recordi
   set_.samples.resize(1);
   for (const auto* list : {&model.effects, &model.within_tolerance}) {
     for (const EffectFit& fit : *list) {
-      Acting acting{MakeEffectOfModel(fit.effect, own), {}};
+      Acting acting;
+      acting.effect = MakeEffectOfModel(fit.effect, own);
       if (!acting.effect) throw InputError("model: effect '" + fit.effect + "' is unknown");
       acting.effect->Parameters(set_);  // tells it what is nominal
       std::vector<std::vector<double>> values;
       for (const ReportedParameter& parameter : fit.parameters) values.push_back(parameter.value);
       acting.theta = acting.effect->FromReported(values);
+      acting.reported = values;
       needs_port_place_ |= acting.effect->NeedsPortPlace();
       shaft_.wrist_play_m += acting.effect->WristPlay(acting.theta);
       acting_.push_back(std::move(acting));
     }
   }
   columns_.reserve(64);
+  FactorTolerance(model);
+}
+
+/// theta's spread from the covariance of the reported numbers, as columns of its square root.
+void ExtendedInstrument::FactorTolerance(const ExtendedModel& model) {
+  const Eigen::MatrixXd& C = model.sensor_tolerance.covariance;
+  spread_.setZero(Eigen::NoChange, C.cols());
+  if (C.size() == 0) return;
+  const SymmetricEigen axes(C);
+  const Eigen::MatrixXd root = axes.vectors * axes.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  Eigen::Index row = 0;
+  for (const std::string& name : model.sensor_tolerance.effects) {
+    const auto acting = std::find_if(acting_.begin(), acting_.end(),
+                                     [&](const Acting& a) { return a.effect->Name() == name; });
+    FLEXTIP_CHECK(acting != acting_.end(), "a tolerance of an effect that the model has");
+    acting->spread.setZero(acting->theta.size(), C.cols());
+    for (std::vector<double>& numbers : acting->reported) {
+      for (double& number : numbers) {
+        const double at = number, step = 1e-3 * std::sqrt(C(row, row));
+        if (step > 0.0) {
+          number = at + step;
+          const Eigen::VectorXd moved = acting->effect->FromReported(acting->reported);
+          acting->spread += (moved - acting->theta) / step * root.row(row);
+          number = at;
+        }
+        ++row;
+      }
+    }
+  }
 }
 
 void ExtendedInstrument::SetSample(TimeNs t_ns, const Measurements& z,
@@ -64,6 +99,9 @@ void ExtendedInstrument::Apply(Acting& acting, double s_port_free_m, double ds_p
   columns_.clear();
   InputChange change(acting.theta.data(), 0, inputs_, columns_);
   acting.effect->Apply(acting.theta.data(), now, acting.memory, change);
+  if (acting.spread.size() == 0) return;
+  for (const InputChange::Column& column : columns_)
+    spread_.row(column.input) += column.value * acting.spread.row(column.parameter);
 }
 
 /// Where the port and the tip are with the friction of the last instant: what the next one's
@@ -83,6 +121,7 @@ void ExtendedInstrument::Advance(TimeNs t_ns, const Measurements& measured,
   if (!measured.p_RW.allFinite()) return;
   SetSample(t_ns, measured, f_tip_N);
   inputs_.setZero();
+  spread_.setZero();
   for (Acting& acting : acting_)
     if (!acting.effect->NeedsPortPlace()) Apply(acting, 0.0, 0.0);
   if (needs_port_place_ || !inputs_.segment<3>(kTagOffset).isZero(0.0)) {
@@ -107,8 +146,7 @@ void ExtendedInstrument::FillShaft() {
   shaft_.effects = EffectsOf(u, set_.samples[0].y_wrist);
 }
 
-void ExtendedInstrument::CorrectEm(EmMeasurement& em) const {
-  const SampleInputs& u = inputs_;
+void ExtendedInstrument::CorrectEm(const SampleInputs& u, EmMeasurement& em) const {
   const Eigen::Matrix3d back = ExpRotation(-u.segment<3>(kEmTurn));
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> G(u.data() + kEmGradient);
   // measured = centre + shift + R ((I + G) (p - centre) + offset)
@@ -122,8 +160,7 @@ void ExtendedInstrument::CorrectEm(EmMeasurement& em) const {
 
 /// Backwards through sensor_prediction's SeenTip and TrueTip; the yielding tip is the shaft's
 /// affair.
-void ExtendedInstrument::CorrectTip(Measurements& z) const {
-  const SampleInputs& u = inputs_;
+void ExtendedInstrument::CorrectTip(const SampleInputs& u, Measurements& z) const {
   TipObservation& tip = *z.tip;
   const Eigen::Vector3d p_RC = set_.has_camera ? set_.T_RC.p : set_.centre;
   const Eigen::Matrix3d vision_back = ExpRotation(-u.segment<3>(kVisionTurn));
@@ -151,19 +188,53 @@ void ExtendedInstrument::CorrectTip(Measurements& z) const {
   tip.d_RE = camera * focal * vision_back * *tip.d_RE;
 }
 
-Measurements ExtendedInstrument::Correct(const Measurements& measured) const {
+Measurements ExtendedInstrument::CorrectBy(const SampleInputs& u,
+                                           const Measurements& measured) const {
   Measurements z = measured;
-  if (z.em) CorrectEm(*z.em);
-  if (z.port_direction) {
-    z.port_direction = ExpRotation(-inputs_.segment<3>(kEmTurn)) * *z.port_direction;
-  }
-  if (z.tip && z.tip->status != TipStatus::kLost) CorrectTip(z);
+  if (z.em) CorrectEm(u, *z.em);
+  if (z.port_direction) z.port_direction = ExpRotation(-u.segment<3>(kEmTurn)) * *z.port_direction;
+  if (z.tip && z.tip->status != TipStatus::kLost) CorrectTip(u, z);
   if (z.strain) {
-    const Eigen::Vector4d gain = Eigen::Vector4d::Ones() + inputs_.segment<4>(kStrainGain);
-    z.strain->moments_Nm =
-        (z.strain->moments_Nm - inputs_.segment<4>(kStrainOffset)).cwiseQuotient(gain);
+    const Eigen::Vector4d gain = Eigen::Vector4d::Ones() + u.segment<4>(kStrainGain);
+    z.strain->moments_Nm = (z.strain->moments_Nm - u.segment<4>(kStrainOffset)).cwiseQuotient(gain);
     z.strain->moment_noise_Nm *= std::sqrt(gain.cwiseAbs2().cwiseInverse().mean());
   }
+  return z;
+}
+
+namespace {
+
+/// Adds the difference of the same readings, corrected in two ways, to the noise of `z`. Noises are
+/// the same for all axes: a difference is shared by them.
+void AddToNoise(const Measurements& moved, const Measurements& corrected, Measurements& z) {
+  const auto add = [](double& noise, double difference, int axes) {
+    noise = std::hypot(noise, difference / std::sqrt(axes));
+  };
+  if (z.em) {
+    const Pose &a = moved.em->T_RS, &b = corrected.em->T_RS;
+    add(z.em->position_noise_m, (a.p - b.p).norm(), 3);
+    add(z.em->orientation_noise_rad, LogRotation(a.R * b.R.transpose()).norm(), 3);
+  }
+  if (z.port_direction)
+    add(z.port_direction_noise_rad, (*moved.port_direction - *corrected.port_direction).norm(), 2);
+  if (z.tip && z.tip->status != TipStatus::kLost) {
+    const Eigen::Vector3d shift = moved.tip->p_RE - corrected.tip->p_RE;
+    z.tip->covariance_m2 += shift * shift.transpose();
+    if (z.tip->d_RE)
+      add(z.tip_direction_noise_rad, (*moved.tip->d_RE - *corrected.tip->d_RE).norm(), 2);
+  }
+  if (z.strain)
+    add(z.strain->moment_noise_Nm, (moved.strain->moments_Nm - corrected.strain->moments_Nm).norm(),
+        4);
+}
+
+}  // namespace
+
+Measurements ExtendedInstrument::Correct(const Measurements& measured) const {
+  const Measurements corrected = CorrectBy(inputs_, measured);
+  Measurements z = corrected;
+  for (Eigen::Index k = 0; k < spread_.cols(); ++k)
+    AddToNoise(CorrectBy(inputs_ + spread_.col(k), measured), corrected, z);
   return z;
 }
 

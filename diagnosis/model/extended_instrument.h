@@ -13,7 +13,8 @@
 namespace flextip::diagnosis {
 
 /// Made for one run: effects have a memory. Advance does the work of diagnosis/replay/geometry,
-/// Correct that of sensor_prediction, backwards.
+/// Correct that of sensor_prediction, backwards. The doubt in what is within tolerance of a sensor
+/// adds to the sensor's noise.
 class ExtendedInstrument : public InstrumentModel {
  public:
   /// Takes instrument, port, gravity and the camera's pose from `base`. Throws InputError for an
@@ -35,14 +36,18 @@ class ExtendedInstrument : public InstrumentModel {
   void Apply(Acting& acting, double s_port_free_m, double ds_port_dfriction_m);
   void SolveShaft();
   void FillShaft();
-  void CorrectEm(EmMeasurement& em) const;
-  void CorrectTip(Measurements& z) const;
+  void CorrectEm(const SampleInputs& u, EmMeasurement& em) const;
+  void CorrectTip(const SampleInputs& u, Measurements& z) const;
+  Measurements CorrectBy(const SampleInputs& u, const Measurements& measured) const;
+  void FactorTolerance(const ExtendedModel& model);
 
   SampleSet set_;  // of one sample: now
   TimeNs start_ns_;
   std::vector<Acting> acting_;
-  std::vector<InputChange::Column> columns_;  // not used; effects write them
+  std::vector<InputChange::Column> columns_;  // what the effects write of their derivatives
   SampleInputs inputs_ = SampleInputs::Zero();
+  /// What is within tolerance may move the inputs so, each column by one standard deviation.
+  Eigen::Matrix<double, sample_input::kCount, Eigen::Dynamic> spread_;
   ShaftChange shaft_;
   bool needs_port_place_ = false;
   double friction_ = 0.0;  // the last instant's

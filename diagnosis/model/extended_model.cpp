@@ -15,6 +15,7 @@ namespace {
 
 constexpr const char* kFormat = "flextip-model";
 constexpr int kVersion = 1;
+constexpr const char* kSensorSection = "within_tolerance_covariance";
 
 std::string Numbers(const std::vector<double>& values) {
   return values.size() == 1 ? YamlNumber(values[0]) : YamlNumbers(values);
@@ -36,16 +37,25 @@ std::string Section(const std::string& name, const std::vector<EffectFit>& effec
   return text;
 }
 
-std::string Covariance(const ExtendedModel& model) {
+std::string Covariance(const std::string& section, const std::vector<EffectFit>& effects,
+                       const Eigen::MatrixXd& C) {
   std::string names;
-  for (const std::string& name : NumberNames(model.effects)) {
+  for (const std::string& name : NumberNames(effects)) {
     names += (names.empty() ? "" : ", ") + YamlText(name);
   }
-  const Eigen::MatrixXd& C = model.covariance;
   std::vector<double> data;
   for (Eigen::Index i = 0; i < C.rows(); ++i)
     for (Eigen::Index j = 0; j < C.cols(); ++j) data.push_back(C(i, j));
-  return fmt::format("covariance:\n  parameters: [{}]\n  data: {}\n", names, YamlNumbers(data));
+  return fmt::format("{}:\n  parameters: [{}]\n  data: {}\n", section, names, YamlNumbers(data));
+}
+
+/// The effects within tolerance of which the model has a joint covariance, in its order.
+std::vector<EffectFit> SensorsOf(const ExtendedModel& model) {
+  std::vector<EffectFit> sensors;
+  for (const std::string& name : model.sensor_tolerance.effects)
+    for (const EffectFit& fit : model.within_tolerance)
+      if (fit.effect == name) sensors.push_back(fit);
+  return sensors;
 }
 
 void RejectUnknownKeys(const YamlMap& map) {
@@ -146,6 +156,17 @@ Eigen::MatrixXd ReadCovariance(const YamlMap& map, const std::vector<EffectFit>&
   return covariance;
 }
 
+/// The effects of "effect.parameter[i]", each once.
+std::vector<std::string> EffectsNamed(const std::vector<std::string>& numbers) {
+  std::vector<std::string> effects;
+  for (const std::string& number : numbers) {
+    const std::string effect = number.substr(0, number.find('.'));
+    if (std::find(effects.begin(), effects.end(), effect) == effects.end())
+      effects.push_back(effect);
+  }
+  return effects;
+}
+
 void CheckFormat(const YamlMap& top) {
   const std::string format = top.Text("format");
   if (format != kFormat) {
@@ -167,8 +188,8 @@ const EffectFit* ExtendedModel::Find(const std::string& effect) const {
 }
 
 ExtendedModel FromResult(const DiagnosisResult& result) {
-  return {result.parameters, result.within_tolerance, result.covariance, result.centre_m,
-          result.start_ns};
+  return {result.parameters,       result.within_tolerance, result.covariance,
+          result.sensor_tolerance, result.centre_m,         result.start_ns};
 }
 
 std::vector<std::string> NumberNames(const std::vector<EffectFit>& effects) {
@@ -191,7 +212,10 @@ std::string ModelYaml(const ExtendedModel& model) {
   text += Section("effects", model.effects, &ReportedParameter::value);
   text += Section("within_tolerance", model.within_tolerance, &ReportedParameter::value);
   text += Section("sd", with_sd, &ReportedParameter::sd);
-  return text + Covariance(model);
+  text += Covariance("covariance", model.effects, model.covariance);
+  const std::vector<EffectFit> sensors = SensorsOf(model);
+  if (sensors.empty()) return text;
+  return text + Covariance(kSensorSection, sensors, model.sensor_tolerance.covariance);
 }
 
 void WriteModel(const std::filesystem::path& file, const ExtendedModel& model) {
@@ -223,6 +247,11 @@ ExtendedModel ReadModel(const std::filesystem::path& file, const EffectMakers& o
   }
   if (top.Has("covariance"))
     model.covariance = ReadCovariance(top.Map("covariance"), model.effects);
+  if (top.Has(kSensorSection)) {
+    const YamlMap section = top.Map(kSensorSection);
+    model.sensor_tolerance.effects = EffectsNamed(section.Texts("parameters"));
+    model.sensor_tolerance.covariance = ReadCovariance(section, SensorsOf(model));
+  }
   RejectUnknownKeys(top);
   return model;
 }

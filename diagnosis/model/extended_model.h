@@ -16,6 +16,7 @@ struct ExtendedModel {
   std::vector<EffectFit> effects;           ///< beyond tolerance: the verdict's
   std::vector<EffectFit> within_tolerance;  ///< of the others, as far as the data moved them
   Eigen::MatrixXd covariance;               ///< of the numbers of `effects` in order; may be empty
+  SensorTolerance sensor_tolerance;         ///< of `within_tolerance`; may be empty
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< which EM gradients are about
   TimeNs start_ns = 0;                                 ///< t = 0 of phases and drifts
 

@@ -1,8 +1,8 @@
 // Uses the installed headers and libraries: a shaft's equilibrium, a step of a controller, a page.
-#include <control/controller.h>
-#include <core/version.h>
-#include <kinematics/rod.h>
-#include <report/report.h>
+#include <flextip/control/controller.h>
+#include <flextip/core/version.h>
+#include <flextip/kinematics/rod.h>
+#include <flextip/report/report.h>
 
 #include <cstdio>
 
