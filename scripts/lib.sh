@@ -11,7 +11,8 @@ BUILD_PACKAGES=(
 # More for tests, benchmarks, the thesis's figures and checks; opencv-doc holds real chessboard
 # pictures.
 TEST_PACKAGES=(
-  libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev clang clang-format clang-tidy opencv-doc
+  libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev clang clang-format clang-tidy groff-base
+  opencv-doc
 )
 NODE_PACKAGES=(nodejs npm)
 
