@@ -67,19 +67,6 @@ TEST_P(HealthyRecording, ItsModelKeepsTheTip) {
   printf("QUALITY seed %d load %d alone %d: without %.4f mm %.2f (%d), with %.4f mm %.2f (%d)\n",
          int(GetParam().seed), GetParam().with_load, GetParam().vision_alone, 1e3 * before.rms_m,
          before.nees, before.samples, 1e3 * after.rms_m, after.nees, after.samples);
-  for (const auto& fit : found.within_tolerance) {
-    for (int only = 0; only < 2; ++only) {
-    diagnosis::ExtendedModel less = found;
-    less.sensor_tolerance = {};
-    std::erase_if(less.within_tolerance, [&](const auto& f) { return (f.effect == fit.effect) != (only == 1); });
-    diagnosis::ExtendedInstrument m(less, recording);
-    InstrumentEstimator e(estimator);
-    const TipQuality q = QualityOf(EstimateRecording(diagnosis::WithoutLatency(recording, less), e, &m), hidden.truth);
-    printf("%s %s: %.4f mm %.2f;", only ? "only" : "without", fit.effect.c_str(), 1e3 * q.rms_m, q.nees);
-    for (auto& p : fit.parameters) for (std::size_t i = 0; i < p.value.size(); ++i) printf(" %s %g+-%g", p.name.c_str(), p.value[i], p.sd.empty() ? -1.0 : p.sd[i]);
-    printf("\n");
-    }
-  }
   EXPECT_LT(after.rms_m, 1.1 * before.rms_m);
   EXPECT_LT(after.nees, 1.25 * before.nees);
 }
