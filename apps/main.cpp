@@ -17,7 +17,9 @@ std::string Typed(int argc, char** argv) {
 }
 
 void AddCommands(CLI::App& app, AppContext& context) {
+  AddBoard(app, context);
   AddCalibrate(app, context);
+  AddCollar(app, context);
   AddConvert(app, context);
   AddDetect(app, context);
   AddDiagnose(app, context);

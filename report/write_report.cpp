@@ -28,6 +28,8 @@ const std::vector<CommandPage>& Pages() {
       {"shape", WriteShapeReport, {"shapes.csv"}},
       {"detect", WriteDetectReport, {"tags.csv"}},
       {"calibrate", WriteCalibrateReport},
+      {"board", WriteCalibrateReport},
+      {"collar", WriteCalibrateReport, {"figures.json", "drawing.png"}},
       {"diagnose", WriteDiagnoseReport, {"diagnosis.json", "residuals.csv"}},
       {"map", WriteMapReport, {"figures.json", "table.csv"}},
       {"reproduce", WriteReproduceReport, {"figures.json", "table.csv"}}};

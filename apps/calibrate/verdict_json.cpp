@@ -18,7 +18,8 @@ nlohmann::json VerdictJson(const CalibrationVerdict& verdict) {
   return {
       {"grade", Name(verdict.grade)}, {"says", verdict.says},
       {"reasons", verdict.reasons},   {"values", values},
-      {"next", verdict.next},         {"not_found", UnobservableJson(verdict.NotFoundByReason())}};
+      {"next", verdict.next},         {"not_found", UnobservableJson(verdict.NotFoundByReason())},
+      {"command", verdict.command}};
 }
 
 }  // namespace flextip

@@ -25,6 +25,7 @@ struct CalibrationVerdict {
   std::vector<Value> values;                         ///< found, and how well it fits
   std::vector<Calibration::Unobservable> not_found;  ///< as in calibration.yaml
   std::string next;                                  ///< the next step
+  std::string command;                               ///< and as a command to copy; may be empty
 
   /// Adds a reason to be careful, which takes a good grade down.
   void Beware(const std::string& reason);
