@@ -21,7 +21,9 @@ std::string Typed(int argc, char** argv) {
 }
 
 void AddCommands(CLI::App& app, AppContext& context) {
+  AddBoard(app, context);
   AddCalibrate(app, context);
+  AddCollar(app, context);
   AddCompare(app, context);
   AddCompletion(app, context);
   AddConvert(app, context);

@@ -21,6 +21,7 @@ struct Judgement {
   std::string says;                  ///< the answer in a sentence
   std::vector<std::string> reasons;  ///< to be careful, and to know
   std::string next;                  ///< the next step
+  std::string command;               ///< and as a command to copy; may be empty
 
   /// Adds a reason to be careful, which takes a good grade down.
   void Beware(const std::string& reason);

@@ -37,7 +37,8 @@ void Count(EstimateStatus status, EstimateTotals& totals) {
 std::string Millimetres(double m) { return fmt::format("{:.2g} mm", 1e3 * m); }
 
 Judgement NotFound(const std::string& says) {
-  return {Grade::kNotFound, says, {}, "flextip check RECORDING says which stream does not fit"};
+  return {
+      Grade::kNotFound, says, {}, "find the stream that does not fit", "flextip check RECORDING"};
 }
 
 }  // namespace
@@ -94,7 +95,8 @@ Judgement JudgeEstimates(const EstimateTotals& t) {
         "the fit misses the sensors by {:.1f} times their stated noise: the instrument or a sensor "
         "is not as the recording says",
         misfit));
-    judged.next = "flextip diagnose RECORDING -o DIAGNOSIS names the cause";
+    judged.next = "find the cause";
+    judged.command = "flextip diagnose RECORDING -o DIAGNOSIS";
   }
   const int failed = t.not_converged + t.bad_input;
   if (failed > 0) {

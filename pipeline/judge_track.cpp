@@ -14,7 +14,8 @@ Judgement NoTip(const TrackTotals& t) {
   if (t.tags == 0) {
     judged.says =
         fmt::format("No tag of the family {} was found in {} frames.", t.family, t.frames);
-    judged.next = "flextip detect PICTURE --family FAMILY tells which tags a picture shows";
+    judged.next = "look which tags a picture shows";
+    judged.command = "flextip detect PICTURE --family FAMILY";
   } else {
     judged.says = fmt::format(
         "{} tags of the family {} were found in {} frames, but no pose of the collar fits them.",
@@ -41,13 +42,15 @@ Judgement JudgeTrack(const TrackTotals& t) {
         fmt::format("corners are {:.1f} px from where the collar has them: the lens, or the tags' "
                     "sizes and places, are not as the files say",
                     t.rms_px));
-    judged.next = "calibrate the camera (flextip calibrate camera) and measure the printed collar";
+    judged.next = "measure the printed collar, and calibrate the camera";
+    judged.command = "flextip calibrate camera IMAGE... --board SPEC -o CAMERA";
   }
   if (!t.camera_has_pose) {
     judged.Beware(
         "the camera file states no pose T_RC: the tips are in the camera's frame, not in the "
         "robot's");
-    judged.next = "flextip calibrate hand-eye finds the camera's pose; pass it with --calibration";
+    judged.next = "find the camera's pose, and pass it with --calibration";
+    judged.command = "flextip calibrate hand-eye RECORDING -o HAND_EYE";
   }
   if (t.score.frames > 0) {
     judged.Mention(fmt::format("against the truth the tip was {:.3g} mm off (RMS), {:.3g} mm at "

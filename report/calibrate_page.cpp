@@ -1,4 +1,4 @@
-// The page of flextip calibrate: verdict, figures, pictures, then every number.
+// The page of flextip calibrate, collar and board: verdict, figures, pictures, then every number.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,6 +26,8 @@ constexpr std::size_t kResiduals = 400;  // rows of residuals.csv that a page sh
 
 std::string TitleOf(const std::string& command) {
   static const std::map<std::string, std::string> titles = {
+      {"board", "Calibration board"},
+      {"collar", "Tag collar"},
       {"calibrate budget", "Error budget of the tip"},
       {"calibrate camera", "Camera calibration"},
       {"calibrate em", "EM calibration"},
@@ -37,6 +39,9 @@ std::string TitleOf(const std::string& command) {
   const auto it = titles.find(command);
   return it == titles.end() ? "Calibration" : it->second;
 }
+
+/// Tells whether the command's result is a thing, which is shown before anything else.
+bool IsDrawn(const std::string& command) { return command == "collar" || command == "board"; }
 
 std::string Text(const Json& object, const char* key) {
   return object.contains(key) && object[key].is_string() ? object[key].get<std::string>() : "";
@@ -98,7 +103,8 @@ void AddResiduals(Report& report, const fs::path& file) {
 }  // namespace
 
 void WriteCalibrateReport(const fs::path& folder) {
-  Report report = TitledPage(folder, TitleOf(CommandOf(folder)));
+  const std::string command = CommandOf(folder);
+  Report report = TitledPage(folder, TitleOf(command));
   const Json summary = Json::parse(ReadBytes(folder / "summary.json"));
   const Json verdict = summary.value("verdict", Json::object());
   if (!verdict.empty()) {
@@ -107,14 +113,15 @@ void WriteCalibrateReport(const fs::path& folder) {
     report.AddHtml(NotFoundHtml(verdict.value("not_found", Json::array())));
   }
   report.AddWarnings(Warnings(summary, verdict));
-  if (fs::exists(folder / "figures.json")) {
-    report.AddHeading("Where, and by how much");
-    report.AddFigureFile(folder / "figures.json");
-  }
   auto pictures = PicturesIn(folder, kPictures);
   const auto views = PicturesIn(folder / "overlay", kPictures);
   pictures.insert(pictures.end(), views.begin(), views.end());
-  AddPictureFiles(report, "Pictures", pictures);
+  if (IsDrawn(command)) AddPictureFiles(report, "Drawing and print", pictures);
+  if (fs::exists(folder / "figures.json")) {
+    report.AddHeading(IsDrawn(command) ? "Accuracy to expect" : "Where, and by how much");
+    report.AddFigureFile(folder / "figures.json");
+  }
+  if (!IsDrawn(command)) AddPictureFiles(report, "Pictures", pictures);
   report.AddHeading("All numbers");
   AddSummaryNumbers(report, folder);
   AddSummaryTables(report, folder);

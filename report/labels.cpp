@@ -70,6 +70,20 @@ const std::map<std::string, std::string>& Labels() {
       {"scored_samples", "samples compared with the truth"},
       // shape
       {"shape ok", "shapes solved"},
+      // collar
+      {"tag_px", "side of a tag"},
+      {"tip_rms_m", "tip error, RMS"},
+      {"tip_worst_roll_m", "at the worst roll"},
+      {"direction_deg", "direction error, RMS"},
+      {"least_tip_m", "least possible, tip"},
+      {"least_direction_deg", "least possible, direction"},
+      {"tag_with_rim_m", "tag with its white rim"},
+      {"across_faces_m", "mount across its faces"},
+      {"outer_diameter_m", "over the corners, with paper"},
+      {"readable_to_m", "read up to"},
+      {"fills_view_at_m", "fills the view at"},
+      {"cell_m", "smallest part"},
+      {"collar noise_grey", "noise of a pixel"},
       // map
       {"without_measures", "points without measures"},
       {"largest_norm_G", "largest ||G||"}};

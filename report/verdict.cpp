@@ -31,6 +31,8 @@ std::string VerdictHtml(const nlohmann::ordered_json& verdict) {
   if (!next.empty()) {
     html += fmt::format("<p class=\"advice\"><b>Next:</b> {}.</p>\n", EscapeHtml(next));
   }
+  const std::string command = Text(verdict, "command");
+  if (!command.empty()) html += fmt::format("<pre>{}</pre>\n", EscapeHtml(command));
   return html + "</section>\n";
 }
 

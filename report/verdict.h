@@ -6,7 +6,7 @@
 
 namespace flextip::report {
 
-/// Returns the head for summary.json's `verdict`: {grade, says, reasons, next}.
+/// Returns the head for summary.json's `verdict`: {grade, says, reasons, next, command}.
 std::string VerdictHtml(const nlohmann::ordered_json& verdict);
 
 }  // namespace flextip::report

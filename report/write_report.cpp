@@ -29,6 +29,8 @@ const std::vector<CommandPage>& Pages() {
       {"detect", WriteDetectReport, {"tags.csv"}},
       {"calibrate", WriteCalibrateReport},
       {"compare", WriteCompareReport, {"figures.json"}},
+      {"board", WriteCalibrateReport},
+      {"collar", WriteCalibrateReport, {"figures.json", "drawing.png"}},
       {"diagnose", WriteDiagnoseReport, {"diagnosis.json", "residuals.csv"}},
       {"map", WriteMapReport, {"figures.json", "table.csv"}},
       {"reproduce", WriteReproduceReport, {"figures.json", "table.csv"}}};

@@ -9,10 +9,10 @@ BUILD_PACKAGES=(
   pkg-config
 )
 # More for tests, benchmarks, the thesis's figures and checks; opencv-doc holds real chessboard
-# pictures.
+# pictures, poppler-utils turns printed pages into pictures.
 TEST_PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev clang clang-format clang-tidy groff-base
-  opencv-doc
+  opencv-doc poppler-utils
 )
 NODE_PACKAGES=(nodejs npm)
 

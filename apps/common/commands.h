@@ -28,7 +28,9 @@ inline void OnRun(CLI::App& command, AppContext& context, std::function<void()> 
 //   command.add_option(...);
 //   command.footer("Example:\n  flextip track RECORDING -o OUT");
 //   OnRun(command, context, [options, &context] { RunTrack(*options, context); });
+void AddBoard(CLI::App& app, AppContext& context);
 void AddCalibrate(CLI::App& app, AppContext& context);
+void AddCollar(CLI::App& app, AppContext& context);
 void AddCompare(CLI::App& app, AppContext& context);
 void AddDiagnose(CLI::App& app, AppContext& context);
 void AddCompletion(CLI::App& app, AppContext& context);

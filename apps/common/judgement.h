@@ -8,7 +8,7 @@
 
 namespace flextip {
 
-/// Returns {grade, says, reasons, next}, the head of a page.
+/// Returns {grade, says, reasons, next, command}, the head of a page.
 nlohmann::json JudgementJson(const Judgement& judged);
 
 /// Prints the answer and the next step, and reasons to be careful on stderr as "beware: ...".

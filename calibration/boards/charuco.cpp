@@ -193,6 +193,15 @@ void RefineEach(const Image& grey, const BoardSpec& board, BoardSighting& seen) 
 
 void CheckCharuco(const BoardSpec& board) { DictionaryOf(board); }
 
+CharucoMarker ReadCharucoMarker(const BoardSpec& board, int id) {
+  const auto dictionary = DictionaryOf(board);
+  CharucoMarker marker{.cells = dictionary->markerSize + 2};
+  cv::Mat_<std::uint8_t> drawn;  // a pixel a cell
+  cv::aruco::drawMarker(dictionary, id, marker.cells, drawn, 1);
+  for (const std::uint8_t value : drawn) marker.black.push_back(value < 128);
+  return marker;
+}
+
 std::vector<Eigen::Vector3d> CharucoPoints(const BoardSpec& board) {
   std::vector<Eigen::Vector3d> points;
   for (int row = 1; row < board.rows; ++row) {

@@ -17,4 +17,17 @@ std::vector<Eigen::Vector3d> CharucoPoints(const BoardSpec& board);
 /// Throws InputError as FindCharuco.
 void CheckCharuco(const BoardSpec& board);
 
+/// A marker with its black border: `cells` x `cells`, as it is read.
+struct CharucoMarker {
+  int cells = 0;
+  std::vector<bool> black = {};  ///< rows from the top
+
+  bool IsBlack(int column, int row) const {
+    return black[static_cast<std::size_t>(row) * cells + column];
+  }
+};
+
+/// Returns the marker of that id in the board's dictionary. Throws InputError as FindCharuco.
+CharucoMarker ReadCharucoMarker(const BoardSpec& board, int id);
+
 }  // namespace flextip

@@ -76,6 +76,16 @@ void Canvas::Fill(const std::vector<Place>& corners, const std::string& color, d
   cairo_fill(context_.get());
 }
 
+void Canvas::FillTogether(const std::vector<std::pair<Place, Place>>& rectangles,
+                          const std::string& color) {
+  Color(color);
+  cairo_new_path(context_.get());
+  for (const auto& [a, b] : rectangles) {
+    cairo_rectangle(context_.get(), a.x, a.y, b.x - a.x, b.y - a.y);
+  }
+  cairo_fill(context_.get());
+}
+
 void Canvas::Disc(Place middle, double radius, const std::string& color, bool filled) {
   Color(color);
   cairo_new_path(context_.get());

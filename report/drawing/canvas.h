@@ -1,16 +1,19 @@
 // A picture file to draw on: PNG, SVG or PDF by the ending of its name (cairo).
 #pragma once
 
-#include <cairo.h>
-
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
+
+struct _cairo;  // cairo's
+struct _cairo_surface;
 
 namespace flextip::report {
 
-/// A place in the picture, in px from its top left corner; y points down.
+/// A place in the picture, in px from its top left corner; y points down. A px of a PDF is a point,
+/// 1/72 inch.
 struct Place {
   double x = 0.0, y = 0.0;
 };
@@ -35,6 +38,9 @@ class Canvas {
             bool dashed = false);
   /// Fills a polygon.
   void Fill(const std::vector<Place>& corners, const std::string& color, double opacity = 1.0);
+  /// Fills rectangles given by opposite corners, as one shape: no seams where they touch.
+  void FillTogether(const std::vector<std::pair<Place, Place>>& rectangles,
+                    const std::string& color);
   /// Draws a disc, or a ring of width 1.5 px where not `filled`.
   void Disc(Place middle, double radius, const std::string& color, bool filled = true);
   void Text(const std::string& text, Place at, const TextStyle& style = {});
@@ -53,8 +59,8 @@ class Canvas {
   void Path(const std::vector<Place>& places);
 
   std::filesystem::path file_;
-  std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
-  std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
+  std::unique_ptr<_cairo_surface, void (*)(_cairo_surface*)> surface_;
+  std::unique_ptr<_cairo, void (*)(_cairo*)> context_;
 };
 
 }  // namespace flextip::report

@@ -34,7 +34,7 @@ TEST(JudgeEstimates, AMisfitBeyondTheNoiseIsNamed) {
   const Judgement judged = JudgeEstimates(totals);
   EXPECT_EQ(judged.grade, Grade::kBeware);
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("by 3.0 times their stated noise")));
-  EXPECT_THAT(judged.next, HasSubstr("flextip diagnose"));
+  EXPECT_THAT(judged.command, HasSubstr("flextip diagnose"));
 }
 
 TEST(JudgeEstimates, AnAbsurdMisfitIsNoAnswer) {
@@ -43,7 +43,7 @@ TEST(JudgeEstimates, AnAbsurdMisfitIsNoAnswer) {
   const Judgement judged = JudgeEstimates(totals);
   EXPECT_EQ(judged.grade, Grade::kNotFound);
   EXPECT_THAT(judged.says, HasSubstr("contradict each other: the fit misses them by 1055 times"));
-  EXPECT_THAT(judged.next, HasSubstr("flextip check"));
+  EXPECT_THAT(judged.command, HasSubstr("flextip check"));
 }
 
 TEST(JudgeEstimates, FailuresCount) {
@@ -102,7 +102,7 @@ TEST(JudgeTrack, TheWrongFamilyIsNoAnswer) {
   const Judgement judged = JudgeTrack({.frames = 60, .lost = 60, .family = "tag25h9"});
   EXPECT_EQ(judged.grade, Grade::kNotFound);
   EXPECT_EQ(judged.says, "No tag of the family tag25h9 was found in 60 frames.");
-  EXPECT_THAT(judged.next, HasSubstr("flextip detect"));
+  EXPECT_THAT(judged.command, HasSubstr("flextip detect"));
 }
 
 TEST(JudgeTrack, TagsThatFitNoCollarAreNoAnswer) {
@@ -117,7 +117,7 @@ TEST(JudgeTrack, ACameraWithoutAPoseIsSaidSo) {
       JudgeTrack({.frames = 60, .ok = 60, .family = "tag36h11", .camera_has_pose = false});
   EXPECT_EQ(judged.grade, Grade::kBeware);
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("in the camera's frame")));
-  EXPECT_THAT(judged.next, HasSubstr("flextip calibrate hand-eye"));
+  EXPECT_THAT(judged.command, HasSubstr("flextip calibrate hand-eye"));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ const std::map<std::string, Names>& Arrows() {
   static const Names models{"core", "kinematics", "estimation", "control", "vision", "recording"};
   static const Names libraries{"core",      "kinematics", "estimation",  "control",    "vision",
                                "recording", "pipeline",   "calibration", "simulation", kClosedLoop,
-                               "diagnosis", "report",     "workspace"};
+                               "diagnosis", "report",     "workspace",   "targets"};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
@@ -42,6 +42,7 @@ const std::map<std::string, Names>& Arrows() {
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording", "report"}},
+      {"targets", {"core", "calibration", "vision", "report"}},
       {"reproduction",
        {"core", "kinematics", "estimation", "control", "pipeline", "recording", "simulation",
         kClosedLoop, "workspace", "report", "apps"}},
