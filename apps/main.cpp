@@ -18,6 +18,7 @@ std::string Typed(int argc, char** argv) {
 
 void AddCommands(CLI::App& app, AppContext& context) {
   AddCalibrate(app, context);
+  AddCheck(app, context);
   AddConvert(app, context);
   AddDetect(app, context);
   AddDiagnose(app, context);

@@ -29,6 +29,7 @@ inline void OnRun(CLI::App& command, AppContext& context, std::function<void()> 
 //   command.footer("Example:\n  flextip track RECORDING -o OUT");
 //   OnRun(command, context, [options, &context] { RunTrack(*options, context); });
 void AddCalibrate(CLI::App& app, AppContext& context);
+void AddCheck(CLI::App& app, AppContext& context);
 void AddDiagnose(CLI::App& app, AppContext& context);
 void AddConvert(CLI::App& app, AppContext& context);
 void AddDetect(CLI::App& app, AppContext& context);
