@@ -23,6 +23,7 @@ std::string Typed(int argc, char** argv) {
 void AddCommands(CLI::App& app, AppContext& context) {
   AddBoard(app, context);
   AddCalibrate(app, context);
+  AddCheck(app, context);
   AddCollar(app, context);
   AddCompare(app, context);
   AddCompletion(app, context);

@@ -54,6 +54,14 @@ Lead SimulateLead(const Json& summary) {
   return lead;
 }
 
+Lead CheckLead(const Json& summary) {
+  if (!Has(summary, "wrong") || !Has(summary, "doubtful")) return {};
+  const double wrong = Number(summary, "wrong"), doubtful = Number(summary, "doubtful");
+  if (wrong + doubtful == 0.0) return {.says = "Nothing was found: the streams fit one another."};
+  return {.says = fmt::format("{:.0f} wrong, {:.0f} doubtful.", wrong, doubtful),
+          .more = "Each finding has the line that mends it, where one is known."};
+}
+
 /// The tip and the port's force of a single shape, by its row of shapes.csv.
 std::string SingleShape(const std::filesystem::path& table) {
   if (!std::filesystem::exists(table)) return "";
@@ -120,6 +128,7 @@ Lead LeadOf(const std::filesystem::path& folder) {
   const std::string command =
       summary.contains("command") && summary["command"].is_string() ? summary["command"] : "";
   if (command == "simulate") return SimulateLead(summary);
+  if (command == "check") return CheckLead(summary);
   if (command == "shape") return ShapeLead(summary, folder);
   if (command == "detect") return DetectLead(summary);
   if (command == "map") return MapLead(summary);

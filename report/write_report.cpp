@@ -25,6 +25,7 @@ const std::vector<CommandPage>& Pages() {
       {"simulate", WriteSimulateReport},
       {"track", WriteTrackReport, {"vision0/data.csv", "frames.csv"}},
       {"estimate", WriteEstimateReport, {"state0/data.csv"}},
+      {"check", WriteCheckReport},
       {"shape", WriteShapeReport, {"shapes.csv"}},
       {"detect", WriteDetectReport, {"tags.csv"}},
       {"calibrate", WriteCalibrateReport},

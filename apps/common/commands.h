@@ -30,6 +30,7 @@ inline void OnRun(CLI::App& command, AppContext& context, std::function<void()> 
 //   OnRun(command, context, [options, &context] { RunTrack(*options, context); });
 void AddBoard(CLI::App& app, AppContext& context);
 void AddCalibrate(CLI::App& app, AppContext& context);
+void AddCheck(CLI::App& app, AppContext& context);
 void AddCollar(CLI::App& app, AppContext& context);
 void AddCompare(CLI::App& app, AppContext& context);
 void AddDiagnose(CLI::App& app, AppContext& context);

@@ -22,9 +22,10 @@ Names With(Names names, const Names& more) {
 /// The closed loop is a folder of its own: it joins the plant with the controllers.
 const std::map<std::string, Names>& Arrows() {
   static const Names models{"core", "kinematics", "estimation", "control", "vision", "recording"};
-  static const Names libraries{"core",      "kinematics", "estimation",  "control",    "vision",
-                               "recording", "pipeline",   "calibration", "simulation", kClosedLoop,
-                               "diagnosis", "report",     "workspace",   "targets"};
+  static const Names libraries{"core",        "kinematics", "estimation", "control",
+                               "vision",      "recording",  "pipeline",   "plausibility",
+                               "calibration", "simulation", kClosedLoop,  "diagnosis",
+                               "report",      "workspace",  "targets"};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
@@ -33,6 +34,7 @@ const std::map<std::string, Names>& Arrows() {
       {"control", {"core", "kinematics", "estimation"}},
       {"vision", {"core"}},
       {"recording", {"core"}},
+      {"plausibility", {"core", "vision", "recording"}},
       {"pipeline", models},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
       {"simulation", {"core", "recording", "vision"}},

@@ -1,0 +1,32 @@
+// How far one quantity lags behind another.
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+#include <optional>
+
+#include "core/time_series.h"
+
+namespace flextip::plausibility {
+
+/// Up to three numbers at a time (the others zero); empty where they are not known.
+using VectorAt = std::function<std::optional<Eigen::Vector3d>(TimeNs)>;
+
+struct Lag {
+  double seconds = 0.0;  ///< the second quantity at t + seconds goes with the first at t
+  double correlation = 0.0, correlation_at_zero = 0.0;
+
+  /// Returns whether the lag explains far more than no lag does.
+  bool IsClear() const;
+};
+
+struct LagSearch {
+  TimeNs begin_ns = 0, end_ns = 0;  ///< times of the first quantity
+  double around_s = 0.0, reach_s = 60.0;
+};
+
+/// Returns the lag with the best correlation, to 0.02 s; empty with fewer than 30 common times, or
+/// fewer than 0.4 of those that are known of `a`.
+std::optional<Lag> FindLag(const VectorAt& a, const VectorAt& b, const LagSearch& search);
+
+}  // namespace flextip::plausibility
