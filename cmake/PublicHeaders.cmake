@@ -46,6 +46,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   core/error.h
   core/image.h
   core/instrument.h
+  core/judgement.h
   core/linear_algebra.h
   core/matrix_types.h
   core/mean_sd.h
@@ -60,6 +61,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   diagnosis/diagnose.h
   diagnosis/effects/periodic.h
   diagnosis/evidence/residual_memory.h
+  diagnosis/judge_diagnosis.h
   diagnosis/model/catalogue.h
   diagnosis/model/effect.h
   diagnosis/model/extended_instrument.h
@@ -88,6 +90,8 @@ set(FLEXTIP_PUBLIC_HEADERS
   pipeline/instrument_controller.h
   pipeline/instrument_estimator.h
   pipeline/instrument_tracker.h
+  pipeline/judge_estimates.h
+  pipeline/judge_track.h
   pipeline/sensor_readings.h
   pipeline/tip_predictor.h
   recording/calibrations/em_field.h

@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "apps/common/commands.h"
+#include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/common/recording_input.h"
 #include "apps/diagnose/result_files.h"
 #include "core/error.h"
 #include "diagnosis/diagnose.h"
+#include "diagnosis/judge_diagnosis.h"
 #include "diagnosis/model/catalogue.h"
 #include "diagnosis/model/extended_model.h"
 #include "recording/text/text.h"
@@ -49,24 +51,6 @@ bool IsKnown(const diagnosis::DiagnosisResult& result) {
          result.verdict != diagnosis::Verdict{"unknown"};
 }
 
-void PrintAnswer(const diagnosis::DiagnosisResult& result, const Options& options) {
-  fmt::print("{} ({:.0f} %)", diagnosis::Joined(result.verdict),
-             100 * result.probabilities[0].probability);
-  for (std::size_t i = 0; i < result.indistinguishable.size(); ++i) {
-    const auto& group = result.indistinguishable[i];
-    if (group.size() > 1)
-      fmt::print("; {} could as well be {}", group[0],
-                 fmt::join(group.begin() + 1, group.end(), " or "));
-  }
-  if (result.gain.measured)
-    fmt::print("; held-out error {:.2f} of the base's", result.gain.heldout_error_ratio);
-  fmt::print("\n");
-  for (const std::string& warning : result.warnings) fmt::print("beware: {}\n", warning);
-  if (!result.separating_motion.empty())
-    fmt::print("to tell them apart: {}\n", result.separating_motion);
-  fmt::print("{}\n", (options.input.out / "report.html").string());
-}
-
 void CheckNames(const std::vector<std::string>& effects) {
   for (const std::string& name : effects)
     if (!diagnosis::MakeEffect(name))
@@ -96,12 +80,16 @@ void Run(const Options& options, bool quiet) {
                             {"converged", result.converged},
                             {"streams_not_used", read.NotUsed()}};
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
+  const Judgement judged = diagnosis::JudgeDiagnosis(result);
+  summary["verdict"] = JudgementJson(judged);
   output.WriteSummary(summary);
   report::WriteDiagnoseReport(output.folder());
   output.Commit();
+  PrintJudgement(judged, quiet);
+  RequireFound(judged, options.input.out);
   if (quiet) return;
-  PrintAnswer(result, options);
-  if (!read.NotUsed().empty()) fmt::print("not used: {}\n", read.NotUsed());
+  if (!read.NotUsed().empty()) fmt::print("Not used: {}\n", read.NotUsed());
+  fmt::print("{}\n", (options.input.out / "report.html").string());
 }
 
 }  // namespace

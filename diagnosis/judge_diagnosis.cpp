@@ -1,0 +1,49 @@
+#include "diagnosis/judge_diagnosis.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace flextip::diagnosis {
+namespace {
+
+constexpr double kAbsurd = 1e4;  // chi-squared per degree of freedom of the extended model
+
+std::string AnswerOf(const DiagnosisResult& result) {
+  std::string says = fmt::format("{} ({:.0f} %)", Joined(result.verdict),
+                                 100.0 * result.probabilities[0].probability);
+  for (const auto& group : result.indistinguishable) {
+    if (group.size() < 2) continue;
+    says += fmt::format("; {} could as well be {}", group[0],
+                        fmt::join(group.begin() + 1, group.end(), " or "));
+  }
+  if (result.gain.measured)
+    says += fmt::format("; held-out error {:.2f} of the base's", result.gain.heldout_error_ratio);
+  return says + ".";
+}
+
+}  // namespace
+
+Judgement JudgeDiagnosis(const DiagnosisResult& result) {
+  Judgement judged;
+  if (result.extended.chi2_per_dof > kAbsurd) {
+    judged.grade = Grade::kNotFound;
+    judged.says = fmt::format(
+        "No model of this instrument comes near the recording: the best misses the sensors by "
+        "{:.0f} times their noise.",
+        std::sqrt(result.extended.chi2_per_dof));
+    judged.next = "find the stream that does not fit";
+    judged.command = "flextip check RECORDING";
+    return judged;
+  }
+  judged.says = AnswerOf(result);
+  for (const std::string& warning : result.warnings) judged.Beware(warning);
+  if (!result.converged)
+    judged.Beware("the search did not come to rest: more data may change the answer");
+  if (!result.separating_motion.empty())
+    judged.next = "to tell the alternatives apart, record " + result.separating_motion;
+  return judged;
+}
+
+}  // namespace flextip::diagnosis

@@ -1,0 +1,53 @@
+#include "diagnosis/judge_diagnosis.h"
+
+#include <gmock/gmock.h>
+
+namespace flextip::diagnosis {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+DiagnosisResult Found() {
+  DiagnosisResult result;
+  result.verdict = {"length"};
+  result.probabilities = {{{"length"}, 0.72, 0.0}, {{"tag_offset"}, 0.2, 0.0}};
+  result.converged = true;
+  result.extended.chi2_per_dof = 1.1;
+  return result;
+}
+
+TEST(JudgeDiagnosis, SaysTheAnswerAndItsAlternatives) {
+  DiagnosisResult result = Found();
+  EXPECT_EQ(JudgeDiagnosis(result).says, "length (72 %).");
+  EXPECT_EQ(JudgeDiagnosis(result).grade, Grade::kGood);
+  result.indistinguishable = {{"length", "tag_offset"}};
+  result.separating_motion = "a full turn about the shaft";
+  const Judgement judged = JudgeDiagnosis(result);
+  EXPECT_EQ(judged.says, "length (72 %); length could as well be tag_offset.");
+  EXPECT_THAT(judged.next, HasSubstr("record a full turn about the shaft"));
+  EXPECT_THAT(judged.reasons, IsEmpty());
+}
+
+TEST(JudgeDiagnosis, WarningsAndARestlessSearchAreReasonsToBeCareful) {
+  DiagnosisResult result = Found();
+  result.warnings = {"3 of 400 samples are far"};
+  result.converged = false;
+  const Judgement judged = JudgeDiagnosis(result);
+  EXPECT_EQ(judged.grade, Grade::kBeware);
+  EXPECT_THAT(judged.reasons,
+              ElementsAre("3 of 400 samples are far", HasSubstr("did not come to rest")));
+}
+
+TEST(JudgeDiagnosis, AnAbsurdMisfitIsNoAnswer) {
+  DiagnosisResult result = Found();
+  result.extended.chi2_per_dof = 1e6;
+  const Judgement judged = JudgeDiagnosis(result);
+  EXPECT_EQ(judged.grade, Grade::kNotFound);
+  EXPECT_THAT(judged.says, HasSubstr("by 1000 times their noise"));
+  EXPECT_EQ(judged.command, "flextip check RECORDING");
+}
+
+}  // namespace
+}  // namespace flextip::diagnosis
