@@ -63,7 +63,11 @@ OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
   folder_ = name_;
   folder_ += fmt::format(".partial-{}", getpid());
   resumed_ = options.resume && TakeOver();
-  if (resumed_) return;
+  interruption_.emplace(folder_);
+  if (resumed_) {
+    interruption_->Keep();
+    return;
+  }
   fs::remove_all(folder_, error);
   fs::create_directories(folder_, error);
   if (error) {
@@ -157,6 +161,7 @@ void OutputFolder::Commit() {
   }
   folder_ = name_;
   committed_ = true;
+  interruption_.reset();
 }
 
 }  // namespace flextip

@@ -4,8 +4,11 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "apps/common/interruption.h"
 
 namespace flextip {
 
@@ -16,8 +19,8 @@ struct OutputOptions {
 };
 
 /// Results are written to `folder()`, NAME.partial-PID beside NAME, which becomes NAME with Commit.
-/// What was not committed is removed, but for a program that was killed: nothing half-written ever
-/// stands under NAME.
+/// What was not committed is removed, by Ctrl-C too, but for a program that was killed: nothing
+/// half-written ever stands under NAME.
 ///
 ///   OutputFolder output("out", "track", {.force = force, .inputs = {recording}});
 ///   ... write below output.folder(), output.Warn("...") ...
@@ -43,6 +46,11 @@ class OutputFolder {
   bool resumed() const { return resumed_; }
   /// From now on folder() stays when the command fails: a later run can take it over.
   void KeepUnfinished() { keep_ = true; }
+  /// From now on folder() stays when the command is interrupted, and the message says how to go on.
+  void KeepInterrupted() { interruption_->Keep(); }
+  /// From now on the first interrupt (Ctrl-C) only sets StopRequested.
+  void OnlyNoteInterrupt() { interruption_->OnlyNote(); }
+  bool StopRequested() const { return interruption_->Requested(); }
 
   /// A line for the summary's `warnings`.
   void Warn(const std::string& warning) { warnings_.push_back(warning); }
@@ -70,6 +78,7 @@ class OutputFolder {
   bool force_;
   bool committed_ = false, resumed_ = false, keep_ = false;
   std::vector<std::string> warnings_;
+  std::optional<Interruption> interruption_;  // until committed
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

@@ -8,9 +8,9 @@
 
 namespace flextip {
 
-/// Draws "label [####    ] 40 % 12 s 31 fps" (the rate where a unit is given) on stderr, at most
-/// ten times a second, and only where stderr is a terminal and the program was not asked to be
-/// quiet. Erases itself at the end.
+/// Draws "label [####    ] 40 % 12 s, 18 s left 31 fps" (the rate where a unit is given) on stderr,
+/// at most ten times a second; erases itself at the end. Where stderr is no terminal, writes a line
+/// a minute. Says nothing where the program was asked to be quiet.
 class Progress {
  public:
   /// `total` 0: not known, and no bar but the count.
@@ -25,9 +25,12 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
 
+  double SecondsLeft(std::size_t done, Clock::time_point now) const;
+  void Log(std::size_t done, Clock::time_point now);
+
   std::string label_, rate_unit_;
   std::size_t total_;
-  bool visible_;
+  bool visible_, logs_;
   Clock::time_point start_, last_drawn_;
 };
 

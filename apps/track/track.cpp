@@ -15,7 +15,6 @@
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
-#include "apps/common/stop_signal.h"
 #include "apps/track/options.h"
 #include "apps/track/overlay.h"
 #include "apps/track/summary.h"
@@ -68,7 +67,7 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
   const auto to_do = static_cast<std::size_t>(std::max(0L, total - before));
   OverlayWriter overlay(output.folder(), to_do, camera.rate_hz, options.overlay);
   Progress progress("frames", to_do, quiet, "fps");
-  while (!StopSignal::Requested() && (options.max_frames == 0 || tables.sums.frames < total)) {
+  while (!output.StopRequested() && (options.max_frames == 0 || tables.sums.frames < total)) {
     const auto start = Clock::now();
     const std::optional<FrameSet> set = input.frames->Next();
     if (!set) break;
@@ -121,8 +120,11 @@ void RunTrack(TrackOptions options, bool quiet) {
                     : "no interrupted run was found: began anew");
     if (output.resumed()) output.KeepUnfinished();
   }
-  std::optional<StopSignal> stop;
-  if (options.until_stopped) stop.emplace();
+  if (options.until_stopped) {
+    output.OnlyNoteInterrupt();
+  } else {
+    output.KeepInterrupted();
+  }
   TrackFrames(options, input, truth, output, tables, quiet);
   const TrackSums& sums = tables.sums;
   const int cameras = static_cast<int>(input.frames->Cameras());

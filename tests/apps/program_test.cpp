@@ -61,6 +61,19 @@ TEST(Program, TakesHelpAndVersionAsWords) {
             RunProgram({"calibrate", "tip", "--help"}).out);
 }
 
+TEST(Program, KeepsNothingOfAnInterruptedCommandAndSaysSo) {
+  const TestFolder folder;
+  const auto out = (folder / "out").string();
+  // A diagnosis takes seconds.
+  const auto result =
+      RunProgram({"--signal=INT", "--preserve-status", "0.3", FLEXTIP_PROGRAM, "diagnose",
+                  FLEXTIP_SOURCE_DIR "/testdata/recordings/sample_2", "-o", out},
+                 "timeout");
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_THAT(result.err, HasSubstr("flextip: interrupted; nothing was kept"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
+}
+
 TEST(Program, SaysHowToBuildTheReproductionWhereItIsMissing) {
   const TestFolder folder;
   const auto alone = folder / "flextip";
