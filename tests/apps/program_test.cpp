@@ -68,7 +68,7 @@ TEST(Program, KeepsNothingOfAnInterruptedCommandAndSaysSo) {
   const auto result =
       RunProgram({"--signal=INT", "--preserve-status", "0.3", FLEXTIP_PROGRAM, "diagnose",
                   FLEXTIP_SOURCE_DIR "/testdata/recordings/sample_2", "-o", out},
-                 "timeout");
+                 "/usr/bin/timeout");
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_THAT(result.err, HasSubstr("flextip: interrupted; nothing was kept"));
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
