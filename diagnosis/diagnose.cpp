@@ -13,7 +13,7 @@
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kMemoryWorthAWord = 2.0;  // samples that count as one
+constexpr double kLongMemory = 0.5;  // a correlation that stands beside the answer
 
 /// What the stages work on. The layout refers to the samples, the replays to both.
 struct Work {
@@ -185,11 +185,11 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                     selection.far_samples, work.samples.samples.size()));
   }
   result.memory = selection.memory;
-  if (selection.memory.samples_as_one > kMemoryWorthAWord) {
+  if (selection.memory.correlation > kLongMemory) {
     result.warnings.push_back(fmt::format(
-        "what is left of {} remembers itself ({:.2f} from sample to sample): {:.1f} samples count "
-        "as one",
-        selection.memory.channel, selection.memory.correlation, selection.memory.samples_as_one));
+        "what is left of {} remembers itself ({:.2f} from sample to sample): the probabilities "
+        "take the noise for slow, and {:.1f} samples for one",
+        selection.memory.channel, selection.memory.correlation, selection.memory.SamplesAsOne()));
   }
   const Probabilities probabilities = MakeProbabilities(selection, work.layout, selection_options);
   result.probabilities = probabilities.hypotheses;

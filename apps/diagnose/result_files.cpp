@@ -109,7 +109,7 @@ std::string DiagnosisJson(const DiagnosisResult& result, const simulation::Close
   json["residual_signature"] = Signatures(result.signatures);
   json["residual_memory"] = {{"channel", result.memory.channel},
                              {"correlation", result.memory.correlation},
-                             {"samples_as_one", result.memory.samples_as_one}};
+                             {"samples_as_one", result.memory.SamplesAsOne()}};
   json["noise_scale"] = ByChannel(result, result.noise_scale);
   json["noise_sd"] = ByChannel(result, result.noise_sd);
   json["nominals"] = Nominal(result, false);

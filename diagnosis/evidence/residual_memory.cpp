@@ -9,7 +9,7 @@
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kFewest = 60;        // products of neighbours
+constexpr double kFewest = 60;        // residuals of a row
 constexpr double kChance = 3.0;       // standard deviations that chance explains
 constexpr double kMostMemory = 0.98;  // a coefficient that a recording can tell
 
@@ -39,25 +39,22 @@ RowSeries LeftBy(const Eigen::VectorXd& x, const Replay& replay, const Eigen::Ma
 
 }  // namespace
 
-ResidualMemory MemoryOfSeries(const std::vector<std::vector<double>>& rows) {
-  double squares = 0.0, products = 0.0, count = 0.0, pairs = 0.0;
-  for (const auto& values : rows) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      squares += values[i] * values[i];
-      if (i > 0) products += values[i] * values[i - 1];
-    }
-    count += double(values.size());
-    pairs += std::max(0.0, double(values.size()) - 1.0);
-  }
+ResidualMemory MemoryOfSeries(const std::vector<double>& residuals) {
   ResidualMemory memory;
-  if (pairs < kFewest || squares <= 0.0) return memory;
-  const double chance = kChance / std::sqrt(pairs);
-  const double rho = std::clamp(products / squares * count / pairs, 0.0, kMostMemory);
+  double squares = 0.0, products = 0.0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    squares += residuals[i] * residuals[i];
+    if (i > 0) products += residuals[i] * residuals[i - 1];
+  }
+  const double count = double(residuals.size());
+  if (count < kFewest || squares <= 0.0) return memory;
+  const double chance = kChance / std::sqrt(count);
+  const double rho = std::clamp(products / squares, 0.0, kMostMemory);
   memory.correlation = rho > chance ? rho : 0.0;
   const double slow = (1.0 + memory.correlation) / (1.0 - memory.correlation);
   const double mean_square = squares / count;
   const bool by_chance = mean_square > 1.0 && mean_square < 1.0 + chance * std::sqrt(2.0 * slow);
-  memory.samples_as_one = std::max(1.0, slow * (by_chance ? 1.0 : mean_square));
+  memory.slow_variance = slow * (by_chance ? 1.0 : mean_square);
   return memory;
 }
 
@@ -66,11 +63,12 @@ ResidualMemory MemoryOfResiduals(const Replay& replay, const Eigen::MatrixXd& ba
   const RowSeries left = LeftBy(x, replay, basis, problem);
   ResidualMemory most;
   for (const Channel& channel : kChannels) {
-    const auto begin = left.begin() + channel.first_row;
-    ResidualMemory memory = MemoryOfSeries({begin, begin + channel.rows});
-    if (memory.samples_as_one <= most.samples_as_one) continue;
-    most = memory;
-    most.channel = channel.name;
+    for (int r = channel.first_row; r < channel.first_row + channel.rows; ++r) {
+      ResidualMemory memory = MemoryOfSeries(left[r]);
+      if (memory.slow_variance <= most.slow_variance) continue;
+      most = memory;
+      most.channel = channel.name;
+    }
   }
   return most;
 }

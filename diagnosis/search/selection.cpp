@@ -227,7 +227,7 @@ class Search {
     const WeighedHypothesis best = evidence.Weigh(best_.hypothesis);
     const Eigen::VectorXd mode = evidence.Mode(best, evidence.Covariance(best));
     selection_.memory = MemoryOfResiduals(replay_, basis_, weighing.problem, mode);
-    const double as_one = selection_.memory.samples_as_one;
+    const double as_one = selection_.memory.SamplesAsOne();
     if (getenv("MEMDEBUG"))
       fprintf(stderr, "MEMORY %s %g %g\n", selection_.memory.channel.c_str(),
               selection_.memory.correlation, as_one);

@@ -34,20 +34,18 @@ double VarianceOfMean(double phi, double variance) {
 
 TEST(ResidualMemory, IsTheVarianceOfAMeanOfTheResiduals) {
   for (const auto& [phi, variance] : {std::pair{0.8, 1.0}, {0.5, 1.0}, {0.8, 2.0}, {0.3, 3.0}}) {
-    std::vector<std::vector<double>> rows;
-    for (unsigned row = 0; row < 3; ++row) rows.push_back(Remembering(4000, phi, variance, row));
-    const ResidualMemory memory = MemoryOfSeries(rows);
+    const ResidualMemory memory = MemoryOfSeries(Remembering(12000, phi, variance, 1));
     EXPECT_NEAR(memory.correlation, phi, 0.03);
     const double drawn = VarianceOfMean(phi, variance);
-    EXPECT_NEAR(memory.samples_as_one / drawn, 1.0, 0.12) << phi << " " << variance;
+    EXPECT_NEAR(memory.slow_variance / drawn, 1.0, 0.12) << phi << " " << variance;
   }
 }
 
 TEST(ResidualMemory, IsNoneInNoiseThatForgets) {
   int none = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
-    const ResidualMemory memory = MemoryOfSeries({Remembering(500, 0.0, 1.0, seed)});
-    none += memory.samples_as_one == 1.0;
+    const ResidualMemory memory = MemoryOfSeries(Remembering(500, 0.0, 1.0, seed));
+    none += memory.slow_variance <= 1.0;
   }
   EXPECT_GE(none, 98);
 }
@@ -56,14 +54,14 @@ TEST(ResidualMemory, IsNoneInNoiseThatForgets) {
 TEST(ResidualMemory, IsNotCountedTwice) {
   constexpr double kPhi = 0.7;
   const ResidualMemory memory =
-      MemoryOfSeries({Remembering(20000, kPhi, (1.0 - kPhi) / (1.0 + kPhi), 3)});
-  EXPECT_NEAR(memory.samples_as_one, 1.0, 0.12);
+      MemoryOfSeries(Remembering(20000, kPhi, (1.0 - kPhi) / (1.0 + kPhi), 3));
+  EXPECT_NEAR(memory.slow_variance, 1.0, 0.12);
 }
 
 TEST(ResidualMemory, IsNotToldByFewSamples) {
-  EXPECT_EQ(MemoryOfSeries({Remembering(40, 0.9, 1.0, 1)}).samples_as_one, 1.0);
-  EXPECT_EQ(MemoryOfSeries({}).samples_as_one, 1.0);
-  EXPECT_EQ(MemoryOfSeries({std::vector<double>(100, 0.0)}).samples_as_one, 1.0);
+  EXPECT_EQ(MemoryOfSeries(Remembering(40, 0.9, 1.0, 1)).SamplesAsOne(), 1.0);
+  EXPECT_EQ(MemoryOfSeries({}).SamplesAsOne(), 1.0);
+  EXPECT_EQ(MemoryOfSeries(std::vector<double>(100, 0.0)).SamplesAsOne(), 1.0);
 }
 
 }  // namespace
