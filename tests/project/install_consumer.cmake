@@ -20,6 +20,12 @@ message(STATUS "${text}")
 if(NOT text MATCHES "wrist to [^\n]* mm, ok")
   message(FATAL_ERROR "the example did not say 'wrist to ... mm, ok'")
 endif()
+run(${CMAKE_COMMAND} -S ${SOURCE}/control -B ${WORK}/control -G Ninja
+  -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS}
+  -DCMAKE_BUILD_TYPE=${TYPE})
+run(${CMAKE_COMMAND} --build ${WORK}/control)
+run(${WORK}/control/steer)
+message(STATUS "${text}")
 run(${WORK}/prefix/bin/flextip --version)
 message(STATUS "${text}")
 file(REMOVE_RECURSE ${WORK})
