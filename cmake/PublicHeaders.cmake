@@ -105,6 +105,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   recording/recording_writer.h
   recording/streams/sensor_streams.h
   recording/text/csv.h
+  recording/tip_score.h
   recording/truth.h
   report/figure.h
   report/report.h

@@ -74,7 +74,7 @@ Eigen::MatrixXd ReportedCovariance(const ParameterLayout& layout, const std::vec
   return J * covariance.topLeftCorner(theta.size(), theta.size()) * J.transpose();
 }
 
-/// Of the effects that are not `present`, those that act on sensors' readings and nothing else.
+/// Of the effects that are not `present`, those that act on sensors' readings or places alone.
 std::vector<int> SensorBlocks(const Work& work, const std::vector<int>& present) {
   std::set<int> sensors, others;
   for (const ReplayedSample& sample : work.extended.Samples()) {
@@ -82,7 +82,8 @@ std::vector<int> SensorBlocks(const Work& work, const std::vector<int>& present)
       const bool reading = column.input > sample_input::kTipCompliance &&
                            column.input != sample_input::kEmDelay &&
                            column.input != sample_input::kCameraDelay;
-      (reading ? sensors : others).insert(column.parameter);
+      const bool length = column.input == sample_input::kLength;  // where the sensors stand
+      (reading || length ? sensors : others).insert(column.parameter);
     }
   }
   std::vector<int> blocks;

@@ -22,6 +22,9 @@ class InstrumentModel {
   virtual const ShaftChange& Shaft() const = 0;
   /// Returns the readings of sensors without their own effects. Latencies stay.
   virtual Measurements Correct(const Measurements& measured) const = 0;
+  /// Returns the standard deviation (m) of the instrument's length: how far along the shaft the tip
+  /// may be from where the estimate has it.
+  virtual double LengthSd() const { return 0.0; }
 
  protected:
   InstrumentModel() = default;

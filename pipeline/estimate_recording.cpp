@@ -17,6 +17,7 @@ Series<ShaftEstimate> EstimateRecording(
     if (model != nullptr) {
       model->Advance(times[i], *measured, f_tip_N);
       estimates.push_back({times[i], estimator.Update(model->Correct(*measured), model->Shaft())});
+      AddLengthDoubt(*model, estimates.back().value);
     } else {
       estimates.push_back({times[i], estimator.Update(*measured)});
     }

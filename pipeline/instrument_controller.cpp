@@ -80,6 +80,7 @@ Measurements InstrumentController::Correct(TimeNs t_ns, const Measurements& meas
 ShaftEstimate InstrumentController::Estimate(const Measurements& measurements) {
   ShaftEstimate estimate =
       estimator_.Update(measurements, model_ ? model_->Shaft() : ShaftChange());
+  if (model_) AddLengthDoubt(*model_, estimate);
   f_tip_N_ = estimate.model.f_tip_N;
   if (IsStraight(options_.control.kind) && options_.straight_at_registered_port)
     estimate.model.p_RP = options_.estimator.p_RP;

@@ -3,10 +3,14 @@
 
 #include <optional>
 
+#include "estimation/instrument_model.h"
 #include "estimation/shaft_estimator.h"
 #include "estimation/window_estimator.h"
 
 namespace flextip {
+
+/// Adds what `model` does not know of the instrument's length to the tip's covariance.
+void AddLengthDoubt(const InstrumentModel& model, ShaftEstimate& estimate);
 
 class InstrumentEstimator {
  public:

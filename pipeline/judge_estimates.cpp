@@ -10,9 +10,9 @@
 namespace flextip {
 namespace {
 
-// Of chi-squared a measurement, 1 where the recording is as it says. Effects of a real instrument
-// leave up to some hundreds where the sensors are exact; a unit or a frame gone wrong leaves more.
-constexpr double kDoubtful = 4.0, kAbsurd = 1e4;
+// Of chi-squared a measurement, 1 where the recording is as it says. A camera that stands 5 mm aside
+// leaves 500 times the noise of vision; a unit or a frame gone wrong leaves more.
+constexpr double kDoubtful = 4.0, kAbsurd = 1e6;
 constexpr double kFewFailed = 0.1;     // of all samples
 constexpr double kManyTimesAlong = 5;  // a force along the shaft that is hardly known
 

@@ -147,9 +147,9 @@ void AddSummaryTables(Report& report, const std::filesystem::path& folder) {
 Report BeginPage(const std::filesystem::path& folder, const std::string& title) {
   Report report = TitledPage(folder, title);
   const Json summary = ReadSummary(folder);
-  if (summary.contains("verdict") && summary["verdict"].is_object()) {
-    report.AddHtml(VerdictHtml(summary["verdict"]));
-  } else {
+  const std::string verdict = VerdictHtml(folder);
+  report.AddHtml(verdict);
+  if (verdict.empty()) {
     const Lead lead = LeadOf(folder);
     report.AddLead(lead.says, lead.more);
   }

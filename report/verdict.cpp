@@ -4,7 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
 #include "report/report.h"
+#include "report/result_files.h"
 
 namespace flextip::report {
 namespace {
@@ -15,7 +17,13 @@ std::string Text(const nlohmann::ordered_json& object, const char* key) {
 
 }  // namespace
 
-std::string VerdictHtml(const nlohmann::ordered_json& verdict) {
+std::string VerdictHtml(const std::filesystem::path& folder) {
+  const auto file = folder / "summary.json";
+  const auto summary = nlohmann::ordered_json::parse(ReadBytes(file), nullptr, false);
+  if (!summary.is_object()) throw InputError::At(file.string(), 0, "not an object");
+  if (!summary.contains("verdict") || !summary["verdict"].is_object()) return "";
+  const auto& verdict = summary["verdict"];
+  if (verdict.empty()) return "";
   const std::string grade = Text(verdict, "grade");
   std::string html =
       fmt::format("<section class=\"verdict {}\">\n<p class=\"says\">{}</p>\n",

@@ -1,12 +1,13 @@
 // The head of a page: the answer, how good it is and why, the next step.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <filesystem>
 #include <string>
 
 namespace flextip::report {
 
-/// Returns the head for summary.json's `verdict`: {grade, says, reasons, next, command}.
-std::string VerdictHtml(const nlohmann::ordered_json& verdict);
+/// Returns the head by FOLDER/summary.json's `verdict`: {grade, says, reasons, next, command}.
+/// Empty where the summary has none. Throws InputError where the file cannot be read.
+std::string VerdictHtml(const std::filesystem::path& folder);
 
 }  // namespace flextip::report

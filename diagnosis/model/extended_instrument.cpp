@@ -204,21 +204,24 @@ Measurements ExtendedInstrument::CorrectBy(const SampleInputs& u,
 
 namespace {
 
-/// Adds the difference of the same readings, corrected in two ways, to the noise of `z`. Noises are
-/// the same for all axes: a difference is shared by them.
-void AddToNoise(const Measurements& moved, const Measurements& corrected, Measurements& z) {
+/// Adds the difference of the same readings, corrected in two ways, to the noise of `z`, less the
+/// way that sensors placed from the tip go with a shaft longer by `longer_m`. Noises are the same
+/// for all axes: a difference is shared by them.
+void AddToNoise(const Measurements& moved, const Measurements& corrected, double longer_m,
+                Measurements& z) {
   const auto add = [](double& noise, double difference, int axes) {
     noise = std::hypot(noise, difference / std::sqrt(axes));
   };
   if (z.em) {
     const Pose &a = moved.em->T_RS, &b = corrected.em->T_RS;
-    add(z.em->position_noise_m, (a.p - b.p).norm(), 3);
+    add(z.em->position_noise_m, (a.p - b.p - longer_m * b.R.col(0)).norm(), 3);
     add(z.em->orientation_noise_rad, LogRotation(a.R * b.R.transpose()).norm(), 3);
   }
   if (z.port_direction)
     add(z.port_direction_noise_rad, (*moved.port_direction - *corrected.port_direction).norm(), 2);
   if (z.tip && z.tip->status != TipStatus::kLost) {
-    const Eigen::Vector3d shift = moved.tip->p_RE - corrected.tip->p_RE;
+    Eigen::Vector3d shift = moved.tip->p_RE - corrected.tip->p_RE;
+    if (corrected.tip->d_RE) shift -= longer_m * *corrected.tip->d_RE;
     z.tip->covariance_m2 += shift * shift.transpose();
     if (z.tip->d_RE)
       add(z.tip_direction_noise_rad, (*moved.tip->d_RE - *corrected.tip->d_RE).norm(), 2);
@@ -234,8 +237,10 @@ Measurements ExtendedInstrument::Correct(const Measurements& measured) const {
   const Measurements corrected = CorrectBy(inputs_, measured);
   Measurements z = corrected;
   for (Eigen::Index k = 0; k < spread_.cols(); ++k)
-    AddToNoise(CorrectBy(inputs_ + spread_.col(k), measured), corrected, z);
+    AddToNoise(CorrectBy(inputs_ + spread_.col(k), measured), corrected, spread_(kLength, k), z);
   return z;
 }
+
+double ExtendedInstrument::LengthSd() const { return spread_.row(kLength).norm(); }
 
 }  // namespace flextip::diagnosis

@@ -26,6 +26,7 @@ class ExtendedInstrument : public InstrumentModel {
   void Advance(TimeNs t_ns, const Measurements& measured, const Eigen::Vector3d& f_tip_N) override;
   const ShaftChange& Shaft() const override { return shaft_; }
   Measurements Correct(const Measurements& measured) const override;
+  double LengthSd() const override;
 
   /// Returns the inputs at this instant, delays among them.
   const SampleInputs& Inputs() const { return inputs_; }

@@ -66,7 +66,7 @@ TEST(Program, KeepsNothingOfAnInterruptedCommandAndSaysSo) {
   const auto out = (folder / "out").string();
   // A diagnosis takes seconds.
   const auto result =
-      RunProgram({"--signal=INT", "--preserve-status", "0.3", FLEXTIP_PROGRAM, "diagnose",
+      RunProgram({"--signal=INT", "--preserve-status", "1.5", FLEXTIP_PROGRAM, "diagnose",
                   FLEXTIP_SOURCE_DIR "/testdata/recordings/sample_2", "-o", out},
                  "/usr/bin/timeout");
   EXPECT_EQ(result.exit_code, 130);

@@ -108,7 +108,7 @@ void WriteCalibrateReport(const fs::path& folder) {
   const Json summary = Json::parse(ReadBytes(folder / "summary.json"));
   const Json verdict = summary.value("verdict", Json::object());
   if (!verdict.empty()) {
-    report.AddHtml(VerdictHtml(verdict));
+    report.AddHtml(VerdictHtml(folder));
     report.AddHtml(ValuesHtml(verdict.value("values", Json::array())));
     report.AddHtml(NotFoundHtml(verdict.value("not_found", Json::array())));
   }
