@@ -28,13 +28,13 @@ class Builder {
   /// Adds a triangle of an end: as given at the upper, turned over at the lower.
   void AddOfEnd(int end, int a, int b, int c) { end == 1 ? Add(a, b, c) : Add(a, c, b); }
 
-  TriangleMesh mesh;
+  MountSurface mesh;
 
  private:
   int faces_, flats_;
 };
 
-void AddRing(int count, double radius_m, double first_angle, double x_m, TriangleMesh& mesh) {
+void AddRing(int count, double radius_m, double first_angle, double x_m, MountSurface& mesh) {
   for (int i = 0; i < count; ++i) {
     const double angle = first_angle + 2.0 * std::numbers::pi * i / count;
     mesh.corners_m.emplace_back(x_m, radius_m * std::cos(angle), radius_m * std::sin(angle));
@@ -49,7 +49,7 @@ void Append(std::vector<char>& bytes, const T& value) {
 
 }  // namespace
 
-double TriangleMesh::Volume_m3() const {
+double MountSurface::Volume_m3() const {
   double six = 0.0;
   for (const auto& [a, b, c] : triangles) {
     six += corners_m[static_cast<std::size_t>(a)].dot(
@@ -58,7 +58,7 @@ double TriangleMesh::Volume_m3() const {
   return six / 6.0;
 }
 
-TriangleMesh MountMesh(const CollarDesign& design) {
+MountSurface MountMesh(const CollarDesign& design) {
   const int faces = design.wishes.faces, each = (kBoreFlats + faces - 1) / faces;
   const double half_face = std::numbers::pi / faces, half_flat = half_face / each;
   const double corner_m = 0.5 * design.across_m / std::cos(half_face);
@@ -85,7 +85,7 @@ TriangleMesh MountMesh(const CollarDesign& design) {
   return b.mesh;
 }
 
-void WriteStl(const std::filesystem::path& file, const TriangleMesh& mesh) {
+void WriteStl(const std::filesystem::path& file, const MountSurface& mesh) {
   static_assert(sizeof(float) == 4);
   std::vector<char> bytes(80, ' ');
   const std::string head = "flextip collar mount, mm";

@@ -11,7 +11,7 @@
 namespace flextip {
 
 /// Triangles by their corners, anticlockwise as seen from outside.
-struct TriangleMesh {
+struct MountSurface {
   std::vector<Eigen::Vector3d> corners_m;
   std::vector<std::array<int, 3>> triangles;
 
@@ -22,9 +22,9 @@ struct TriangleMesh {
 /// Returns the prism with a round bore, x along the shaft, its middle at the origin; face i at
 /// angle 2 pi i / faces from y toward z. The bore has 96 flats or so and is nowhere narrower than
 /// the design's.
-TriangleMesh MountMesh(const CollarDesign& design);
+MountSurface MountMesh(const CollarDesign& design);
 
 /// Writes a binary STL file in mm. Throws WorkError where the disk refuses.
-void WriteStl(const std::filesystem::path& file, const TriangleMesh& mesh);
+void WriteStl(const std::filesystem::path& file, const MountSurface& mesh);
 
 }  // namespace flextip

@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Prisms, Mount, testing::Values(3, 5, 6, 7, 16));
 
 TEST(Mount, FacesStandWhereTheTagsAre) {
   const CollarDesign d = DesignCollar({});
-  const TriangleMesh mesh = MountMesh(d);
+  const MountSurface mesh = MountMesh(d);
   for (const CollarTag& tag : d.collar.tags) {
     const Eigen::Vector3d out = -tag.T_EG.R.col(2);
     int on_face = 0;
