@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/error.h"
 #include "core/rotation.h"
 #include "tests/calibration/board_drawn.h"
@@ -199,8 +200,9 @@ TEST(CameraCalibration, FindsAKnownCamera) {
     Pose T_CB;
     T_CB.R = ExpRotation({0.5 * u(random), 0.5 * u(random), 0.2 * u(random)});
     const Eigen::Vector3d centre(0.014, 0.010, 0);
-    T_CB.p = Eigen::Vector3d(0.008 * u(random), 0.006 * u(random), 0.05 + 0.005 * u(random)) -
-             T_CB.R * centre;
+    const Eigen::Vector3d at = DrawVector<3>(u, random);
+    T_CB.p =
+        Eigen::Vector3d(0.008 * at.x(), 0.006 * at.y(), 0.05 + 0.005 * at.z()) - T_CB.R * centre;
     views.push_back(
         {fmt::format("drawn {}", i),
          DetectBoard(DrawBoard(truth, T_CB, ChessboardTexture(9, 7), 0.004, {1, 1}, i), board)});

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/error.h"
 #include "core/linear_algebra.h"
 #include "tests/calibration/em_scene.h"
@@ -193,8 +194,7 @@ TEST(EmLag, ALateReferenceIsSeen) {
     pair.t_ns = i * TimeNs{20'000'000};
     pair.p_RE = place(0.02 * i - kLate_s);
     pairs.push_back(pair);
-    errors.emplace_back(place(0.02 * i) - pair.p_RE +
-                        3e-4 * Eigen::Vector3d(normal(random), normal(random), normal(random)));
+    errors.emplace_back(place(0.02 * i) - pair.p_RE + 3e-4 * DrawVector<3>(normal, random));
   }
   const EmLag lag = LagOf(pairs, errors, std::vector<bool>(500, true), 0.0);
   EXPECT_LT(lag.sd_s, 3e-4);

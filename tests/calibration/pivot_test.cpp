@@ -9,6 +9,7 @@
 
 #include "calibration/residual_statistics.h"
 #include "calibration/tip/tip_poses.h"
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "tests/calibration/pivot_scene.h"
 
@@ -171,11 +172,11 @@ TEST(Pivot, ATipThatWandersIsNoPivot) {
   auto poses = DrawPivot(scene, random);
   std::normal_distribution<double> normal;
   for (std::size_t i = 0; i < poses.size(); i += 2) {
-    poses[i].T_RB.p += 0.05 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    poses[i].T_RB.p += 0.05 * DrawVector<3>(normal, random);
   }
   EXPECT_NE(CalibratePivot(poses).status, PivotStatus::kTooFewPoses);
   for (auto& pose : poses) {
-    pose.T_RB.p += 0.05 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    pose.T_RB.p += 0.05 * DrawVector<3>(normal, random);
   }
   EXPECT_NE(CalibratePivot(poses).status, PivotStatus::kOk);
 }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "core/draw_vector.h"
 #include "rod_reference.h"
 
 namespace flextip {
@@ -72,14 +73,15 @@ Eigen::VectorXd Parameters(const RodProblem& problem) {
 std::vector<RodProblem> RandomProblems(int count) {
   std::mt19937_64 rng(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto vector = [&] { return Eigen::Vector3d(uniform(rng), uniform(rng), uniform(rng)); };
+  const auto vector = [&] { return DrawVector<3>(uniform, rng); };
   std::vector<RodProblem> problems;
   for (int i = 0; i < count; ++i) {
     RodProblem p;
     p.length_m = 0.45 + 0.15 * uniform(rng);
     p.bending_stiffness_Nm2 = 0.4 + 0.3 * uniform(rng);
     p.p_wrist = 0.1 * vector();
-    p.p_port = p.p_wrist + p.length_m * (0.5 + 0.25 * uniform(rng)) * vector().normalized();
+    const Eigen::Vector3d along = vector().normalized();
+    p.p_port = p.p_wrist + p.length_m * (0.5 + 0.25 * uniform(rng)) * along;
     const double unit = p.bending_stiffness_Nm2 / (p.length_m * p.length_m);
     p.f_tip = 1.5 * unit * vector();
     if (i % 2 == 1) p.q_weight = 0.5 * unit / p.length_m * vector();
