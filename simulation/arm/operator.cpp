@@ -1,9 +1,10 @@
 #include "simulation/arm/operator.h"
-#include "core/draw_vector.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "core/draw_vector.h"
 
 namespace flextip::simulation {
 namespace {

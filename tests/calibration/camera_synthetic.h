@@ -30,6 +30,7 @@ struct Synthetic {
   CameraCalibration camera = KnownCamera();
   Eigen::Vector2d bulge_m = Eigen::Vector2d::Zero();
   double noise_px = 0.1, tilt_rad = 0.5;
+  double depth_m = 0.32;  ///< of the board's middle, in the mean
   int views = 12;
 };
 
@@ -47,7 +48,7 @@ inline std::vector<BoardView> Seen(const Synthetic& s, unsigned seed) {
     Pose T_CB;
     T_CB.R = ExpRotation({s.tilt_rad * u(random), s.tilt_rad * u(random), 0.4 * u(random)});
     const Eigen::Vector3d at = DrawVector<3>(u, random);
-    T_CB.p = Eigen::Vector3d(0.08 * at.x(), 0.06 * at.y(), 0.32 + 0.08 * at.z()) -
+    T_CB.p = Eigen::Vector3d(0.08 * at.x(), 0.06 * at.y(), s.depth_m + 0.08 * at.z()) -
              T_CB.R * Eigen::Vector3d(0.1, 0.0625, 0);
     BoardView view{fmt::format("view {}", views.size()), {}};
     for (std::size_t i = 0; i < corners.size(); ++i) {

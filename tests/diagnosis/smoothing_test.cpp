@@ -1,11 +1,12 @@
 // Smoothing of the wrist's path: what it leaves, what it takes, and what it says is left.
 #include "diagnosis/samples/smoothing.h"
-#include "core/draw_vector.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "core/draw_vector.h"
 
 namespace flextip::diagnosis {
 namespace {

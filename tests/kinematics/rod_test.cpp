@@ -70,8 +70,8 @@ Eigen::VectorXd Parameters(const RodProblem& problem) {
 }
 
 /// Problems away from the edges by construction: 3-D loads, with self-weight and without.
-std::vector<RodProblem> RandomProblems(int count) {
-  std::mt19937_64 rng(7);
+std::vector<RodProblem> RandomProblems(int count, unsigned seed = 7) {
+  std::mt19937_64 rng(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto vector = [&] { return DrawVector<3>(uniform, rng); };
   std::vector<RodProblem> problems;
@@ -119,7 +119,19 @@ TEST(RodDerivatives, TipWristAndSectionsAgainstDifferences) {
     EXPECT_LT((state.dt_port - numeric).norm(), 1e-7 * numeric.norm());
     EXPECT_LT((solver.Section(0.0).p - problem.p_wrist).norm(), 1e-11);
     EXPECT_LT((solver.Section(state.s_port_m).p - problem.p_port).norm(), 1e-11);
-    EXPECT_LT((solver.Section(0.0).dp.leftCols<3>() - Eigen::Matrix3d::Identity()).norm(), 1e-10);
+  }
+}
+
+// The shaft begins at the wrist. The derivatives are those of the last iterate, whose conditions
+// hold to 1e-9 of the length; how much more they miss depends on the load. (4e-10 at most of 1200.)
+TEST(RodDerivatives, TheFirstSectionMovesWithTheWrist) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    for (const RodProblem& problem : RandomProblems(20, seed)) {
+      RodSolver solver;
+      ASSERT_TRUE(solver.Solve(problem).IsUsable());
+      const Eigen::Matrix3d moved = solver.Section(0.0).dp.leftCols<3>();
+      EXPECT_LT((moved - Eigen::Matrix3d::Identity()).norm(), 1e-8) << seed;
+    }
   }
 }
 
