@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/draw_vector.h"
 #include "core/rotation.h"
 #include "recording/recording_writer.h"
 #include "vision/camera_model.h"
@@ -114,9 +115,9 @@ Pose BoardPose(std::mt19937& random) {
   std::uniform_real_distribution<double> u(-1, 1);
   Pose T_CB;
   T_CB.R = ExpRotation({0.5 * u(random), 0.5 * u(random), 0.6 * u(random)});
-  T_CB.p =
-      Eigen::Vector3d(0.012 * u(random), 0.008 * u(random), kDistance_m * (1 + 0.12 * u(random))) -
-      T_CB.R * (kSquare_m * Eigen::Vector3d(3.5, 2.5, 0));
+  const Eigen::Vector3d at = DrawVector<3>(u, random);
+  T_CB.p = Eigen::Vector3d(0.012 * at.x(), 0.008 * at.y(), kDistance_m * (1 + 0.12 * at.z())) -
+           T_CB.R * (kSquare_m * Eigen::Vector3d(3.5, 2.5, 0));
   return T_CB;
 }
 

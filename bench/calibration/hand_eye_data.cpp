@@ -7,6 +7,7 @@
 #include <random>
 
 #include "calibration/camera/camera_calibration.h"
+#include "core/draw_vector.h"
 #include "core/error.h"
 #include "core/rotation.h"
 #include "recording/recording_writer.h"
@@ -155,8 +156,8 @@ FarBoards MakeFarBoards(int views, double distance_m, double tilt_rad, double co
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> u(-1, 1);
-  const auto noise = [&](double sd) {
-    return Eigen::Vector3d(sd * normal(random), sd * normal(random), sd * normal(random));
+  const auto noise = [&](double sd) -> Eigen::Vector3d {
+    return sd * DrawVector<3>(normal, random);
   };
   FarBoards far;
   HandEyeInput& input = far.input;
@@ -175,7 +176,8 @@ FarBoards MakeFarBoards(int views, double distance_m, double tilt_rad, double co
   for (int i = 0; i < views; ++i) {
     Pose T_CB;
     T_CB.R = ExpRotation({tilt_rad * u(random), tilt_rad * u(random), tilt_rad * u(random)});
-    T_CB.p = distance_m * Eigen::Vector3d(0.3 * u(random), 0.2 * u(random), 1 + 0.2 * u(random));
+    const Eigen::Vector3d at = DrawVector<3>(u, random);
+    T_CB.p = distance_m * Eigen::Vector3d(0.3 * at.x(), 0.2 * at.y(), 1 + 0.2 * at.z());
     const Pose T_RW = far.T_FC * T_CB * far.T_KB.Inverse();
     const Eigen::Matrix3d R = ExpRotation(noise(1e-3)) * T_RW.R;
     const TimeNs t_ns = i * kBetweenViews_ns;

@@ -13,6 +13,7 @@
 #include "bench/tool.h"
 #include "calibration/boards/chessboard.h"
 #include "calibration/uncertainty/projection_uncertainty.h"
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
@@ -64,7 +65,8 @@ Truth MakeTruth(int views) {
   while (static_cast<int>(t.T_CB.size()) < views) {
     Pose T;
     T.R = ExpRotation({0.6 * u(random), 0.6 * u(random), 0.3 * u(random)});
-    T.p = Eigen::Vector3d(0.08 * u(random), 0.06 * u(random), 0.40 + 0.1 * u(random)) -
+    const Eigen::Vector3d at = DrawVector<3>(u, random);
+    T.p = Eigen::Vector3d(0.08 * at.x(), 0.06 * at.y(), 0.40 + 0.1 * at.z()) -
           T.R * Eigen::Vector3d(0.1, 0.0625, 0);
     BoardSighting seen;
     for (const Eigen::Vector3d& x : points) {
@@ -103,7 +105,7 @@ CornerSet Noised(const CornerSet& exact, std::mt19937& random) {
   std::normal_distribution<double> noise(0, kNoise_px);
   CornerSet set = exact;
   for (BoardSighting& seen : set.seen) {
-    for (Eigen::Vector2d& px : seen.px) px += Eigen::Vector2d(noise(random), noise(random));
+    for (Eigen::Vector2d& px : seen.px) px += DrawVector<2>(noise, random);
   }
   return set;
 }

@@ -30,8 +30,8 @@ void DrawInstrument(const std::vector<std::string>& families, Draw& draw, Vision
   const double lean = draw.Between(-0.5, 0.7), around = draw.Between(0, 2 * std::numbers::pi);
   const Vector3d d_C(std::cos(lean) * std::cos(around), std::cos(lean) * std::sin(around),
                      std::sin(lean));
-  const Vector3d middle_C =
-      depth_m * Vector3d(draw.Between(-0.25, 0.25), draw.Between(-0.12, 0.12), 1);
+  const double down = draw.Between(-0.12, 0.12), across = draw.Between(-0.25, 0.25);
+  const Vector3d middle_C = depth_m * Vector3d(across, down, 1);
   TipMotion& m = s.motion;
   m.T_RC = s.camera.T_RC;
   m.p_CE0 = middle_C + behind_m * d_C;
@@ -45,8 +45,8 @@ void DrawMotion(Draw& draw, VisionSequence& s) {
   const double px_per_m = s.camera.fu_px / m.p_CE0.z();
   const double limit_m_s = kMaxMotion_px / px_per_m * VisionSequence::kRate_hz;
   s.speed_m_s = std::min(draw.Between(0.0, 0.15), limit_m_s);
-  const Vector3d share =
-      Vector3d(draw.Between(0.2, 1), draw.Between(0.1, 0.6), draw.Between(0, 0.5)).normalized();
+  const double z = draw.Between(0, 0.5), y = draw.Between(0.1, 0.6), x = draw.Between(0.2, 1);
+  const Vector3d share = Vector3d(x, y, z).normalized();
   for (int i = 0; i < 3; ++i) {
     m.hz[i] = draw.Between(0.4, 1.5);
     m.phase[i] = draw.Between(0, 2 * std::numbers::pi);
@@ -66,7 +66,8 @@ void DrawPicture(Draw& draw, VisionSequence& s) {
   o.blur_sigma_px = draw.Between(0.5, 1.1);
   o.full_well_electrons = draw.Between(4000, 15000);
   o.tissue.point_R = T_RC * Vector3d(0, 0, depth_m + draw.Between(0.04, 0.1));
-  const Vector3d tilt(draw.Between(-0.5, 0.5), draw.Between(-0.5, 0.5), -1);
+  const double tilt_y = draw.Between(-0.5, 0.5), tilt_x = draw.Between(-0.5, 0.5);
+  const Vector3d tilt(tilt_x, tilt_y, -1);
   o.tissue.normal_R = T_RC.R * tilt.normalized();
 }
 

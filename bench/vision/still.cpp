@@ -63,8 +63,8 @@ void StillMaker::Show(const StillCase& one) {
 
 Still StillMaker::Make(int number) const {
   Draw draw(impl_->seed, static_cast<std::uint64_t>(number));
-  const Vector3d middle_C =
-      kDepth_m * Vector3d(draw.Between(-0.2, 0.2), draw.Between(-0.1, 0.1), 1);
+  const double down = draw.Between(-0.1, 0.1), across = draw.Between(-0.2, 0.2);
+  const Vector3d middle_C = kDepth_m * Vector3d(across, down, 1);
   const double around = draw.Between(0, 2 * std::numbers::pi);
   const double lean = draw.Sign() * impl_->one.angle_deg * std::numbers::pi / 180;
   const double roll = draw.Whole(0, kSides - 1) * 2 * std::numbers::pi / kSides +

@@ -11,6 +11,9 @@ namespace {
 
 constexpr int kParts = 16;
 constexpr double kGainSigmas = 2.6;  // one in a hundred by chance, of 16 parts
+// Least standard error of a gain, in squares of the stated noise: without noise, the parts would
+// differ by rounding errors, and all alike.
+constexpr double kLeastError = 1e-9;
 
 using Indices = std::vector<std::size_t>;
 
@@ -98,7 +101,7 @@ double Gain(const PartErrors& simpler, const PartErrors& richer) {
   for (int k = 0; k < kParts; ++k) {
     square += std::pow(simpler.square_sigmas[k] - richer.square_sigmas[k] - mean, 2);
   }
-  return mean / std::sqrt(std::max(1e-300, square / (n * (n - 1))));
+  return mean / std::max(kLeastError, std::sqrt(square / (n * (n - 1))));
 }
 
 }  // namespace

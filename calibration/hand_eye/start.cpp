@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/levenberg_marquardt.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
@@ -170,7 +171,8 @@ std::array<std::size_t, 3> RandomTriple(std::size_t count, std::mt19937& random)
 Hypothesis OfRandomRotation(HandEyeMount mount, const std::vector<PoseView>& views,
                             std::mt19937& random) {
   std::normal_distribution<double> normal;
-  const Eigen::Quaterniond q(normal(random), normal(random), normal(random), normal(random));
+  const Eigen::Vector4d wxyz = DrawVector<4>(normal, random);
+  const Eigen::Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   Hypothesis h;
   h.T_FC.R = q.normalized().toRotationMatrix();
   std::vector<const PoseView*> all;

@@ -37,8 +37,9 @@ enum class PivotStatus : std::uint8_t {
 const char* Name(PivotStatus status);
 
 struct PivotResidual {
-  Eigen::Vector3d r_R = Eigen::Vector3d::Zero();        ///< tip by this pose less pivot (m), in R
-  Eigen::Vector3d heldout_R = Eigen::Vector3d::Zero();  ///< the same with this pose left out
+  Eigen::Vector3d r_R = Eigen::Vector3d::Zero();  ///< tip by this pose less pivot (m), in R
+  /// The same by a fit without this pose, to the other poses that the fit to all uses.
+  Eigen::Vector3d heldout_R = Eigen::Vector3d::Zero();
   double sigmas = 0.0;  ///< length of r_R in standard deviations, by the noise found
   bool used = true;
   std::string reason;  ///< why not

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/draw_vector.h"
+
 namespace flextip::simulation {
 namespace {
 
@@ -98,7 +100,7 @@ Eigen::Vector3d SimulatedOperator::Tremor(double dt_s) {
   constexpr int kParts = 4;  // of a step: the resonance is integrated with less than 0.1 rad each
   const double h = dt_s / kParts;
   for (int i = 0; i < kParts; ++i) {
-    const Eigen::Vector3d kick(normal_(rng_), normal_(rng_), normal_(rng_));
+    const Eigen::Vector3d kick = DrawVector<3>(normal_, rng_);
     tremor_rate_ += -h * (omega * omega * tremor_ + 2.0 * kTremorDamping * omega * tremor_rate_) +
                     std::sqrt(h) * drive * kick;
     tremor_ += h * tremor_rate_;

@@ -145,7 +145,8 @@ void DrawOthers(const EffectDraw& draw, Rng& rng, HiddenLabel& label) {
   breath["frequency_hz"] = {Uniform(rng, 0.15, 0.5)};
   breath["phase_rad"] = {Uniform(rng, 0.0, 2.0 * std::numbers::pi)};
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-  const Eigen::Vector2d lean(0.12 * Normal(rng), 0.12 * Normal(rng));
+  const double lean_y = 0.12 * Normal(rng), lean_x = 0.12 * Normal(rng);
+  const Eigen::Vector2d lean(lean_x, lean_y);
   const bool along_x = Uniform(rng, 0.0, 1.0) < 0.4 && draw.mean_axis.x() > 0.9;
   if (!along_x) axis = (draw.mean_axis + NormalBasis(draw.mean_axis) * lean).normalized();
   label.parameters["port_moment"]["rest_axis"] = Values(axis);

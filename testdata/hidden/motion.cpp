@@ -143,7 +143,8 @@ Course PressCourse(Rng& rng, double until_s) {
     path.To(place);
     for (int push = 0; push < 2; ++push) {
       const Eigen::Vector3d above = path.Last();
-      const Eigen::Vector3d aside(0.0, Uniform(rng, -0.3, 0.3), Uniform(rng, -0.3, 0.3));
+      const double z = Uniform(rng, -0.3, 0.3), y = Uniform(rng, -0.3, 0.3);
+      const Eigen::Vector3d aside(0.0, y, z);
       Eigen::Vector3d in = above + aside;
       in.x() += Uniform(rng, 0.7, 1.3);
       path.To(in.cwiseMax(-1.0).cwiseMin(1.0), 1.0);

@@ -146,7 +146,8 @@ Pose DrawCameraPose(const Eigen::Vector3d& p_target, const Eigen::Vector3d& axis
       NormalBasis(forward) * Eigen::Vector2d(std::cos(roll), std::sin(roll));
   Pose T_RC;
   T_RC.R << right, forward.cross(right), forward;
-  const Eigen::Vector3d aside(Uniform(rng, -0.01, 0.01), Uniform(rng, -0.01, 0.01), 0.0);
+  const double down = Uniform(rng, -0.01, 0.01), across = Uniform(rng, -0.01, 0.01);
+  const Eigen::Vector3d aside(across, down, 0.0);
   T_RC.p = p_target - distance_m * forward + T_RC.R * aside;
   return T_RC;
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "recording/calibrations/file.h"
@@ -33,7 +34,7 @@ Recording Moved() {
   vision.direction_noise_rad = 1e-3;
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
-  const auto draw = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
+  const auto draw = [&] { return DrawVector<3>(normal, random); };
   for (int i = 0; i < 600; ++i) {
     const double a = 0.021 * i;
     const Eigen::Matrix3d R = ExpRotation({0, 0.4 * std::sin(3.1 * a), 0.4 * std::cos(4.3 * a)});

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "recording/calibrations/file.h"
@@ -46,7 +47,8 @@ class CalibrateStereoCommand : public testing::Test {
     for (int i = 0; i < kPairs; ++i) {
       Pose T_C0B;
       T_C0B.R = ExpRotation({0.5 * u(random), 0.5 * u(random), 0.3 * u(random)});
-      T_C0B.p = Eigen::Vector3d(0.006 + 0.01 * u(random), 0.008 * u(random), 0.09) -
+      const Eigen::Vector2d at = DrawVector<2>(u, random);
+      T_C0B.p = Eigen::Vector3d(0.006 + 0.01 * at.x(), 0.008 * at.y(), 0.09) -
                 T_C0B.R * Eigen::Vector3d(3 * kSquare_m, 2 * kSquare_m, 0);
       for (int eye = 0; eye < 2; ++eye) {
         const Pose T_CB = eye == 0 ? T_C0B : kT_C0C1.Inverse() * T_C0B;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "recording/calibrations/file.h"
@@ -27,7 +28,7 @@ Recording Pivoted(const Eigen::Vector3d& sides_rad, unsigned seed) {
   wrist.orientation_noise_rad = 3e-4;
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  const auto draw = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
+  const auto draw = [&] { return DrawVector<3>(normal, random); };
   for (int i = 0; i < 80; ++i) {
     const double a = 0.3 * i;
     const Eigen::Vector3d w =

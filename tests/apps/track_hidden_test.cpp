@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "recording/recording_reader.h"
@@ -77,8 +78,8 @@ class TrackHidden : public testing::Test {
     wrist.orientation_noise_rad = 3e-4;
     std::mt19937 random(4);
     std::normal_distribution<double> normal;
-    const auto noise = [&](double sd) {
-      return Eigen::Vector3d(sd * normal(random), sd * normal(random), sd * normal(random));
+    const auto noise = [&](double sd) -> Eigen::Vector3d {
+      return sd * DrawVector<3>(normal, random);
     };
     for (int i = -1; i <= kFrames; ++i) {
       const Pose T_RE = Tip(i);

@@ -14,6 +14,7 @@
 #include "calibration/camera/corner_error.h"
 #include "calibration/camera/start.h"
 #include "core/derivative_check.h"
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "tests/calibration/camera_synthetic.h"
 
@@ -106,7 +107,7 @@ TEST(BoardShape, CovarianceCountsTheShape) {
     CameraSolution s = known;
     Misdescribe(RandomOffsets(100 + trial), s.views);
     for (SolvedView& view : s.views) {
-      for (Eigen::Vector2d& px : view.px) px += Eigen::Vector2d(noise(random), noise(random));
+      for (Eigen::Vector2d& px : view.px) px += DrawVector<2>(noise, random);
     }
     ASSERT_TRUE(AdjustBundle(s));
     ASSERT_TRUE(EstimateBoardShape(s));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/camera/start.h"
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "tests/calibration/camera_synthetic.h"
 
@@ -68,7 +69,7 @@ TEST(CameraBundle, CovarianceIsThatOfManyTrials) {
   for (int trial = 0; trial < kTrials; ++trial) {
     CameraSolution s = known;
     for (SolvedView& view : s.views) {
-      for (Eigen::Vector2d& px : view.px) px += Eigen::Vector2d(noise(random), noise(random));
+      for (Eigen::Vector2d& px : view.px) px += DrawVector<2>(noise, random);
     }
     ASSERT_TRUE(AdjustBundle(s, {.estimate_warp = true}));
     Eigen::VectorXd error(kNumbers);

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "core/draw_vector.h"
 #include "vision/camera_model.h"
 
 namespace flextip {
@@ -27,8 +28,7 @@ void AgreesWithVision(Distortion distortion, const std::vector<double>& k) {
   std::uniform_real_distribution<double> u(-0.6, 0.6);
   int tried = 0;
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector2d m =
-        i == 0 ? Eigen::Vector2d::Zero() : Eigen::Vector2d(u(random), u(random));
+    const Eigen::Vector2d m = i == 0 ? Eigen::Vector2d::Zero() : DrawVector<2>(u, random);
     Eigen::Matrix<double, 2, 3> J;
     const auto px = model.Project({m.x(), m.y(), 1.0}, &J);
     if (!px) continue;

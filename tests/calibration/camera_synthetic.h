@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/camera/camera_calibration.h"
+#include "core/draw_vector.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 
@@ -29,6 +30,7 @@ struct Synthetic {
   CameraCalibration camera = KnownCamera();
   Eigen::Vector2d bulge_m = Eigen::Vector2d::Zero();
   double noise_px = 0.1, tilt_rad = 0.5;
+  double depth_m = 0.32;  ///< of the board's middle, in the mean
   int views = 12;
 };
 
@@ -45,7 +47,8 @@ inline std::vector<BoardView> Seen(const Synthetic& s, unsigned seed) {
   while (static_cast<int>(views.size()) < s.views) {
     Pose T_CB;
     T_CB.R = ExpRotation({s.tilt_rad * u(random), s.tilt_rad * u(random), 0.4 * u(random)});
-    T_CB.p = Eigen::Vector3d(0.08 * u(random), 0.06 * u(random), 0.32 + 0.08 * u(random)) -
+    const Eigen::Vector3d at = DrawVector<3>(u, random);
+    T_CB.p = Eigen::Vector3d(0.08 * at.x(), 0.06 * at.y(), s.depth_m + 0.08 * at.z()) -
              T_CB.R * Eigen::Vector3d(0.1, 0.0625, 0);
     BoardView view{fmt::format("view {}", views.size()), {}};
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -53,7 +56,7 @@ inline std::vector<BoardView> Seen(const Synthetic& s, unsigned seed) {
       if (!px) break;
       view.sighting.ids.push_back(static_cast<int>(i));
       view.sighting.x_B.push_back(corners[i]);
-      view.sighting.px.push_back(*px + Eigen::Vector2d(noise(random), noise(random)));
+      view.sighting.px.push_back(*px + DrawVector<2>(noise, random));
     }
     if (view.sighting.ids.size() == corners.size()) views.push_back(view);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibration/em/pairs.h"
+#include "core/draw_vector.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -35,7 +36,7 @@ inline Eigen::Vector3d Distorted(const EmScene& scene, const Eigen::Vector3d& x)
 inline std::vector<EmPair> DrawEm(const EmScene& scene, std::mt19937& random) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto draw = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
+  const auto draw = [&] { return DrawVector<3>(normal, random); };
   std::vector<EmPair> pairs;
   for (int i = 0; i < scene.pairs; ++i) {
     const Eigen::Matrix3d R =

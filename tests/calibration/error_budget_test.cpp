@@ -6,6 +6,7 @@
 #include <random>
 
 #include "calibration/camera/projection_derivative.h"
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "kinematics/tip_bending.h"
@@ -153,15 +154,13 @@ TEST_F(ErrorBudget, AllTogetherAreTheSpreadOverAll) {
     c.T_RC = MovePose(c.T_RC, Draw(chain.hand_eye));
     offset_E = Draw(chain.tip_offset);
     for (TagDetection& tag : seen) {
-      for (Eigen::Vector2d& px : tag.corners_px)
-        px += Eigen::Vector2d(corner(random), corner(random));
+      for (Eigen::Vector2d& px : tag.corners_px) px += DrawVector<2>(corner, random);
     }
   });
   // The exact corners' own covariance says less than the noise that is put on them here.
   auto noisy = tags;
   for (TagDetection& tag : noisy) {
-    for (Eigen::Vector2d& px : tag.corners_px)
-      px += Eigen::Vector2d(corner(random), corner(random));
+    for (Eigen::Vector2d& px : tag.corners_px) px += DrawVector<2>(corner, random);
   }
   const CollarPose pose = EstimateCollarPose(CameraModel(camera), collar, noisy);
   const double scale = std::pow(0.1 / pose.corner_noise_px, 2);

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "calibration/hand_eye/hand_eye.h"
+#include "core/draw_vector.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 
@@ -44,7 +45,8 @@ inline std::function<Pose(double)> Steps(double period_s, double distance_m, dou
     std::uniform_real_distribution<double> u(-1, 1);
     Pose T;
     T.R = ExpRotation({tilt_rad * u(random), tilt_rad * u(random), 1.2 * tilt_rad * u(random)});
-    T.p = distance_m * Eigen::Vector3d(0.2 * u(random), 0.15 * u(random), 1 + 0.15 * u(random)) -
+    const Eigen::Vector3d at = DrawVector<3>(u, random);
+    T.p = distance_m * Eigen::Vector3d(0.2 * at.x(), 0.15 * at.y(), 1 + 0.15 * at.z()) -
           T.R * middle_B;
     return T;
   };
@@ -94,8 +96,8 @@ inline Pose WristOf(const Scene& s, double t) {
 inline HandEyeInput Record(const Scene& s, int views, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  const auto vector = [&](double sd) {
-    return Eigen::Vector3d(sd * normal(random), sd * normal(random), sd * normal(random));
+  const auto vector = [&](double sd) -> Eigen::Vector3d {
+    return sd * DrawVector<3>(normal, random);
   };
   HandEyeInput input;
   input.mount = s.mount;

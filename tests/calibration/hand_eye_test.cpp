@@ -5,6 +5,7 @@
 
 #include "calibration/hand_eye/fit.h"
 #include "core/derivative_check.h"
+#include "core/draw_vector.h"
 #include "core/error.h"
 #include "core/linear_algebra.h"
 #include "tests/calibration/hand_eye_scene.h"
@@ -286,7 +287,7 @@ TEST(HandEye, ACollarOfTagsIsATargetToo) {
       for (const auto& [x, y] : {std::pair(-1, 1), {1, 1}, {1, -1}, {-1, -1}}) {
         view.sighting.x_B.push_back(T_BG * Eigen::Vector3d(0.012 * x, 0.012 * y, 0));
         view.sighting.px.push_back(model.Project(T_CB * view.sighting.x_B.back()).value() +
-                                   Eigen::Vector2d(noise(random), noise(random)));
+                                   DrawVector<2>(noise, random));
       }
     }
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calibration/tip/pivot.h"
+#include "core/draw_vector.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -20,7 +21,7 @@ struct PivotScene {
 
 inline std::vector<PivotPose> DrawPivot(const PivotScene& scene, std::mt19937& random) {
   std::normal_distribution<double> normal;
-  const auto draw = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
+  const auto draw = [&] { return DrawVector<3>(normal, random); };
   Eigen::Vector3d w = draw(), p = draw();
   const double a = scene.correlation, b = std::sqrt(1 - a * a);
   std::vector<PivotPose> poses;

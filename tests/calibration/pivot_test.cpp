@@ -9,6 +9,7 @@
 
 #include "calibration/residual_statistics.h"
 #include "calibration/tip/tip_poses.h"
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "tests/calibration/pivot_scene.h"
 
@@ -122,21 +123,36 @@ TEST(Pivot, OutliersAreNamedAndNothingElse) {
   EXPECT_LT(MahalanobisSquared(e, result.covariance), 22.5);  // 99.9 %
 }
 
+// As long as the pose left out does not change which of the others are outliers: it does in some 4
+// % of the fits (31 of 720), and in 10 % at most here. The errors' covariances turn with the tip,
+// by the error over the lever: 0.6 mm of 350 mm, which leaves 0.2 %.
 TEST(Pivot, HeldOutResidualsAreThoseOfFitsWithoutThePose) {
   PivotScene scene;
   scene.poses = 12;
-  std::mt19937 random(8);
-  const auto poses = DrawPivot(scene, random);
   PivotOptions options;
   options.separate_noise = false;  // the weights do not change with the pose left out
-  const PivotResult all = CalibratePivot(poses, options);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    auto others = poses;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    const PivotResult fit = CalibratePivot(others, options);
-    const Eigen::Vector3d r = poses[i].T_RB * fit.p_BE - fit.p_R;
-    EXPECT_LT((r - all.residuals[i].heldout_R).norm(), 0.02 * r.norm() + 1e-6) << i;
+  int fits = 0, same = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    const auto poses = DrawPivot(scene, random);
+    const PivotResult all = CalibratePivot(poses, options);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (!all.residuals[i].used) continue;
+      auto others = poses;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      const PivotResult fit = CalibratePivot(others, options);
+      ++fits;
+      bool as_before = true;
+      for (std::size_t k = 0; k < others.size(); ++k) {
+        as_before &= fit.residuals[k].used == all.residuals[k < i ? k : k + 1].used;
+      }
+      if (!as_before) continue;
+      ++same;
+      const Eigen::Vector3d r = poses[i].T_RB * fit.p_BE - fit.p_R;
+      EXPECT_LT((r - all.residuals[i].heldout_R).norm(), 0.002 * r.norm() + 1e-7) << i;
+    }
   }
+  EXPECT_GE(same, 0.9 * fits);
 }
 
 TEST(Pivot, OneAxisLeavesTheTipAlongItUnknown) {
@@ -171,11 +187,11 @@ TEST(Pivot, ATipThatWandersIsNoPivot) {
   auto poses = DrawPivot(scene, random);
   std::normal_distribution<double> normal;
   for (std::size_t i = 0; i < poses.size(); i += 2) {
-    poses[i].T_RB.p += 0.05 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    poses[i].T_RB.p += 0.05 * DrawVector<3>(normal, random);
   }
   EXPECT_NE(CalibratePivot(poses).status, PivotStatus::kTooFewPoses);
   for (auto& pose : poses) {
-    pose.T_RB.p += 0.05 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    pose.T_RB.p += 0.05 * DrawVector<3>(normal, random);
   }
   EXPECT_NE(CalibratePivot(poses).status, PivotStatus::kOk);
 }

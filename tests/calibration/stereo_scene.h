@@ -8,6 +8,7 @@
 #include "calibration/camera/solution.h"
 #include "calibration/stereo/solution.h"
 #include "calibration/stereo/stereo_calibration.h"
+#include "core/draw_vector.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 
@@ -67,7 +68,7 @@ struct StereoScene {
 
 inline void AddNoise(double sd_px, std::mt19937& random, SolvedView& view) {
   std::normal_distribution<double> noise(0, sd_px);
-  for (Eigen::Vector2d& px : view.px) px += Eigen::Vector2d(noise(random), noise(random));
+  for (Eigen::Vector2d& px : view.px) px += DrawVector<2>(noise, random);
 }
 
 inline Pose RandomBoardPose(const StereoScene& scene, std::mt19937& random, double depth_m = 0.10) {
@@ -76,8 +77,9 @@ inline Pose RandomBoardPose(const StereoScene& scene, std::mt19937& random, doub
       Eigen::Vector3d(scene.warp.centre_m.x(), scene.warp.centre_m.y(), 0);
   Pose T;
   T.R = ExpRotation({0.6 * u(random), 0.6 * u(random), 0.3 * u(random)});
-  T.p = Eigen::Vector3d(0.010 * u(random), 0.008 * u(random), depth_m * (1 + 0.2 * u(random))) -
-        T.R * centre;
+  const Eigen::Vector3d at = DrawVector<3>(u, random);
+  T.p =
+      Eigen::Vector3d(0.010 * at.x(), 0.008 * at.y(), depth_m * (1 + 0.2 * at.z())) - T.R * centre;
   return T;
 }
 

@@ -48,7 +48,7 @@ Eigen::VectorXd ErrorOf(const StereoSolution& found, const StereoScene& truth) {
 TEST(StereoBundle, CovarianceIsTheSpreadOfWhatIsFound) {
   const StereoScene scene = MakeStereoScene(7, 2);
   std::mt19937 random(4);
-  constexpr int kRuns = 60;
+  constexpr int kRuns = 200;
   double nees = 0, nees_pair = 0, inside = 0;
   for (int run = 0; run < kRuns; ++run) {
     StereoSolution s = Noised(scene, random);
@@ -63,10 +63,11 @@ TEST(StereoBundle, CovarianceIsTheSpreadOfWhatIsFound) {
     const Baseline baseline = BaselineOf(s.T_C0C1, pair.bottomRightCorner<3, 3>());
     inside += std::abs(baseline.length_m - scene.T_C0C1.p.norm()) < baseline.sd_m ? 1.0 / kRuns : 0;
   }
-  // The mean of 60 has a standard deviation of sqrt(2 / (60 n)): 0.039 and 0.075.
-  EXPECT_NEAR(nees, 1.0, 0.12);
-  EXPECT_NEAR(nees_pair, 1.0, 0.23);
-  EXPECT_NEAR(inside, 0.683, 0.18);
+  // Four standard deviations of the mean over the runs: of chi squares per degree of freedom
+  // (22 and 6), and of a share of 0.683.
+  EXPECT_NEAR(nees, 1.0, 4 * std::sqrt(2.0 / (22 * kRuns)));
+  EXPECT_NEAR(nees_pair, 1.0, 4 * std::sqrt(2.0 / (6 * kRuns)));
+  EXPECT_NEAR(inside, 0.683, 4 * std::sqrt(0.683 * 0.317 / kRuns));
 }
 
 // All residuals of the bundle with a shape, the corners' hold on their places among them.

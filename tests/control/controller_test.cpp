@@ -8,6 +8,7 @@
 
 #include "allocation_counter.h"
 #include "core/derivative_check.h"
+#include "core/draw_vector.h"
 #include "kinematics/straight.h"
 
 namespace flextip {
@@ -258,7 +259,7 @@ TEST(Controller, WristKeepsItsDistanceFromThePort) {
       ControlInput input = Chapter4Input();
       // Near either end of the shaft, with wild goals.
       input.p_RW = {i % 2 == 0 ? 0.265 : -0.305, 0.002 * normal(rng), 0.002 * normal(rng)};
-      input.p_RE_desired += 0.3 * Eigen::Vector3d(normal(rng), normal(rng), normal(rng));
+      input.p_RE_desired += 0.3 * DrawVector<3>(normal, rng);
       const ControlOutput out = controller.Step(input);
       ASSERT_TRUE(out.p_RW_command.allFinite());
       if (out.status == ControlStatus::kNoModel) continue;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 
 namespace flextip::diagnosis {
@@ -40,7 +41,7 @@ TEST(HalfNormal, ProbabilityOfAQuadrant) {
     int inside = 0;
     constexpr int kDraws = 400000;
     for (int i = 0; i < kDraws; ++i) {
-      const Eigen::Vector2d unit(normal(rng), normal(rng));
+      const Eigen::Vector2d unit = DrawVector<2>(normal, rng);
       inside += ((mean + L * unit).array() > 0.0).all() ? 1 : 0;
     }
     EXPECT_NEAR(LogPositive(mean, Correlated(rho), {0, 1}), std::log(double(inside) / kDraws), 0.1)

@@ -9,6 +9,7 @@
 #include <functional>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "diagnosis/diagnose.h"
 #include "diagnosis/samples/noise_level.h"
 #include "testdata/hidden/recording.h"
@@ -76,8 +77,8 @@ TEST(WithoutOutliers, OfAHealthyRecordingItStaysHealthy) {
   const auto spoil = [&](auto& series, const auto& add) {
     for (std::size_t k = 20; k < series.size(); k += 50) add(series[k].value);
   };
-  const auto vector = [&](double size) {
-    return Eigen::Vector3d(size * any(random), size * any(random), size * any(random));
+  const auto vector = [&](double size) -> Eigen::Vector3d {
+    return size * DrawVector<3>(any, random);
   };
   spoil(recording.em0->samples, [&](EmSample& s) { s.p_RS += vector(0.05); });
   spoil(recording.vision0->tips, [&](TipObservation& tip) { tip.p_RE += vector(0.05); });

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/draw_vector.h"
+
 namespace flextip::diagnosis {
 namespace {
 
@@ -42,8 +44,7 @@ TEST(Smoothing, NoiseFallsAsStated) {
   std::normal_distribution<double> normal(0.0, kNoise_m);
   const auto t_s = Times(6000);
   std::vector<Eigen::Vector3d> value;
-  for (const double t : t_s)
-    value.push_back(Quadratic(0.01 * t) + Eigen::Vector3d(normal(rng), normal(rng), normal(rng)));
+  for (const double t : t_s) value.push_back(Quadratic(0.01 * t) + DrawVector<3>(normal, rng));
   const Smoothed smoothed = Smooth(t_s, value, kNoise_m);
   double squares = 0.0, standardised = 0.0;
   int nine = 0, inner = 0;

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "core/draw_vector.h"
 #include "core/rotation.h"
 #include "kinematics/beam.h"
 #include "kinematics/plane_beam.h"
@@ -31,7 +32,7 @@ struct BeamTruth {
 class Noise {
  public:
   explicit Noise(unsigned seed) : rng_(seed) {}
-  Eigen::Vector3d Vector(double sd) { return sd * Eigen::Vector3d(n_(rng_), n_(rng_), n_(rng_)); }
+  Eigen::Vector3d Vector(double sd) { return sd * DrawVector<3>(n_, rng_); }
   Eigen::Vector3d Turned(const Eigen::Vector3d& direction, double sd) {
     return ExpRotation(Vector(sd)) * direction;
   }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "estimation/rod_fit.h"
@@ -156,7 +157,7 @@ TEST(ShaftEstimator, CovarianceMatchesMonteCarlo) {
     for (int i = 0; i < runs; ++i) {
       // Truth drawn from the priors as well: only then is the covariance the error's.
       RodProblem problem = Shaft();
-      const auto draw = [&] { return Eigen::Vector3d(normal(rng), normal(rng), normal(rng)); };
+      const auto draw = [&] { return DrawVector<3>(normal, rng); };
       problem.p_port += options.port_prior_m * draw();
       problem.f_tip = 0.25 * options.force_prior_units * unit * draw();
       const RodState truth = RodSolver().Solve(problem);

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "core/draw_vector.h"
 #include "kinematics/joint_step.h"
 #include "kinematics/plane_beam.h"
 #include "kinematics/straight.h"
@@ -17,7 +18,7 @@ namespace {
 Eigen::Vector3d AllowedAngles(const PhantomArm& arm, std::mt19937& rng) {
   std::uniform_real_distribution<double> uniform(-2.0, 1.3);
   for (;;) {
-    const Eigen::Vector3d theta(uniform(rng), uniform(rng), uniform(rng));
+    const Eigen::Vector3d theta = DrawVector<3>(uniform, rng);
     if (arm.WithinLimits(theta)) return theta;
   }
 }

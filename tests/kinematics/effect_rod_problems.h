@@ -53,7 +53,8 @@ inline std::vector<EffectRodProblem> RandomEffectProblems(int count, unsigned se
     const double L = p.rod.length_m = 0.45 + 0.15 * uniform(rng);
     const double EI = p.rod.bending_stiffness_Nm2 = 0.4 + 0.3 * uniform(rng);
     p.rod.p_wrist = 0.1 * vector();
-    p.rod.p_port = p.rod.p_wrist + L * (0.57 + 0.2 * uniform(rng)) * vector().normalized();
+    const Eigen::Vector3d along = vector().normalized();
+    p.rod.p_port = p.rod.p_wrist + L * (0.57 + 0.2 * uniform(rng)) * along;
     p.rod.f_tip = 2.0 * EI / (L * L) * vector();
     p.rod.q_weight = 0.4 * EI / (L * L * L) * vector();
     p.effects.y_wrist = vector();

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "core/draw_vector.h"
 
 namespace flextip {
 namespace {
@@ -20,7 +21,7 @@ TEST(Straight, TipLiesBehindThePortOnTheLineFromTheWrist) {
 TEST(Straight, JacobiansMatchCentralDifferences) {
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto random = [&] { return Eigen::Vector3d(uniform(rng), uniform(rng), uniform(rng)); };
+  const auto random = [&] { return DrawVector<3>(uniform, rng); };
   const double L = 0.4;
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector3d wrist = random();

@@ -27,8 +27,10 @@ std::string Damaged(std::string text, std::mt19937& generator) {
     case 1:
       text[at] = kBytes[random(kBytes.size())];
       return text;
-    case 2:
-      return text.insert(at, 1 + random(3), kBytes[random(kBytes.size())]);
+    case 2: {
+      const char byte = kBytes[random(kBytes.size())];
+      return text.insert(at, 1 + random(3), byte);
+    }
     default:
       return text.erase(at, 1 + random(30));
   }

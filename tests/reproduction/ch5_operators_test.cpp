@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "core/draw_vector.h"
 #include "reproduction/chapter5/groups.h"
 #include "reproduction/chapter5/statistics.h"
 #include "reproduction/chapter5/study.h"
@@ -44,9 +45,9 @@ TEST(Ch5Measures, OutlineOfANoisyPathMatchesItsEnvelope) {
   std::normal_distribution<double> normal;
   std::vector<Vector3d> tips;
   for (int i = 0; i < 2000; ++i) {
-    tips.emplace_back(0.1 + 0.0005 + 0.002 * std::sin(0.013 * i) + 1e-4 * normal(rng),
-                      0.02 * std::sin(0.05 * i) + 1e-4 * normal(rng),
-                      0.02 * std::cos(0.031 * i) + 1e-4 * normal(rng));
+    const Vector3d path(0.1 + 0.0005 + 0.002 * std::sin(0.013 * i), 0.02 * std::sin(0.05 * i),
+                        0.02 * std::cos(0.031 * i));
+    tips.emplace_back(path + 1e-4 * DrawVector<3>(normal, rng));
   }
   for (const int along : {1, 2}) {
     // The deepest path over each of 40,000 places along the wall.

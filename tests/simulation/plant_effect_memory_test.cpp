@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "simulation/plant/plant.h"
 
 namespace flextip::simulation {
@@ -126,7 +127,7 @@ TEST(PlantBacklash, IsAPlayOperatorOfEachAxis) {
   std::normal_distribution<double> step(0.0, 0.0006);
   Vector3d p = Vector3d::Zero();
   for (int i = 0; i < 300; ++i) {
-    p += Vector3d(step(rng), step(rng), step(rng));
+    p += DrawVector<3>(step, rng);
     const PlantShape shape = plant.Solve(p);
     ASSERT_TRUE(shape.IsUsable());
     for (int k = 0; k < 3; ++k) {

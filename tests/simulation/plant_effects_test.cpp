@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "core/draw_vector.h"
 #include "core/rotation.h"
 #include "simulation/plant/chain.h"
 #include "simulation/plant/plant.h"
@@ -233,7 +234,8 @@ TEST(PlantEffects, HingeAndYieldHaveTheDerivativesTheyState) {
   std::mt19937_64 rng(4);
   std::uniform_real_distribution<double> draw(-0.2, 0.2);
   for (int j = 0; j < 12; ++j) {
-    state.u.push_back(Vector3d(1, draw(rng), draw(rng)).normalized());
+    const Eigen::Vector2d across = DrawVector<2>(draw, rng);
+    state.u.push_back(Vector3d(1, across.x(), across.y()).normalized());
   }
   state.s = 0.55;
   const Vector3d t = state.u[0];

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "simulation/render/face.h"
@@ -248,13 +249,14 @@ TEST(RenderEdges, AreaOfTagCellsAgreesWithManyPoints) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-5.5, 5.5), size(-2.0, 2.0), unit(0, 1);
   for (int trial = 0; trial < 40; ++trial) {
-    const Vector2d origin(place(random), place(random));
-    Vector2d a(size(random), size(random)), b(size(random), size(random));
+    const Vector2d origin = DrawVector<2>(place, random);
+    Vector2d a = DrawVector<2>(size, random), b = DrawVector<2>(size, random);
     const Vector2d quad[4] = {origin, origin + a, origin + a + b, origin + b};
     int white = 0;
     constexpr int kPoints = 40000;
     for (int i = 0; i < kPoints; ++i) {
-      const Vector2d p = origin + unit(random) * a + unit(random) * b;
+      const double along_b = unit(random), along_a = unit(random);
+      const Vector2d p = origin + along_a * a + along_b * b;
       white += pattern.WhiteAt(p.x(), p.y());
     }
     EXPECT_NEAR(render::WhitePart(pattern, quad), white / static_cast<double>(kPoints), 0.012);

@@ -7,6 +7,7 @@
 #include <random>
 #include <tuple>
 
+#include "core/draw_vector.h"
 #include "core/error.h"
 #include "core/rotation.h"
 #include "tests/simulation/render_test_scene.h"
@@ -251,14 +252,14 @@ TEST(RenderInput, AnyShaftGivesFiniteLight) {
     camera.width_px = camera.height_px = 96;
     camera.cu_px = camera.cv_px = 47.5;
     Pose T_RE;
-    T_RE.R = ExpRotation(2.0 * Vector3d(normal(random), normal(random), normal(random)));
-    T_RE.p = 0.03 * Vector3d(normal(random), normal(random), 1 + normal(random));
+    T_RE.R = ExpRotation(2.0 * DrawVector<3>(normal, random));
+    T_RE.p = 0.03 * (Vector3d(0, 0, 1) + DrawVector<3>(normal, random));
     if (trial == 0) T_RE.R << 0, 1, 0, 0, 0, 1, 1, 0, 0;  // along the optical axis
     if (trial == 0) T_RE.p = {0, 0, 0.1};
     ShaftCurve curve = ArcShaft(T_RE, 0.3, 0.05 + 0.01 * trial, 0.005);
     curve.points.insert(curve.points.begin() + 7, curve.points[7]);
     Occluder capsule;
-    capsule.a_R = 0.05 * Vector3d(normal(random), normal(random), normal(random));
+    capsule.a_R = 0.05 * DrawVector<3>(normal, random);
     capsule.b_R = trial == 1 ? Vector3d(-capsule.a_R) : Vector3d(0.01, 0.02, 0.05);
     o.occluders = {capsule};
     const LinearImage image = Laparoscope(camera, HexagonCollar(), o).RenderLinear(curve, 0);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "simulation/plant/plant.h"
 
 namespace flextip::simulation {
@@ -47,7 +48,8 @@ TEST(SoftCylinder, DerivativeMatchesDifferences) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   int torn = 0;
   for (int i = 0; i < 300; ++i) {
-    const Vector3d p(0.745 + 0.006 * uniform(rng), 0.01 * uniform(rng), 0.012 * uniform(rng));
+    const Vector3d at = DrawVector<3>(uniform, rng);
+    const Vector3d p(0.745 + 0.006 * at.x(), 0.01 * at.y(), 0.012 * at.z());
     const LinearTipForce force = silicone.At(p);
     for (int k = 0; k < 3; ++k) {
       const double h = 1e-7;

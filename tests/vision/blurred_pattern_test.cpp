@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/derivative_check.h"
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "tests/vision/optics_reference.h"
@@ -143,7 +144,7 @@ TEST(BlurredPattern, KnowsThePerspective) {
     const Eigen::Matrix3d to_tag = from_tag.inverse();
     const double sigma_m = sigma(random) * cell_m / depth_m;
     const Eigen::Matrix2d spread_m = sigma_m * sigma_m * Eigen::Matrix2d::Identity();
-    Eigen::Vector2d uv(place(random), place(random));
+    Eigen::Vector2d uv = DrawVector<2>(place, random);
     const int along = draw % 2;  // a line and away from crossings
     uv[along] = std::floor(uv[along]) + 0.5;
     uv[1 - along] = std::round(uv[1 - along]) + 0.2 * one(random);

@@ -44,7 +44,8 @@ std::vector<Eigen::Vector3d> Points(unsigned seed, int count) {
   std::vector<Eigen::Vector3d> points{{0, 0, 0.1}, {1e-9, -1e-9, 0.2}, {1e-5, 2e-5, 0.1}};
   while (static_cast<int>(points.size()) < count) {
     const double depth = z(random);
-    points.emplace_back(x(random) * depth, y(random) * depth, depth);
+    const double across = y(random), along = x(random);
+    points.emplace_back(along * depth, across * depth, depth);
   }
   return points;
 }

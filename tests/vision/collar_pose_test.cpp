@@ -1,5 +1,6 @@
 // The collar's pose from corners that are known, exactly and with known noise.
 #include "vision/tags/collar_pose.h"
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 
 #include <gtest/gtest.h>
@@ -20,9 +21,10 @@ const TagCollar kCollar = PrismCollar(6, 0.005, 0.005, -0.03);
 Pose RandomPose(std::mt19937& random) {
   std::uniform_real_distribution<double> u(-1, 1);
   Pose T_CE;
-  T_CE.R = ExpRotation(0.5 * Eigen::Vector3d(u(random), u(random), u(random))) *
-           ExpRotation({M_PI * u(random), 0, 0});
-  T_CE.p = Eigen::Vector3d(0.03 + 0.01 * u(random), 0.01 * u(random), 0.10 + 0.02 * u(random));
+  const double around = M_PI * u(random);
+  const Eigen::Vector3d turn = 0.5 * DrawVector<3>(u, random), at = DrawVector<3>(u, random);
+  T_CE.R = ExpRotation(turn) * ExpRotation({around, 0, 0});
+  T_CE.p = Eigen::Vector3d(0.03 + 0.01 * at.x(), 0.01 * at.y(), 0.10 + 0.02 * at.z());
   return T_CE;
 }
 

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/error.h"
 #include "tests/vision/scope_scene.h"
 
@@ -20,9 +21,10 @@ TEST(CollarSearch, FindsShiftsOf30Pixels) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int i = 0; i < 25; ++i) {
-    const Pose T_RE = ScopePose(0.5 * unit(random), 0.5 * unit(random));
+    const Eigen::Vector2d turn = 0.5 * DrawVector<2>(unit, random);
+    const Pose T_RE = ScopePose(turn.x(), turn.y());
     const Image image = scope.Render(ScopeShaft(T_RE), i);
-    const Eigen::Vector2d shift_px(30 * unit(random), 30 * unit(random));
+    const Eigen::Vector2d shift_px = 30 * DrawVector<2>(unit, random);
     const Pose expected = search.Shifted(T_CR * T_RE, -shift_px);
     const CollarSearch::Match match = search.Find(image, expected, 32);
     EXPECT_LT((match.shift_px - shift_px).norm(), 1.5) << shift_px.transpose();

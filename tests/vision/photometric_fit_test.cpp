@@ -1,4 +1,5 @@
 // The photometric fit on rendered frames beside the truth.
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "vision/photometric/fit.h"
 
@@ -176,8 +177,7 @@ Image Frame(const CameraCalibration& camera, const TagCollar& collar, const Pose
 // A pose from which the tags are seen `shift_px` away and turned by `turn_deg`.
 Pose Off(double shift_px, double turn_deg, std::mt19937& random) {
   std::normal_distribution<double> normal;
-  const Eigen::Vector3d axis =
-      Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+  const Eigen::Vector3d axis = DrawVector<3>(normal, random).normalized();
   const double angle = 2 * M_PI * std::uniform_real_distribution<double>()(random);
   const CameraCalibration camera = ScopeCamera();
   const Pose T_CR = camera.T_RC.Inverse();

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/rotation.h"
 #include "vision/camera_model.h"
 
@@ -114,7 +115,7 @@ std::vector<TagDetection> NoisyTags(const CameraCalibration& camera, const TagCo
     tag.id = placed.id;
     const auto corners = TrueCorners(camera, placed);
     for (int i = 0; i < 4; ++i) {
-      tag.corners_px[i] = corners[i] + noise_px * Eigen::Vector2d(noise(random), noise(random));
+      tag.corners_px[i] = corners[i] + noise_px * DrawVector<2>(noise, random);
     }
     tags.push_back(tag);
   }

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "core/error.h"
 #include "core/rotation.h"
 #include "tests/vision/synthetic_tag.h"
@@ -79,11 +80,13 @@ std::vector<PlacedTag> TagField(double side_px, unsigned seed) {
   for (int id = 0; id < 45; ++id) {
     const double z = 0.1, column = 140 + 125 * (id % 9), row = 75 + 140 * (id / 9);
     PlacedTag tag{id, side_px / camera.fu_px * z, {}};
-    const Eigen::Vector3d tilt_axis = Eigen::Vector3d(u(random), u(random), 0).normalized();
-    tag.T_CG.R =
-        ExpRotation(0.8 * std::abs(u(random)) * tilt_axis) * ExpRotation({0, 0, 3.1 * u(random)});
-    tag.T_CG.p = Eigen::Vector3d((column + u(random) - camera.cu_px) / camera.fu_px * z,
-                                 (row + u(random) - camera.cv_px) / camera.fv_px * z, z);
+    const Eigen::Vector2d across = DrawVector<2>(u, random);
+    const Eigen::Vector3d tilt_axis = Eigen::Vector3d(across.x(), across.y(), 0).normalized();
+    const double roll = 3.1 * u(random), tilt = 0.8 * std::abs(u(random));
+    tag.T_CG.R = ExpRotation(tilt * tilt_axis) * ExpRotation({0, 0, roll});
+    const Eigen::Vector2d off_px = DrawVector<2>(u, random);
+    tag.T_CG.p = Eigen::Vector3d((column + off_px.x() - camera.cu_px) / camera.fu_px * z,
+                                 (row + off_px.y() - camera.cv_px) / camera.fv_px * z, z);
     tags.push_back(tag);
   }
   return tags;

@@ -1,5 +1,6 @@
 // The outline beside the tags and alone, the pose beside the truth of rendered frames.
 #include "vision/outline/tip_outline.h"
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 
 #include <gtest/gtest.h>
@@ -62,8 +63,9 @@ class Outline : public testing::Test {
   }
   static Pose DrawPose(std::mt19937& random) {
     std::uniform_real_distribution<double> unit(-1, 1);
-    return ScopePose(0.3 * unit(random), unit(random),
-                     {0.004 * unit(random), 0.004 * unit(random), 0.008 * unit(random)});
+    const Eigen::Vector3d offset{0.004 * unit(random), 0.004 * unit(random), 0.008 * unit(random)};
+    const Eigen::Vector2d turn = DrawVector<2>(unit, random);
+    return ScopePose(0.3 * turn.x(), turn.y(), offset);
   }
 };
 

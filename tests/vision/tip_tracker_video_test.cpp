@@ -5,6 +5,7 @@
 #include <random>
 #include <thread>
 
+#include "core/draw_vector.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "tests/vision/scope_scene.h"
@@ -45,7 +46,8 @@ TEST(TipTrackerVideo, FollowsJumpsOf30Pixels) {
     if (std::abs(next.x()) > 0.012 || std::abs(next.y()) > 0.01)
       next = offset_C - 0.005 * offset_C.normalized();
     offset_C = next;
-    const Pose T_RE = ScopePose(0.2 + 0.02 * unit(random), 0.25 + 0.03 * unit(random), offset_C);
+    const Eigen::Vector2d turn = DrawVector<2>(unit, random);
+    const Pose T_RE = ScopePose(0.2 + 0.02 * turn.x(), 0.25 + 0.03 * turn.y(), offset_C);
     const TipTrack track = tracker.Track(scene.At(T_RE, i), i * kFrame_ns);
     ASSERT_EQ(track.tip.status, TipStatus::kOk) << i;
     EXPECT_LT(Error_mm(track, T_RE), 0.15) << i;

@@ -13,7 +13,8 @@ inline Eigen::Vector2d DrawJoints(const PlanarArm& arm, std::mt19937_64& rng) {
   std::uniform_real_distribution<double> first(arm.limits.joint1_min, arm.limits.joint1_max);
   std::uniform_real_distribution<double> second(arm.limits.joint2_min, arm.limits.joint2_max);
   for (;;) {
-    const Eigen::Vector2d theta(first(rng), second(rng));
+    const double second_angle = second(rng), first_angle = first(rng);
+    const Eigen::Vector2d theta(first_angle, second_angle);
     if (arm.WithinLimits(theta)) return theta;
   }
 }
