@@ -10,7 +10,7 @@
 namespace flextip {
 namespace {
 
-// Of chi-squared a measurement, 1 where the recording is as it says. A camera that stands 5 mm aside
+// Of chi-squared a measurement, 1 where the recording is as it says. A camera that stands 5 mm off
 // leaves 500 times the noise of vision; a unit or a frame gone wrong leaves more.
 constexpr double kDoubtful = 4.0, kAbsurd = 1e6;
 constexpr double kFewFailed = 0.1;     // of all samples
