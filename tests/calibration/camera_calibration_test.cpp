@@ -168,10 +168,11 @@ TEST(CameraCalibration, HeldOutViewsChooseTheSimpleLens) {
   EXPECT_GE(simple, 4);
 }
 
-// A lens that reaches the picture's corners, seen from near: radial-tangential and opencv 5 are off
-// by 0.1 px and more there, opencv 8 and 12 follow the fisheye within the noise. Each of these two
-// is better by a standard error of 8 views by chance in P(t_7 > 1) = 18 % of draws at most, so the
-// fisheye wins in 65 % at least: in 4 of 10 or more with 97 %. (Of 20 draws it won 16.)
+// A lens that does not turn back within the picture, seen from near: the views show what
+// radial-tangential and opencv 5 leave, while opencv 8 and 12 follow the fisheye within the noise.
+// Each of these two is better by a standard error of 8 views by chance in P(t_7 > 1) = 18 % of
+// draws at most, so the fisheye wins in 65 % at least: in 4 of 10 or more with 97 %. (In 16 of 20
+// it did.)
 TEST(CameraCalibration, HeldOutViewsChooseTheFisheye) {
   Synthetic s{.noise_px = 0.03, .depth_m = 0.2};
   s.camera.distortion = Distortion::kEquidistant;
