@@ -83,7 +83,7 @@ Judgement JudgeEstimates(const EstimateTotals& t) {
   Judgement judged;
   judged.says = t.ok > 0 ? fmt::format(
                                "Load, port and shape were found at {} of {} samples; the "
-                               "tip is known to {} an axis.",
+                               "tip is known to {} an axis by the stated noise.",
                                t.ok, t.samples, Millimetres(t.tip_sd_m))
                          : fmt::format(
                                "The sensors do not tell the load at any of {} samples: the "

@@ -149,7 +149,7 @@ Figure BarsOf(const ComparedNumber& number, const Comparison& comparison) {
   FigureTrace bars{.kind = FigureTrace::Kind::kBars};
   for (std::size_t i = 0; i < comparison.names.size(); ++i) {
     bars.labels.push_back(comparison.names[i]);
-    bars.x.push_back(*number.values[i]);
+    bars.y.push_back(*number.values[i]);
     bars.texts.push_back(SpokenValue(number.key, *number.values[i]));
   }
   figure.traces.push_back(std::move(bars));

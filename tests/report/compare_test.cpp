@@ -54,6 +54,10 @@ TEST_F(Compared, SaysWhichTrackWasBestAndByHowMuch) {
   EXPECT_EQ(Find(comparison, "ok").Best(), 1U);
   EXPECT_EQ(Find(comparison, "frames").Best(), std::nullopt);
   ASSERT_EQ(comparison.figures.size(), 2U);  // bars, and the tip's x
+  const FigureTrace& bars = comparison.figures[0].traces.at(0);
+  EXPECT_THAT(bars.labels, ElementsAre("before", "after"));
+  EXPECT_THAT(bars.y, ElementsAre(0.0004, 0.0001));
+  for (const Figure& figure : comparison.figures) EXPECT_NE(FigureText(figure), "");
   const Figure& path = comparison.figures[1];
   ASSERT_EQ(path.traces.size(), 2U);
   EXPECT_EQ(path.traces[1].name, "after");
