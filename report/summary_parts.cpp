@@ -69,8 +69,8 @@ void PutNameFirst(std::vector<std::string>& keys) {
     static const std::vector<std::string> names = {
         "view",  "image", "left", "right",   "part",       "lens",    "motion", "parameter",
         "field", "hold",  "pose", "seconds", "distance_m", "finding", "stream"};
-    static const std::vector<std::string> words = {"reason", "left_reason", "right_reason", "text",
-                                                   "mend"};
+    static const std::vector<std::string> words = {"reason", "left_reason", "right_reason",
+                                                   "text",   "mend",        "best"};
     if (std::find(names.begin(), names.end(), key) != names.end()) return 0;
     return std::find(words.begin(), words.end(), key) != words.end() ? 2 : 1;
   };
