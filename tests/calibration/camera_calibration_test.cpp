@@ -168,12 +168,24 @@ TEST(CameraCalibration, HeldOutViewsChooseTheSimpleLens) {
   EXPECT_GE(simple, 4);
 }
 
+// A lens that does not turn back within the picture, seen from near: the views show what
+// radial-tangential and opencv 5 leave, while opencv 8 and 12 follow the fisheye within the noise.
+// Each of these two is better by a standard error of 8 views by chance in P(t_7 > 1) = 18 % of
+// draws at most, so the fisheye wins in 65 % at least: in 4 of 10 or more with 97 %. (In 17 of 20
+// it did.)
 TEST(CameraCalibration, HeldOutViewsChooseTheFisheye) {
-  Synthetic s{.noise_px = 0.03};
+  Synthetic s{.noise_px = 0.03, .depth_m = 0.2};
   s.camera.distortion = Distortion::kEquidistant;
-  s.camera.fu_px = s.camera.fv_px = 220;
-  s.camera.distortion_coefficients = {0.05, -0.02, 0.01, -0.003};
-  EXPECT_EQ(ChosenLens(s), "equidistant");
+  s.camera.fu_px = s.camera.fv_px = 280;  // corners at 78 degrees
+  s.camera.distortion_coefficients = {0.05, -0.01, 0.003, -0.0005};
+  ASSERT_TRUE(FoldsInPicture(s.camera).empty());
+  int fisheye = 0;
+  for (unsigned seed = 11; seed < 21; ++seed) {
+    const std::string lens = ChosenLens(s, seed);
+    fisheye += lens == "equidistant";
+    EXPECT_TRUE(lens == "equidistant" || lens == "opencv 8" || lens == "opencv 12") << lens;
+  }
+  EXPECT_GE(fisheye, 4);
 }
 
 TEST(CameraCalibration, HeldOutViewsChooseThePrism) {
