@@ -37,6 +37,17 @@ std::unique_ptr<FrameSets> OpenCameras(const std::filesystem::path& source, cons
                                      std::move(pairs));
 }
 
+void RefuseUnknownPose(const std::filesystem::path& source, const Recording& recording) {
+  const auto check = [&](const char* name, const std::optional<CameraStream>& camera) {
+    if (!camera || camera->has_T_RC) return;
+    throw InputError::At((source / name / "sensor.yaml").string(), 0,
+                         "T_RC is unknown, and tracking gives the tip in R: find it by "
+                         "flextip calibrate hand-eye and give it with --calibration");
+  };
+  check("cam0", recording.cam0);
+  check("cam1", recording.cam1);
+}
+
 /// Reads camera and collar; the frames are opened by the caller.
 TrackInput ReadCameraFiles(const CameraFiles& files, const TrackInputOptions& options) {
   TrackInput input;
@@ -62,6 +73,7 @@ TrackInput OpenRecordingToTrack(const std::filesystem::path& recording,
   TrackInput input{std::move(read.recording), nullptr, std::move(read.warnings), {}};
   input.recording.vision0.reset();  // found anew
   input.calibrations = ApplyCalibrations(options.calibrations, input.recording, input.warnings);
+  RefuseUnknownPose(recording, input.recording);
   input.frames = OpenCameras(recording, options.range, input.recording);
   return input;
 }

@@ -235,6 +235,12 @@ TEST_F(TrackCommand, RefusesWhatItCannotTrack) {
   auto live = Arguments("no-such-stream", "out");
   live.insert(live.begin() + 1, "--live");
   EXPECT_TRUE(IsRefused(RunProgram(live), {"live source"}));
+  std::string camera = ReadText(folder_ / "rec/cam0/sensor.yaml");
+  const auto pose = camera.find("T_RC: ");
+  camera.replace(pose, camera.find('\n', pose) - pose, "T_RC: unknown");
+  folder_.Write("rec/cam0/sensor.yaml", camera);
+  EXPECT_TRUE(IsRefused(RunProgram({"track", rec, "-o", out}),
+                        {"cam0/sensor.yaml", "T_RC is unknown", "calibrate hand-eye"}));
   EXPECT_FALSE(fs::exists(out));
 }
 
