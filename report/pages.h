@@ -35,5 +35,7 @@ void WriteDiagnoseReport(const std::filesystem::path& folder);
 void WriteReproduceReport(const std::filesystem::path& folder);
 /// The figures of figures.json (which must be there) and table.csv.
 void WriteMapReport(const std::filesystem::path& folder);
+/// What was assumed, and every stream over time.
+void WriteImportReport(const std::filesystem::path& folder);
 
 }  // namespace flextip::report

@@ -29,6 +29,7 @@ const std::vector<CommandPage>& Pages() {
       {"detect", WriteDetectReport, {"tags.csv"}},
       {"calibrate", WriteCalibrateReport},
       {"diagnose", WriteDiagnoseReport, {"diagnosis.json", "residuals.csv"}},
+      {"import", WriteImportReport, {"recording.yaml"}},
       {"map", WriteMapReport, {"figures.json", "table.csv"}},
       {"reproduce", WriteReproduceReport, {"figures.json", "table.csv"}}};
   return pages;

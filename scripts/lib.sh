@@ -6,12 +6,12 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 BUILD_PACKAGES=(
   cmake ninja-build g++ libopencv-dev libapriltag-dev libeigen3-dev libceres-dev libcli11-dev
   libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev libcairo2-dev
-  pkg-config
+  liblz4-dev libzstd-dev pkg-config
 )
-# More for tests, benchmarks, the thesis's figures and checks; opencv-doc holds real chessboard
-# pictures.
+# More for tests, benchmarks, the thesis's figures, bags of ROS 1 and checks; opencv-doc holds real
+# chessboard pictures.
 TEST_PACKAGES=(
-  libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev clang clang-format clang-tidy opencv-doc
+  libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev librosbag-storage-dev clang clang-format clang-tidy opencv-doc
 )
 NODE_PACKAGES=(nodejs npm)
 

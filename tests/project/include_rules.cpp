@@ -24,7 +24,7 @@ const std::map<std::string, Names>& Arrows() {
   static const Names models{"core", "kinematics", "estimation", "control", "vision", "recording"};
   static const Names libraries{"core",      "kinematics", "estimation",  "control",    "vision",
                                "recording", "pipeline",   "calibration", "simulation", kClosedLoop,
-                               "diagnosis", "report",     "workspace"};
+                               "diagnosis", "report",     "workspace",   "exchange"};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
@@ -33,6 +33,7 @@ const std::map<std::string, Names>& Arrows() {
       {"control", {"core", "kinematics", "estimation"}},
       {"vision", {"core"}},
       {"recording", {"core"}},
+      {"exchange", {"core", "recording"}},
       {"pipeline", models},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
