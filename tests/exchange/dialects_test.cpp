@@ -94,7 +94,7 @@ std::vector<PoseDialect> PoseDialects() {
                  "\"Time (s)\",\"x\",\"y\",\"z\",\"qx\",\"qy\",\"qz\",\"qw\"\n",
                  [](const PoseRow& r) {
                    auto fields = Fields(Seconds(r.t_ns), Xyzw(r));
-                   for (auto& field : fields) field = "\"" + WithComma(field) + "\"";
+                   for (auto& field : fields) field = fmt::format("\"{}\"", WithComma(field));
                    return Joined(fields, ",");
                  }});
   all.push_back({"no header", "",

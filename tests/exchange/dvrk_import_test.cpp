@@ -1,4 +1,5 @@
 // Sessions as the versions of the dVRK's recorder leave them.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -42,21 +43,15 @@ class DvrkImport : public testing::Test {
               "distortion_model: radial-tangential\ndistortion_coefficients: [0, 0, 0, 0]\n");
   }
 
-  static std::string Times() {
+  // The times as a list, or inside what stands before and behind each.
+  static std::string Times(const char* before = "", const char* behind = "") {
     std::string text;
     for (int i = 0; i < kVideoFrames; ++i) {
-      text += (i > 0 ? ", " : "") + std::to_string(kFirst + 40'000'000 * i);
+      text += fmt::format("{}{}{}{}", i > 0 ? ", " : "", before, kFirst + 40'000'000 * i, behind);
     }
     return text;
   }
-  static std::string Frames() {
-    std::string text;
-    for (int i = 0; i < kVideoFrames; ++i) {
-      text += (i > 0 ? ", " : "") + (R"({"cpu_ns": )" + std::to_string(kFirst + 40'000'000 * i)) +
-              R"(, "gst_ns": 0})";
-    }
-    return text;
-  }
+  static std::string Frames() { return Times(R"({"cpu_ns": )", R"(, "gst_ns": 0})"); }
 
   ImportPlan Plan() const {
     ImportPlan plan = PlanWithSettings();

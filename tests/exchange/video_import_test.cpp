@@ -1,4 +1,5 @@
 // A video with its times, camera and collar.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "exchange/mapping_file.h"
@@ -132,8 +133,8 @@ TEST_F(VideoImport, TheRecordersSideCarHoldsTimes) {
   std::string frames, listed;
   for (int i = 0; i < kFrames; ++i) {
     const TimeNs t_ns = 1'700'000'000'000'000'001 + 40'000'000 * i;
-    frames += (i > 0 ? ", " : "") + ("{\"cpu_ts\": " + std::to_string(t_ns)) + ", \"gst_ts\": 5}";
-    listed += (i > 0 ? ", " : "") + std::to_string(t_ns);
+    frames += fmt::format("{}{{\"cpu_ts\": {}, \"gst_ts\": 5}}", i > 0 ? ", " : "", t_ns);
+    listed += fmt::format("{}{}", i > 0 ? ", " : "", t_ns);
   }
   for (const auto& text :
        {"{\"type\": \"dc::sidecar@1.0.0\", \"estimated_latency\": 0.05, \"frames\": [" + frames +

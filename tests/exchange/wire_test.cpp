@@ -45,7 +45,7 @@ TEST(Wire, CountsBeyondTheMessageAreRefused) {
 
 TEST(Wire, AWrenchOfRos1) {
   Buffer bytes{9, 0, 0, 0, 5, 0, 0, 0, 250, 0, 0, 0, 1, 0, 0, 0, 'f'};
-  for (const std::uint8_t high : {0x3F, 0xBF, 0x40, 0, 0, 0}) {
+  for (const std::uint8_t high : Buffer{0x3F, 0xBF, 0x40, 0, 0, 0}) {
     bytes.insert(bytes.end(), {0, 0, 0, 0, 0, 0, 0, high});
   }
   const NumbersMessage message = ReadWrenchStamped(WireReader(bytes, WireFormat::kRos1));
