@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/command_uses.h"
 #include "apps/common/commands.h"
+#include "apps/common/findings.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
@@ -146,7 +148,7 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
 }
 
 void RunEstimate(const EstimateOptions& options, bool quiet) {
-  const InputRead read = ReadInput(options.input);
+  const InputRead read = ReadInput(options.input, UseOfEstimate(), quiet);
   const Recording& recording = read.recording;
   if (!recording.wrist0) {
     throw InputError(options.input.recording.string() +
@@ -156,6 +158,7 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   if (!options.model.empty()) inputs.push_back(options.model);
   OutputFolder output(options.input.out, "estimate", {.force = options.force, .inputs = inputs});
   output.Warn(read.warnings);
+  output.Beware(FindingsJson(read.findings));
   if (recording.cam0 && !recording.vision0) {
     output.Warn("cam0 has not been tracked: run flextip track and pass its folder with --tracked");
   }

@@ -51,6 +51,12 @@ bool IsTable(const Json& value) {
          std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_object(); });
 }
 
+/// Findings are the result of a check; elsewhere they have a box of their own.
+bool IsShownAsTable(const Json& summary, const std::string& key) {
+  const bool in_a_box = key == "findings" && TextOf(summary, "command") != "check";
+  return key != "warnings" && !in_a_box && IsTable(summary[key]);
+}
+
 std::vector<std::string> ColumnKeys(const Json& items) {
   std::vector<std::string> keys;
   for (const auto& item : items) {
@@ -111,8 +117,19 @@ void AddJsonTable(Report& report, const std::string& name, const Json& items) {
 
 Report TitledPage(const std::filesystem::path& folder, const std::string& title) {
   const Json summary = ReadSummary(folder);
-  return Report(title, fmt::format("{}   (flextip {})", TextOf(summary, "command"),
+  Report report(title, fmt::format("{}   (flextip {})", TextOf(summary, "command"),
                                    TextOf(summary, "version")));
+  AddFindings(report, folder);
+  return report;
+}
+
+void AddFindings(Report& report, const std::filesystem::path& folder) {
+  const Json summary = ReadSummary(folder);
+  std::vector<std::pair<std::string, std::string>> findings;
+  if (TextOf(summary, "command") == "check") return;  // its result, in a table
+  for (const auto& f : summary.value("findings", Json::array()))
+    findings.emplace_back(TextOf(f, "text"), TextOf(f, "mend"));
+  report.AddBeware(findings);
 }
 
 std::string CommandOf(const std::filesystem::path& folder) {
@@ -136,7 +153,7 @@ void AddSummaryNumbers(Report& report, const std::filesystem::path& folder) {
 void AddSummaryTables(Report& report, const std::filesystem::path& folder) {
   const Json summary = ReadSummary(folder);
   for (const auto& [key, value] : summary.items()) {
-    if (key != "warnings" && IsTable(value)) AddJsonTable(report, key, value);
+    if (IsShownAsTable(summary, key)) AddJsonTable(report, key, value);
   }
 }
 
@@ -149,8 +166,9 @@ Report BeginPage(const std::filesystem::path& folder, const std::string& title) 
   std::vector<std::string> warnings;
   for (const auto& w : summary.value("warnings", Json::array())) warnings.push_back(Shown("", w));
   report.AddWarnings(warnings);
-  const bool has_tables = std::any_of(summary.items().begin(), summary.items().end(),
-                                      [](const auto& item) { return IsTable(item.value()); });
+  const bool has_tables =
+      std::any_of(summary.items().begin(), summary.items().end(),
+                  [&](const auto& item) { return IsShownAsTable(summary, item.key()); });
   if (has_tables) report.AddHeading("Results");
   AddSummaryTables(report, folder);
   return report;

@@ -8,12 +8,16 @@
 
 namespace flextip::report {
 
-/// Begins a page with `title`; below it the command and the version.
+/// Begins a page with `title`; below it the command and the version, and what the check of the
+/// input found (the summary's `findings`), each with the line that mends it.
 Report TitledPage(const std::filesystem::path& folder, const std::string& title);
 
 /// Begins a page as most commands have it: the result in a sentence, numbers, warnings, and a table
 /// for each list or map of alike things (controllers, views, ...).
 Report BeginPage(const std::filesystem::path& folder, const std::string& title);
+
+/// Adds what the check of the input found; nothing where it found nothing, and for a check itself.
+void AddFindings(Report& report, const std::filesystem::path& folder);
 
 /// Adds every number of summary.json in large.
 void AddSummaryNumbers(Report& report, const std::filesystem::path& folder);

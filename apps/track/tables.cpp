@@ -204,11 +204,12 @@ void TrackTables::Save(const std::string& state) {
   fs::rename(fresh, mark_);  // at once: the mark is whole at any time
 }
 
-void TrackTables::Finish(const TagCollar& collar, double rate_hz) {
+void TrackTables::Finish(const TagCollar& collar, double rate_hz, bool in_R) {
   Save("");
   VisionStream stream;
   stream.rate_hz = rate_hz;
-  stream.comment = "tip by tags";
+  stream.comment =
+      in_R ? "tip by tags" : "tip by tags, in the camera's frame C: its pose in R is not known";
   stream.direction_noise_rad =
       std::sqrt(sums.squared_direction_noise / static_cast<double>(std::max(1L, sums.ok)));
   WriteVisionSettings(folder_ / "vision0", stream);

@@ -46,8 +46,9 @@ class TrackTables {
   /// `state`: of what makes the frames, handed out by `state` when a run goes on.
   void Save(const std::string& state);
   const std::string& state() const { return state_; }
-  /// Writes both sensor.yaml beside the tables and takes unfinished.json away.
-  void Finish(const TagCollar& collar, double rate_hz);
+  /// Writes both sensor.yaml beside the tables and takes unfinished.json away. `in_R`: the camera's
+  /// place in R is known.
+  void Finish(const TagCollar& collar, double rate_hz, bool in_R);
 
  private:
   void Resume();

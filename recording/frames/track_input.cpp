@@ -37,17 +37,25 @@ std::unique_ptr<FrameSets> OpenCameras(const std::filesystem::path& source, cons
                                      std::move(pairs));
 }
 
+bool IsCalibrated(const std::string& name, const std::vector<UsedCalibration>& used) {
+  return std::any_of(used.begin(), used.end(), [&](const UsedCalibration& one) {
+    return std::find(one.names.begin(), one.names.end(), name) != one.names.end();
+  });
+}
+
 /// Reads camera and collar; the frames are opened by the caller.
 TrackInput ReadCameraFiles(const CameraFiles& files, const TrackInputOptions& options) {
   TrackInput input;
   ReadLog log;
   CameraStream& camera = input.recording.cam0.emplace();
   const auto format = GuessCameraFormat(files.camera);
-  camera.calibration = ReadCameraDescription(files.camera, format).calibration;
+  const CameraDescription description = ReadCameraDescription(files.camera, format);
+  camera.calibration = description.calibration;
   input.recording.tags0 = ReadCollarFile(files.collar, log);
   if (files.rate_hz) camera.calibration.rate_hz = *files.rate_hz;
   input.warnings = std::move(log.warnings);
   input.calibrations = ApplyCalibrations(options.calibrations, input.recording, input.warnings);
+  input.has_pose = description.has_T_RC || IsCalibrated("cam0.T_RC", input.calibrations);
   return input;
 }
 

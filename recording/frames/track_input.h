@@ -20,6 +20,7 @@ struct TrackInput {
   std::unique_ptr<FrameSets> frames;
   std::vector<std::string> warnings;
   std::vector<UsedCalibration> calibrations;  ///< already in `recording`
+  bool has_pose = true;  ///< false: cam0's place in R is not known, and T_RC the identity
 };
 
 /// What every kind of input takes.

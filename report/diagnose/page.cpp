@@ -13,6 +13,7 @@
 #include "report/diagnose/words.h"
 #include "report/pages.h"
 #include "report/report.h"
+#include "report/summary_parts.h"
 
 namespace flextip::report {
 namespace {
@@ -274,6 +275,7 @@ void WriteDiagnoseReport(const fs::path& folder) {
 
   Report report("Diagnosis: " + headline.title,
                 fmt::format("{}   (flextip {})", summary.command, summary.version));
+  AddFindings(report, folder);
   report.AddHtml(HeadlineHtml(headline));
   AddGainFigures(report, result);
   AddWarningsOnce(report, result, summary);
