@@ -17,6 +17,7 @@ std::string Typed(int argc, char** argv) {
 }
 
 void AddCommands(CLI::App& app, AppContext& context) {
+  AddAlign(app, context);
   AddBoard(app, context);
   AddCalibrate(app, context);
   AddCollar(app, context);

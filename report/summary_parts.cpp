@@ -65,9 +65,9 @@ std::vector<std::string> ColumnKeys(const Json& items) {
 // JSON's keys are in the alphabet's order: what a row is about goes first, words last.
 void PutNameFirst(std::vector<std::string>& keys) {
   const auto rank = [](const std::string& key) {
-    static const std::vector<std::string> names = {"view", "image",   "left",      "right", "part",
-                                                   "lens", "motion",  "parameter", "field", "hold",
-                                                   "pose", "seconds", "distance_m"};
+    static const std::vector<std::string> names = {"view", "image",   "left",       "right", "part",
+                                                   "lens", "motion",  "parameter",  "field", "hold",
+                                                   "pose", "seconds", "distance_m", "stream"};
     static const std::vector<std::string> words = {"reason", "left_reason", "right_reason"};
     if (std::find(names.begin(), names.end(), key) != names.end()) return 0;
     return std::find(words.begin(), words.end(), key) != words.end() ? 2 : 1;

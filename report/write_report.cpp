@@ -28,6 +28,7 @@ const std::vector<CommandPage>& Pages() {
       {"shape", WriteShapeReport, {"shapes.csv"}},
       {"detect", WriteDetectReport, {"tags.csv"}},
       {"calibrate", WriteCalibrateReport},
+      {"align", WriteCalibrateReport, {"figures.json"}},
       {"board", WriteCalibrateReport},
       {"collar", WriteCalibrateReport, {"figures.json", "drawing.png"}},
       {"diagnose", WriteDiagnoseReport, {"diagnosis.json", "residuals.csv"}},

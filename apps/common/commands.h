@@ -28,6 +28,7 @@ inline void OnRun(CLI::App& command, AppContext& context, std::function<void()> 
 //   command.add_option(...);
 //   command.footer("Example:\n  flextip track RECORDING -o OUT");
 //   OnRun(command, context, [options, &context] { RunTrack(*options, context); });
+void AddAlign(CLI::App& app, AppContext& context);
 void AddBoard(CLI::App& app, AppContext& context);
 void AddCalibrate(CLI::App& app, AppContext& context);
 void AddCollar(CLI::App& app, AppContext& context);
