@@ -36,6 +36,7 @@ void AddDiagnose(CLI::App& app, AppContext& context);
 void AddConvert(CLI::App& app, AppContext& context);
 void AddDetect(CLI::App& app, AppContext& context);
 void AddEstimate(CLI::App& app, AppContext& context);
+void AddExport(CLI::App& app, AppContext& context);
 void AddMap(CLI::App& app, AppContext& context);
 void AddReport(CLI::App& app, AppContext& context);
 void AddReproduce(CLI::App& app, AppContext& context);
