@@ -12,7 +12,7 @@ namespace {
 constexpr double kReach = 3.0;        // bandwidths
 constexpr double kKnots = 0.5;        // bandwidths between knots
 constexpr int kLeastSamples = 4;      // of a fit
-constexpr double kShortest_s = 0.06;  // hands and arms move below 3 Hz
+constexpr double kShortest_s = 0.03;  // hands and arms move below 3 Hz
 
 }  // namespace
 

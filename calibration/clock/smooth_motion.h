@@ -32,7 +32,7 @@ class SmoothMotion {
   std::vector<bool> known_;
 };
 
-/// Returns a bandwidth for a motion of a person or robot: 60 ms, or two and a half samples.
+/// Returns a bandwidth for a motion of a person or robot: 30 ms, or two and a half samples.
 double UsualBandwidth(const Motion& motion);
 
 }  // namespace flextip
