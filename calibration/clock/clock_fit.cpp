@@ -170,43 +170,55 @@ Linear Linearise(const Problem& problem, const Rows& rows, double rate) {
   return linear;
 }
 
-/// Returns by how many samples residuals remember themselves, one plus twice the sum of their
-/// autocorrelation.
-double Memory(const Linear& linear) {
-  std::vector<Eigen::Vector3d> parts;
-  for (std::size_t i = 0; i < linear.r.size(); ++i) {
-    parts.emplace_back(linear.weight[i] * linear.r[i].head<3>());
+/// The autocorrelation of the residuals from lag 0 to where it is within chance.
+std::vector<double> Autocorrelation(const Linear& linear) {
+  const std::size_t n = linear.r.size();
+  const double chance = 2.0 / std::sqrt(static_cast<double>(n * linear.r.front().size()));
+  std::vector<double> correlation;
+  double power = 0.0;
+  for (std::size_t lag = 0; lag < std::max<std::size_t>(1, n / 4); ++lag) {
+    double sum = 0.0;
+    for (std::size_t i = lag; i < n; ++i) {
+      sum += linear.weight[i] * linear.weight[i - lag] * linear.r[i].dot(linear.r[i - lag]);
+    }
+    if (lag == 0) power = sum;
+    if (lag > 0 && !(sum > chance * power)) break;
+    correlation.push_back(power > 0.0 ? sum / power : 1.0);
   }
-  return CorrelationTime(parts);
+  return correlation;
 }
 
-/// The covariance of (offset, rate) from each sample's part in them, with the parts' memory.
-Eigen::Matrix2d Covariance(const Linear& linear, double memory) {
+/// The covariance of (offset, rate) under residuals of that autocorrelation.
+Eigen::Matrix2d Covariance(const Linear& linear, const std::vector<double>& correlation) {
+  using Part = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, kRows>;
   const Eigen::MatrixXd inverse = Ldlt(linear.normal).Inverse();
   const Eigen::MatrixXd by_score = inverse.topRows(2);
   const std::size_t n = linear.r.size();
-  std::vector<Eigen::Vector2d> part(n);
+  std::vector<Part> part;
+  double squares = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    part[i] = by_score * (linear.weight[i] * linear.J[i].transpose() * linear.r[i]);
+    part.emplace_back(linear.weight[i] * by_score * linear.J[i].transpose());
+    squares += linear.weight[i] * linear.r[i].squaredNorm();
   }
-  const auto reach = std::min<std::size_t>(
-      n / 8, static_cast<std::size_t>(std::max(20.0, std::ceil(4.0 * memory))));
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (std::size_t k = 0; k <= reach; ++k) {
+  for (std::size_t k = 0; k < correlation.size(); ++k) {
     Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
     for (std::size_t i = k; i < n; ++i) products += part[i] * part[i - k].transpose();
-    const double taper = 1.0 - static_cast<double>(k) / (static_cast<double>(reach) + 1.0);
-    sum += k == 0 ? products : Eigen::Matrix2d(taper * (products + products.transpose()));
+    sum += correlation[k] * (k == 0 ? products : Eigen::Matrix2d(products + products.transpose()));
   }
-  const double all = static_cast<double>(n), unknowns = static_cast<double>(linear.normal.rows());
-  sum *= all / std::max(1.0, all - unknowns);
-  const double prior = linear.scale * linear.scale / (kRateSd * kRateSd);
+  const double rows = static_cast<double>(n * linear.r.front().size());
+  const double unknowns = static_cast<double>(linear.normal.rows());
+  sum *= squares / std::max(1.0, rows - unknowns);
+  const double prior = linear.scale * linear.scale / kRateSd;
   const Eigen::Vector2d by_prior = inverse.block<2, 1>(0, 1);
-  const Eigen::Matrix2d independent = linear.scale * linear.scale * inverse.topLeftCorner<2, 2>();
-  sum += prior * prior * kRateSd * kRateSd * by_prior * by_prior.transpose();
-  // Never surer than by independent residuals: few samples can hide their memory.
-  const double less = std::min({1.0, sum(0, 0) / independent(0, 0), sum(1, 1) / independent(1, 1)});
-  return less > 0.0 ? Eigen::Matrix2d(sum / less) : independent;
+  return sum + prior * prior * by_prior * by_prior.transpose();
+}
+
+/// How many residuals one independent residual stands for.
+double Memory(const std::vector<double>& correlation) {
+  double memory = -1.0;
+  for (const double c : correlation) memory += 2.0 * c;
+  return memory;
 }
 
 }  // namespace
@@ -225,10 +237,10 @@ ClockFit FitClock(const Motion& target, const SmoothMotion& reference, double st
     if (!change.allFinite()) return fit;
     fit.misfit = linear.misfit;
     if (std::abs(change[0]) < kStill_s && std::abs(change[1]) < kStillRate) {
-      const double memory = Memory(linear);
-      fit.covariance = Covariance(linear, memory);
+      const std::vector<double> correlation = Autocorrelation(linear);
+      fit.covariance = Covariance(linear, correlation);
       fit.samples = rows.sample.size();
-      fit.independent = static_cast<double>(fit.samples) * target.own_rows / memory;
+      fit.independent = static_cast<double>(fit.samples) * target.own_rows / Memory(correlation);
       fit.converged = fit.covariance.allFinite();
       return fit;
     }

@@ -20,6 +20,7 @@ std::string WithEmLate(const TestFolder& folder, double late_s) {
   Recording r = ReadRecording(kSample, {.check_frames = false}).recording;
   for (auto& sample : r.em0->samples) sample.t_ns += std::llround(1e9 * late_s);
   const auto path = folder / "recording";
+  std::filesystem::create_directories(path);
   WriteRecording(path, r);
   return path.string();
 }
