@@ -129,7 +129,8 @@ void AddSummaryNumbers(Report& report, const std::filesystem::path& folder) {
   const Json summary = ReadSummary(folder);
   const std::string command = TextOf(summary, "command");
   for (const auto& [key, value] : summary.items()) {
-    const bool not_used = key == "streams_not_used" && value.is_string() && value != "";
+    const bool not_used = key == "streams_not_used" && value.is_string() &&
+                          !value.get_ref<const std::string&>().empty();
     if (IsScalar(value) || not_used) {
       numbers.emplace_back(Label(key, command), Shown(key, value));
     }

@@ -42,6 +42,7 @@ std::vector<double> DistancesOf(const CollarOptions& options) {
         "--distances: found {:g} mm to {:g} mm, expected the nearest first", 1e3 * from, 1e3 * to));
   }
   std::vector<double> distances;
+  distances.reserve(kDistances);
   for (int i = 0; i < kDistances; ++i) {
     distances.push_back(from + (to - from) * i / (kDistances - 1));
   }

@@ -42,9 +42,10 @@ Better BetterOf(const std::string& key) {
 
 /// Names that tell the folders apart: the last parts of their paths, as few as do.
 std::vector<std::string> NamesOf(const std::vector<fs::path>& folders) {
-  std::vector<fs::path> rest;
+  std::vector<fs::path> rest(folders.size());
   std::vector<std::string> names(folders.size());
-  for (const auto& folder : folders) rest.push_back(fs::weakly_canonical(folder));
+  std::transform(folders.begin(), folders.end(), rest.begin(),
+                 [](const fs::path& folder) { return fs::weakly_canonical(folder); });
   do {
     for (std::size_t i = 0; i < rest.size(); ++i) {
       const std::string part = rest[i].filename().string();
@@ -80,7 +81,9 @@ class NumberTable {
         Place(key, group).values[run] = value.get<double>();
       } else if (value.is_object() && key != "verdict") {
         const bool list = key == "controllers" || key == "statuses";
-        Add(run, value, list ? group : group.empty() ? key : group + " " + key);
+        std::string inner = group;
+        if (!list) inner += (group.empty() ? "" : " ") + key;
+        Add(run, value, inner);
       }
     }
   }
