@@ -18,6 +18,7 @@ endif()
 # One setting for libraries and programs, so that they share their precompiled headers.
 add_compile_options(-fPIC)
 set(FLEXTIP_TEST_TIMEOUT_S 300 CACHE STRING "Seconds a test may take")
+option(FLEXTIP_TESTS_BY_FOLDER "One ctest entry a test program, not one a case" OFF)
 
 # ccache where there is one. What it does not look at with precompiled headers is told to it here;
 # g++ says which header it took only with -fpch-preprocess.
@@ -75,7 +76,9 @@ function(flextip_library name)
   endif()
 endfunction()
 
-# flextip_tests(NAME SOURCES ... LIBS ...): one test program a folder, every case a ctest entry.
+# flextip_tests(NAME SOURCES ... LIBS ...): one test program a folder, every case a ctest entry, or,
+# with FLEXTIP_TESTS_BY_FOLDER, the whole program one entry: cases that share a simulation or a
+# diagnosis then share it, which is most of the time under sanitizers.
 function(flextip_tests name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
   set(target ${name}_tests)
@@ -85,5 +88,11 @@ function(flextip_tests name)
     FLEXTIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     FLEXTIP_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
   flextip_options(${target} COLD PCH test)
-  gtest_discover_tests(${target} TEST_PREFIX "${name}." PROPERTIES TIMEOUT ${FLEXTIP_TEST_TIMEOUT_S} DISCOVERY_TIMEOUT 60)
+  if(FLEXTIP_TESTS_BY_FOLDER)
+    add_test(NAME ${name}.all COMMAND ${target})
+    set_tests_properties(${name}.all PROPERTIES TIMEOUT ${FLEXTIP_TEST_TIMEOUT_S})
+  else()
+    gtest_discover_tests(${target} TEST_PREFIX "${name}."
+      PROPERTIES TIMEOUT ${FLEXTIP_TEST_TIMEOUT_S} DISCOVERY_TIMEOUT 60)
+  endif()
 endfunction()
