@@ -31,6 +31,7 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddDetect(app, context);
   AddDiagnose(app, context);
   AddEstimate(app, context);
+  AddImport(app, context);
   AddMap(app, context);
   AddReport(app, context);
   AddReproduce(app, context);

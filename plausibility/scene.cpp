@@ -134,7 +134,7 @@ Scene TakeScene(const Recording& r, const Shifts& shifts_s, int count) {
   }
   if (r.cam0) {
     scene.streams.push_back("cam0");
-    scene.camera = r.cam0->calibration;
+    if (r.cam0->has_T_RC) scene.camera = r.cam0->calibration;
   }
   if (!r.wrist0 || r.wrist0->samples.empty() || count < 1) return scene;
   const auto& samples = r.wrist0->samples;

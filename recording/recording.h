@@ -79,6 +79,7 @@ struct LoadStream {
 struct CameraStream {
   std::string comment;
   CameraCalibration calibration;
+  bool has_T_RC = true;           ///< else its pose is unknown, and calibration.T_RC the identity
   std::string video;              ///< file name inside cam0/, empty for image files
   Series<std::string> filenames;  ///< image files
   Series<int> frame_numbers;      ///< frames of `video`

@@ -108,6 +108,24 @@ Lead MapLead(const Json& summary) {
                               norm, area_cm2, slices.size() == 1 ? "" : "s")};
 }
 
+/// The streams by name, and how much of them was assumed.
+Lead ImportLead(const Json& summary) {
+  const Json streams = summary.value("streams", Json::array());
+  std::string names;
+  for (const auto& stream : streams) {
+    if (!names.empty()) names += ", ";
+    names += stream.value("name", "");
+  }
+  if (names.empty()) return {};
+  const std::size_t assumed = summary.value("assumed", Json::array()).size();
+  return {.says = fmt::format("{} {} imported: {}.", streams.size(),
+                              streams.size() == 1 ? "stream was" : "streams were", names),
+          .more = assumed == 0
+                      ? "Nothing was assumed."
+                      : fmt::format("{} {} assumed (below): read them before you trust a result.",
+                                    assumed, assumed == 1 ? "value was" : "values were")};
+}
+
 Lead ReproduceLead(const Json& summary) {
   double numbers = 0.0, figures = 0.0;
   for (const auto& chapter : summary.value("chapters", Json::array())) {
@@ -132,6 +150,7 @@ Lead LeadOf(const std::filesystem::path& folder) {
   if (command == "shape") return ShapeLead(summary, folder);
   if (command == "detect") return DetectLead(summary);
   if (command == "map") return MapLead(summary);
+  if (command.starts_with("import ")) return ImportLead(summary);
   if (command == "reproduce") return ReproduceLead(summary);
   return {};
 }

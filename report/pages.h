@@ -39,5 +39,7 @@ void WriteReproduceReport(const std::filesystem::path& folder);
 void WriteMapReport(const std::filesystem::path& folder);
 /// The numbers of several runs side by side, and figures.json (which must be there).
 void WriteCompareReport(const std::filesystem::path& folder);
+/// What was assumed, and every stream over time.
+void WriteImportReport(const std::filesystem::path& folder);
 
 }  // namespace flextip::report

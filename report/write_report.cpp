@@ -33,6 +33,7 @@ const std::vector<CommandPage>& Pages() {
       {"board", WriteCalibrateReport},
       {"collar", WriteCalibrateReport, {"figures.json", "drawing.png"}},
       {"diagnose", WriteDiagnoseReport, {"diagnosis.json", "residuals.csv"}},
+      {"import", WriteImportReport, {"recording.yaml"}},
       {"map", WriteMapReport, {"figures.json", "table.csv"}},
       {"reproduce", WriteReproduceReport, {"figures.json", "table.csv"}}};
   return pages;

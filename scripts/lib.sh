@@ -6,13 +6,13 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 BUILD_PACKAGES=(
   cmake ninja-build g++ libopencv-dev libapriltag-dev libeigen3-dev libceres-dev libcli11-dev
   libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev libcairo2-dev
-  pkg-config
+  liblz4-dev libzstd-dev pkg-config
 )
-# More for tests, benchmarks, the thesis's figures and checks; opencv-doc holds real chessboard
-# pictures, poppler-utils turns printed pages into pictures.
+# More for tests, benchmarks, the thesis's figures and checks; librosbag-storage-dev reads bags of ROS 1,
+# opencv-doc holds real chessboard pictures, poppler-utils turns printed pages into pictures.
 TEST_PACKAGES=(
-  libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev clang clang-format clang-tidy groff-base
-  opencv-doc poppler-utils
+  libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev librosbag-storage-dev
+  clang clang-format clang-tidy groff-base opencv-doc poppler-utils
 )
 NODE_PACKAGES=(nodejs npm)
 

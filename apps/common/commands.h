@@ -38,6 +38,7 @@ void AddCompletion(CLI::App& app, AppContext& context);
 void AddConvert(CLI::App& app, AppContext& context);
 void AddDetect(CLI::App& app, AppContext& context);
 void AddEstimate(CLI::App& app, AppContext& context);
+void AddImport(CLI::App& app, AppContext& context);
 void AddMap(CLI::App& app, AppContext& context);
 void AddReport(CLI::App& app, AppContext& context);
 void AddReproduce(CLI::App& app, AppContext& context);

@@ -59,7 +59,7 @@ TrackTotals TrackTotalsOf(const TrackSums& sums, const TrackInput& input) {
           .tags = sums.tags,
           .rms_px = sums.by_corners > 0 ? Rms(sums.squared_rms_px, sums.by_corners) : 0.0,
           .family = input.recording.tags0->family,
-          .camera_has_pose = input.camera_has_pose,
+          .camera_has_pose = input.recording.cam0->has_T_RC,
           .score = sums.score};
 }
 

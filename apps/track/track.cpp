@@ -134,7 +134,7 @@ void RunTrack(TrackOptions options, bool quiet) {
     output.Warn("no frame with the tip seen falls into the truth's time");
   }
   tables.Finish(*input.recording.tags0, input.recording.cam0->calibration.rate_hz,
-                input.camera_has_pose);
+                input.recording.cam0->has_T_RC);
   const Judgement judged = JudgeTrack(TrackTotalsOf(sums, input));
   summary["verdict"] = JudgementJson(judged);
   output.WriteSummary(summary);

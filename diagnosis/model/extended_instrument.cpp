@@ -31,8 +31,8 @@ ExtendedInstrument::ExtendedInstrument(const ExtendedModel& model, const Recordi
   set_.p_RP = base.p_RP;
   set_.gravity_m_s2 = base.gravity_m_s2;
   set_.centre = model.centre_m;
-  set_.has_camera = base.cam0.has_value();
-  if (base.cam0) set_.T_RC = base.cam0->calibration.T_RC;
+  set_.has_camera = base.cam0 && base.cam0->has_T_RC;
+  if (set_.has_camera) set_.T_RC = base.cam0->calibration.T_RC;
   set_.samples.resize(1);
   for (const auto* list : {&model.effects, &model.within_tolerance}) {
     for (const EffectFit& fit : *list) {

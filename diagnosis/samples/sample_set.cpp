@@ -49,7 +49,7 @@ class Builder {
     set_.p_RP = recording_.p_RP;
     set_.gravity_m_s2 = recording_.gravity_m_s2;
     set_.tolerances = recording_.tolerances;
-    if (recording_.cam0) {
+    if (recording_.cam0 && recording_.cam0->has_T_RC) {
       set_.has_camera = true;
       set_.T_RC = recording_.cam0->calibration.T_RC;
     }

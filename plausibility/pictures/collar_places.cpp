@@ -42,7 +42,7 @@ class PlaceCheck {
       : recording_(recording), poses_(poses), findings_(findings) {}
 
   void Run() {
-    if (!recording_.wrist0) return;
+    if (!recording_.wrist0 || !recording_.cam0->has_T_RC) return;
     if (Clock()) return;
     const Pose& T_RC = recording_.cam0->calibration.T_RC;
     const auto off = MedianDistance(T_RC);

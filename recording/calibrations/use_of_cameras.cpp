@@ -59,7 +59,13 @@ void StateRegistrationNoise(const Calibration& calibration, VisionStream& vision
 }
 
 void CalibrationUse::PlaceCamera(const std::string& camera, const Pose& T_RC) {
-  Pose& T_RC_now = Camera(camera + ".").calibration.T_RC;
+  CameraStream& stream = Camera(camera + ".");
+  if (!stream.has_T_RC && SeenBy(camera + ".")) {
+    Refuse(camera + ".T_RC",
+           "vision0 was seen by a camera of unknown pose; run flextip track with it");
+  }
+  stream.has_T_RC = true;
+  Pose& T_RC_now = stream.calibration.T_RC;
   const Pose T_NO = T_RC * T_RC_now.Inverse();
   T_RC_now = T_RC;
   if (!SeenBy(camera + ".")) return;
@@ -70,8 +76,10 @@ void CalibrationUse::PlaceCamera(const std::string& camera, const Pose& T_RC) {
 /// Both are fixed to each other: cam1 goes with cam0 where it is not placed itself.
 void CalibrationUse::PlaceCameras(const std::string& name, const Pose& T_RC) {
   const Pose T_C0R = Camera(name).calibration.T_RC.Inverse();
+  const bool knew = Camera(name).has_T_RC;
   PlaceCamera(name.substr(0, 4), T_RC);
-  if (name == "cam0.T_RC" && recording_.cam1 && !Finds("cam1.T_RC")) {
+  const bool places_cam1 = knew && recording_.cam1 && recording_.cam1->has_T_RC;
+  if (name == "cam0.T_RC" && places_cam1 && !Finds("cam1.T_RC")) {
     PlaceCamera("cam1", T_RC * T_C0R * recording_.cam1->calibration.T_RC);
   }
 }
@@ -81,6 +89,9 @@ void CalibrationUse::PlaceSecondCamera(const Pose& T_C0C1) {
   const char* name = "cam1.T_C0C1";
   Camera(name);  // refused where the recording has none
   if (!recording_.cam0) Refuse(name, "the recording has no cam0");
+  if (!recording_.cam0->has_T_RC) {
+    Refuse(name, "where cam0 is in R is unknown, expected cam0.T_RC by an earlier --calibration");
+  }
   if (Finds("cam1.T_RC")) Refuse(name, "the file has cam1.T_RC too, expected one of them");
   PlaceCamera("cam1", recording_.cam0->calibration.T_RC * T_C0C1);
   WarnOfTips(name);

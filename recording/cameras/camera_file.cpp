@@ -89,6 +89,10 @@ std::string DistortionName(Distortion distortion) {
   return model->name;
 }
 
+bool StatesPose(const YamlMap& yaml) {
+  return yaml.Has("T_RC") && !(yaml.IsText("T_RC") && yaml.Text("T_RC") == "unknown");
+}
+
 CameraCalibration ReadCalibrationKeys(const YamlMap& yaml) {
   CameraCalibration camera;
   (void)yaml.Has("sensor_type");
@@ -100,7 +104,7 @@ CameraCalibration ReadCalibrationKeys(const YamlMap& yaml) {
   ReadIntrinsics(yaml, camera);
   ReadDistortion(yaml, camera);
   if (yaml.Has("gamma")) camera.gamma = yaml.Positive("gamma");
-  if (yaml.Has("T_RC")) camera.T_RC = yaml.Transform("T_RC");
+  if (StatesPose(yaml)) camera.T_RC = yaml.Transform("T_RC");
   if (yaml.Has("rate_hz")) camera.rate_hz = yaml.Positive("rate_hz");
   return camera;
 }
@@ -124,14 +128,15 @@ std::string LensText(const CameraCalibration& camera) {
   return text;
 }
 
-std::string CameraText(const CameraCalibration& camera, const std::string& comment) {
+std::string CameraText(const CameraCalibration& camera, const std::string& comment,
+                       const std::string& pose) {
   return HeadText("camera", comment, camera.rate_hz) + LensText(camera) +
-         fmt::format("T_RC: {}\n", YamlTransform(camera.T_RC));
+         fmt::format("T_RC: {}\n", pose);
 }
 
 void WriteCameraCalibration(const std::filesystem::path& file, const CameraCalibration& calibration,
                             const std::string& comment) {
-  WriteTextFile(file, CameraText(calibration, comment));
+  WriteTextFile(file, CameraText(calibration, comment, YamlTransform(calibration.T_RC)));
 }
 
 }  // namespace flextip

@@ -15,7 +15,7 @@ CameraDescription ReadEuroc(const std::filesystem::path& file) {
   const auto yaml = YamlMap::Load(file);
   CameraDescription d;
   d.calibration = ReadCalibrationKeys(yaml);
-  d.has_T_RC = yaml.Has("T_RC");
+  d.has_T_RC = StatesPose(yaml);
   (void)yaml.Has("video");  // of the recording
   ReadLabels(yaml, d);
   if (yaml.Has("T_BS")) d.T_BS = yaml.Transform("T_BS");

@@ -19,6 +19,14 @@ CameraDescription ReadOpenCvCamera(const std::filesystem::path& file,
                                    const CameraFileChoice& choice);
 void WriteOpenCvCamera(const std::filesystem::path& file, const CameraDescription& description);
 
+/// The lens of ROS's CameraInfo; `problem` (empty: none) says what is wrong with `wrong_key`.
+struct RosLens {
+  Distortion distortion = Distortion::kRadialTangential;
+  std::vector<double> coefficients;
+  std::string wrong_key, problem;
+};
+RosLens RosLensOf(const std::string& model, std::vector<double> coefficients);
+
 /// The coefficients of `camera` as a list of one of the lengths in `counts`, each a form of k1 k2
 /// p1 p2 k3 k4 k5 k6 s1 s2 s3 s4: zeros are added or, where that is exact, taken away. Empty where
 /// none is exact.

@@ -22,28 +22,10 @@ void ReadLens(const YamlMap& yaml, CameraCalibration& camera) {
   const std::string model = yaml.Text("distortion_model");
   const YamlMap matrix = yaml.Map("distortion_coefficients");
   (void)matrix.Integer("rows"), (void)matrix.Integer("cols");
-  auto k = matrix.Numbers("data");
-  const auto expect = [&](const char* counts, bool fits) {
-    if (fits) return;
-    throw yaml.Error("distortion_coefficients",
-                     fmt::format("found {}, expected {} for {}", k.size(), counts, model));
-  };
-  if (model == "plumb_bob") {
-    expect("4 or 5", k.size() == 4 || k.size() == 5);
-    if (k.size() == 5 && k[4] == 0.0) k.pop_back();  // the same lens
-    camera.distortion = k.size() == 4 ? Distortion::kRadialTangential : Distortion::kOpenCv;
-  } else if (model == "rational_polynomial") {
-    expect("8", k.size() == 8);
-    camera.distortion = Distortion::kOpenCv;
-  } else if (model == "equidistant") {
-    expect("4", k.size() == 4);
-    camera.distortion = Distortion::kEquidistant;
-  } else {
-    throw yaml.Error("distortion_model",
-                     fmt::format("found {}, expected plumb_bob, rational_polynomial or equidistant",
-                                 Quoted(model)));
-  }
-  camera.distortion_coefficients = k;
+  const RosLens lens = RosLensOf(model, matrix.Numbers("data"));
+  if (!lens.problem.empty()) throw yaml.Error(lens.wrong_key, lens.problem);
+  camera.distortion = lens.distortion;
+  camera.distortion_coefficients = lens.coefficients;
 }
 
 void ReadRectification(const YamlMap& yaml, const std::vector<double>& K, CameraDescription& d) {
@@ -84,6 +66,31 @@ std::string MatrixText(const char* name, int rows, const std::vector<double>& da
 }
 
 }  // namespace
+
+RosLens RosLensOf(const std::string& model, std::vector<double> k) {
+  RosLens lens;
+  const auto take = [&](Distortion distortion, bool fits, const char* counts) {
+    lens.distortion = distortion;
+    if (fits) return;
+    lens.wrong_key = "distortion_coefficients";
+    lens.problem = fmt::format("found {}, expected {} for {}", k.size(), counts, model);
+  };
+  if (model == "plumb_bob") {
+    take(Distortion::kOpenCv, k.size() == 4 || k.size() == 5, "4 or 5");
+    if (k.size() == 5 && k[4] == 0.0) k.pop_back();  // the same lens
+    if (k.size() == 4) lens.distortion = Distortion::kRadialTangential;
+  } else if (model == "rational_polynomial") {
+    take(Distortion::kOpenCv, k.size() == 8, "8");
+  } else if (model == "equidistant") {
+    take(Distortion::kEquidistant, k.size() == 4, "4");
+  } else {
+    lens.wrong_key = "distortion_model";
+    lens.problem = fmt::format("found {}, expected plumb_bob, rational_polynomial or equidistant",
+                               Quoted(model));
+  }
+  lens.coefficients = std::move(k);
+  return lens;
+}
 
 CameraDescription ReadRosCamera(const std::filesystem::path& file) {
   const auto yaml = YamlMap::Load(file);

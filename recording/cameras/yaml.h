@@ -10,6 +10,8 @@
 namespace flextip {
 
 CameraCalibration ReadCalibrationKeys(const YamlMap& yaml);
+/// Whether the pose is stated; absent and `T_RC: unknown` state none.
+bool StatesPose(const YamlMap& yaml);
 
 /// Of a `distortion_model` and so many `distortion_coefficients`: the lens model, or which of the
 /// two is wrong and what was expected.
@@ -20,7 +22,9 @@ struct NamedDistortion {
 NamedDistortion DistortionOf(const std::string& name, std::size_t coefficients);
 std::string DistortionName(Distortion distortion);
 
-std::string CameraText(const CameraCalibration& calibration, const std::string& comment);
+/// `pose`: T_RC as text.
+std::string CameraText(const CameraCalibration& calibration, const std::string& comment,
+                       const std::string& pose);
 /// Of that the resolution, the lens and gamma.
 std::string LensText(const CameraCalibration& calibration);
 

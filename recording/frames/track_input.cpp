@@ -37,6 +37,15 @@ std::unique_ptr<FrameSets> OpenCameras(const std::filesystem::path& source, cons
                                      std::move(pairs));
 }
 
+/// One camera of unknown pose gives tips in its own frame; a second camera must be placed.
+void RefuseUnplacedPair(const std::filesystem::path& source, const Recording& recording) {
+  if (!recording.cam1 || (recording.cam0->has_T_RC && recording.cam1->has_T_RC)) return;
+  const char* name = recording.cam0->has_T_RC ? "cam1" : "cam0";
+  throw InputError::At((source / name / "sensor.yaml").string(), 0,
+                       "T_RC is unknown, and two cameras give one tip where both are known: find "
+                       "it by flextip calibrate hand-eye and give it with --calibration");
+}
+
 /// Reads camera and collar; the frames are opened by the caller.
 TrackInput ReadCameraFiles(const CameraFiles& files, const TrackInputOptions& options) {
   TrackInput input;
@@ -45,11 +54,11 @@ TrackInput ReadCameraFiles(const CameraFiles& files, const TrackInputOptions& op
   const auto format = GuessCameraFormat(files.camera);
   const CameraDescription description = ReadCameraDescription(files.camera, format);
   camera.calibration = description.calibration;
+  camera.has_T_RC = description.has_T_RC;
   input.recording.tags0 = ReadCollarFile(files.collar, log);
   if (files.rate_hz) camera.calibration.rate_hz = *files.rate_hz;
   input.warnings = std::move(log.warnings);
   input.calibrations = ApplyCalibrations(options.calibrations, input.recording, input.warnings);
-  input.camera_has_pose = description.has_T_RC || !camera.calibration.T_RC.Matrix().isIdentity(0.0);
   return input;
 }
 
@@ -64,6 +73,11 @@ TrackInput OpenRecordingToTrack(const std::filesystem::path& recording,
   TrackInput input{std::move(read.recording), nullptr, std::move(read.warnings), {}};
   input.recording.vision0.reset();  // found anew
   input.calibrations = ApplyCalibrations(options.calibrations, input.recording, input.warnings);
+  RefuseUnplacedPair(recording, input.recording);
+  if (!input.recording.cam0->has_T_RC && input.recording.wrist0) {
+    input.recording.wrist0.reset();  // in R, which the camera does not know
+    input.warnings.push_back("cam0: T_RC is unknown: wrist0 does not help to track");
+  }
   input.frames = OpenCameras(recording, options.range, input.recording);
   return input;
 }

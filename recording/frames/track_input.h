@@ -20,7 +20,6 @@ struct TrackInput {
   std::unique_ptr<FrameSets> frames;
   std::vector<std::string> warnings;
   std::vector<UsedCalibration> calibrations;  ///< already in `recording`
-  bool camera_has_pose = true;                ///< false: T_RC is nobody's, the identity
 };
 
 /// What every kind of input takes.

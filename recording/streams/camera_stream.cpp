@@ -155,7 +155,8 @@ CameraStream ReadCamera(const std::filesystem::path& folder, bool check_frames, 
   CameraStream stream;
   stream.comment = ReadHead(yaml).comment;
   stream.calibration = ReadCalibrationKeys(yaml);
-  (void)yaml.Transform("T_RC");  // in a recording the camera is registered
+  stream.has_T_RC = StatesPose(yaml);
+  if (!stream.has_T_RC) (void)yaml.Text("T_RC");  // a recording says that it is unknown
   stream.video = yaml.TextOr("video", "");
   yaml.WarnUnknown(log);
   if (!std::filesystem::exists(folder / "data.csv")) {
@@ -171,7 +172,8 @@ CameraStream ReadCamera(const std::filesystem::path& folder, bool check_frames, 
 }
 
 void WriteCamera(const std::filesystem::path& folder, const CameraStream& stream) {
-  std::string text = CameraText(stream.calibration, stream.comment);
+  const std::string pose = stream.has_T_RC ? YamlTransform(stream.calibration.T_RC) : "unknown";
+  std::string text = CameraText(stream.calibration, stream.comment, pose);
   if (!stream.video.empty()) text += fmt::format("video: {}\n", YamlText(stream.video));
   WriteTextFile(folder / "sensor.yaml", text);
   if (!stream.video.empty() && !stream.frame_numbers.empty()) {

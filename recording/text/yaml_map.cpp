@@ -145,6 +145,8 @@ std::int64_t YamlMap::Integer(const std::string& key) const {
 
 bool YamlMap::IsList(const std::string& key) const { return impl_->Node(key).IsSequence(); }
 
+bool YamlMap::IsText(const std::string& key) const { return impl_->Node(key).IsScalar(); }
+
 std::vector<double> YamlMap::Numbers(const std::string& key) const {
   const auto& node = impl_->Node(key);
   if (!node.IsSequence()) throw impl_->Unexpected(key, node, "a list of numbers");

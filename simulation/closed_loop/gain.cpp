@@ -68,7 +68,7 @@ TipSensorSetup TipSensor(const Recording& recording, const Eigen::Vector3d& p_ti
   TipSensorSetup tip;
   tip.rate_hz = kRate_hz;
   tip.line_of_sight = to_port;
-  if (recording.cam0) {
+  if (recording.cam0 && recording.cam0->has_T_RC) {
     tip.T_RC = recording.cam0->calibration.T_RC;
     const Eigen::Vector3d sight = p_tip - tip.T_RC.p;
     if (sight.norm() > 1e-6) tip.line_of_sight = sight.normalized();
@@ -142,6 +142,7 @@ LoopSetup MakeSetup(const Recording& recording, const diagnosis::ExtendedModel& 
   if (recording.cam0) {
     setup.base.cam0.emplace();
     setup.base.cam0->calibration = recording.cam0->calibration;
+    setup.base.cam0->has_T_RC = recording.cam0->has_T_RC;
   }
   setup.p_RW_start = MiddleWrist(*recording.wrist0);
   const Eigen::Vector3d to_port = (recording.p_RP - setup.p_RW_start).normalized();

@@ -203,6 +203,18 @@ TEST_F(TrackCommand, SixteenBitsAndGreyGiveTheSameTips) {
   EXPECT_TRUE(IsRefused(RunProgram(Arguments("dim", "d", {"--black-white", "9,9"})), {"9,9"}));
 }
 
+TEST_F(TrackCommand, ARecordedCameraOfUnknownPoseGivesTipsInItsOwnFrame) {
+  std::string camera = ReadText(folder_ / "rec/cam0/sensor.yaml");
+  const auto pose = camera.find("T_RC: ");
+  camera.replace(pose, camera.find('\n', pose) - pose, "T_RC: unknown");
+  folder_.Write("rec/cam0/sensor.yaml", camera);
+  const auto out = (folder_ / "out").string();
+  const auto run = RunProgram({"track", (folder_ / "rec").string(), "-o", out});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, testing::HasSubstr("in the camera's frame"));
+  EXPECT_EQ(Summary("out")["verdict"]["grade"], "beware");
+}
+
 TEST_F(TrackCommand, VideosAndLiveSourcesAreTracked) {
   const auto file = (folder_ / "v.avi").string();
   WriteVideo(file);

@@ -25,7 +25,7 @@ const std::map<std::string, Names>& Arrows() {
   static const Names libraries{"core",        "kinematics", "estimation", "control",
                                "vision",      "recording",  "pipeline",   "plausibility",
                                "calibration", "simulation", kClosedLoop,  "diagnosis",
-                               "report",      "workspace",  "targets"};
+                               "report",      "workspace",  "targets",    "exchange"};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
@@ -35,6 +35,7 @@ const std::map<std::string, Names>& Arrows() {
       {"vision", {"core"}},
       {"recording", {"core"}},
       {"plausibility", {"core", "vision", "recording"}},
+      {"exchange", {"core", "recording"}},
       {"pipeline", models},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
       {"simulation", {"core", "recording", "vision"}},

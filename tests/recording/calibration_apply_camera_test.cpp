@@ -191,6 +191,34 @@ TEST(CalibrationApply, TheCovarianceSaysHowWellTipsAreRegistered) {
   EXPECT_NEAR(r.vision0->registration_noise_m, 0, 1e-12);
 }
 
+TEST(CalibrationApply, APoseThatWasUnknownIsKnownThen) {
+  Recording r = Plain();
+  r.vision0.reset();
+  r.cam0->has_T_RC = r.cam1->has_T_RC = false;
+  r.cam0->calibration.T_RC = r.cam1->calibration.T_RC = Pose();
+  Calibration hand_eye;
+  hand_eye.poses["cam0.T_RC"] = kPose;
+  Apply(hand_eye, r);
+  EXPECT_TRUE(r.cam0->has_T_RC);
+  EXPECT_FALSE(r.cam1->has_T_RC);  // nobody said how it sits beside cam0
+  Calibration stereo;
+  stereo.poses["cam1.T_C0C1"] = kPose;
+  Apply(stereo, r);
+  EXPECT_TRUE(r.cam1->has_T_RC);
+  EXPECT_TRUE(r.cam1->calibration.T_RC.Matrix().isApprox((kPose * kPose).Matrix()));
+}
+
+TEST(CalibrationApply, WhatHangsOnAnUnknownPoseIsRefused) {
+  Recording r = Plain();
+  r.cam0->has_T_RC = false;
+  Calibration stereo;
+  stereo.poses["cam1.T_C0C1"] = kPose;
+  EXPECT_THAT(ErrorOf(stereo, r), HasSubstr("where cam0 is in R is unknown"));
+  Calibration hand_eye;
+  hand_eye.poses["cam0.T_RC"] = kPose;
+  EXPECT_THAT(ErrorOf(hand_eye, r), HasSubstr("seen by a camera of unknown pose"));
+}
+
 TEST(CalibrationApply, FramesAndTheirTipsMoveInTime) {
   const Recording before = Plain();
   Recording r = before;

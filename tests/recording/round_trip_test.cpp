@@ -238,4 +238,17 @@ TEST(CameraFile, MayLackItsRegistration) {
 }
 
 }  // namespace
+TEST(CameraPose, MayBeUnknownWhereTheFileSaysSo) {
+  const TemporaryFolder folder;
+  WriteSample(folder.path());
+  Recording recording = MakeRecording();
+  recording.cam0->has_T_RC = false;
+  WriteRecording(folder.path(), recording);
+  EXPECT_THAT(ReadText(folder / "cam0/sensor.yaml"), ::testing::HasSubstr("T_RC: unknown\n"));
+  const Recording read = ReadRecording(folder.path()).recording;
+  EXPECT_FALSE(read.cam0->has_T_RC);
+  EXPECT_TRUE(read.cam0->calibration.T_RC.Matrix().isIdentity(0.0));
+  EXPECT_TRUE(read.cam1->has_T_RC);
+}
+
 }  // namespace flextip

@@ -116,6 +116,10 @@ void RunCalibrateBudget(const CalibrateBudgetOptions& options, bool quiet) {
     throw InputError::At(options.input.recording.string(), 0,
                          "has no cam0 or no tags0: the tip is seen by neither");
   }
+  if (!read.recording.cam0->has_T_RC) {
+    throw InputError::At(options.input.recording.string(), 0,
+                         "cam0: T_RC is unknown, expected --calibration of calibrate hand-eye");
+  }
   output.Warn(read.warnings);
   std::vector<const Calibration*> calibrations;
   for (const UsedCalibration& used : read.calibrations) calibrations.push_back(&used.calibration);
