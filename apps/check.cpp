@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/calibration_input.h"
 #include "apps/common/commands.h"
+#include "apps/common/findings.h"
 #include "apps/common/output.h"
 #include "core/error.h"
 #include "plausibility/check_recording.h"
@@ -27,13 +29,14 @@ using plausibility::StreamFacts;
 
 struct CheckOptions {
   std::filesystem::path recording, out;
+  CalibrationFiles calibrations;
   bool json = false, no_pictures = false, force = false;
 };
 
 double SecondsBetween(TimeNs from, TimeNs to) { return 1e-9 * static_cast<double>(to - from); }
 
 nlohmann::json ToJson(const CheckResult& result) {
-  nlohmann::json streams = nlohmann::json::array(), findings = nlohmann::json::array();
+  nlohmann::json streams = nlohmann::json::array();
   for (const StreamFacts& s : result.streams) {
     streams.push_back({{"stream", s.name},
                        {"samples", s.samples},
@@ -45,14 +48,11 @@ nlohmann::json ToJson(const CheckResult& result) {
                        {"largest_gap_s", s.largest_gap_s},
                        {"overlap_with_wrist", s.overlap_with_wrist}});
   }
-  std::size_t wrong = 0;
-  for (const Finding& f : result.findings) {
-    if (f.severity == Severity::kWrong) ++wrong;
-    findings.push_back(
-        {{"finding", f.id}, {"severity", Name(f.severity)}, {"text", f.text}, {"mend", f.mend}});
-  }
+  const auto wrong = static_cast<std::size_t>(
+      std::count_if(result.findings.begin(), result.findings.end(),
+                    [](const Finding& f) { return f.severity == Severity::kWrong; }));
   return {{"streams", streams},
-          {"findings", findings},
+          {"findings", FindingsJson(result.findings)},
           {"wrong", wrong},
           {"doubtful", result.findings.size() - wrong}};
 }
@@ -67,10 +67,7 @@ void Print(const CheckResult& result) {
     fmt::print("\n");
   }
   if (result.findings.empty()) fmt::print("nothing found\n");
-  for (const Finding& f : result.findings) {
-    fmt::print("{}: {} [{}]\n", Name(f.severity), f.text, f.id);
-    if (!f.mend.empty()) fmt::print("  mend: {}\n", f.mend);
-  }
+  for (const Finding& f : result.findings) fmt::print("{}", FindingText(Name(f.severity), f));
 }
 
 /// A picture that cannot be read, or of another size than stated, is a finding here.
@@ -88,10 +85,12 @@ void AddPictures(const CheckOptions& options, const Recording& recording, CheckR
 }
 
 void RunCheck(const CheckOptions& options, bool quiet) {
-  const ReadResult read = ReadRecording(options.recording, {.check_frames = false});
+  ReadResult read = ReadRecording(options.recording, {.check_frames = false});
+  const auto used = ApplyCalibrations(options.calibrations, read.recording, read.warnings);
   CheckResult result = plausibility::CheckRecording(read.recording);
   AddPictures(options, read.recording, result);
-  const nlohmann::json json = ToJson(result);
+  nlohmann::json json = ToJson(result);
+  if (!used.empty()) json["calibrations"] = CalibrationsJson(used);
   if (!options.out.empty()) {
     OutputFolder output(options.out, "check",
                         {.force = options.force, .inputs = {options.recording}});
@@ -122,6 +121,7 @@ void AddCheck(CLI::App& app, AppContext& context) {
       ->required()
       ->type_name("RECORDING");
   command->add_option("-o,--output", options->out, "Folder for the results")->type_name("OUT");
+  AddCalibrationOption(*command, options->calibrations);
   command->add_flag("--json", options->json, "Print streams and findings as JSON");
   command->add_flag("--no-pictures", options->no_pictures, "Leave out the look at cam0's pictures");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");

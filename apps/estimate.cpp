@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/command_uses.h"
 #include "apps/common/commands.h"
+#include "apps/common/findings.h"
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
@@ -156,7 +158,7 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
 }
 
 void RunEstimate(const EstimateOptions& options, bool quiet) {
-  const InputRead read = ReadInput(options.input);
+  const InputRead read = ReadInput(options.input, UseOfEstimate(), quiet);
   const Recording& recording = read.recording;
   if (!recording.wrist0) {
     throw InputError(options.input.recording.string() +
@@ -166,6 +168,7 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   if (!options.model.empty()) inputs.push_back(options.model);
   OutputFolder output(options.input.out, "estimate", {.force = options.force, .inputs = inputs});
   output.Warn(read.warnings);
+  output.Beware(FindingsJson(read.findings));
   if (recording.cam0 && !recording.vision0) {
     output.Warn("cam0 has not been tracked: run flextip track and pass its folder with --tracked");
   }
@@ -177,7 +180,8 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   for (const auto& e : estimates) AddRow(csv, e.t_ns, e.value);
   WriteTextFile(output.folder() / "state0" / "data.csv", csv.text());
   const EstimateTotals totals = TotalsOf(estimates);
-  const Judgement judged = JudgeEstimates(totals);
+  Judgement judged = JudgeEstimates(totals);
+  MentionFindings(read.findings, judged);
   nlohmann::json summary = Summary(options, recording, estimates, totals, estimator.Window());
   summary["verdict"] = JudgementJson(judged);
   summary["streams_not_used"] = read.NotUsed();

@@ -6,6 +6,7 @@
 #include "plausibility/limits/hung_mass.h"
 #include "plausibility/limits/limits.h"
 #include "plausibility/noise.h"
+#include "plausibility/relations/relations.h"
 #include "plausibility/timing/clocks.h"
 #include "plausibility/timing/pace.h"
 #include "plausibility/timing/stuck.h"
@@ -52,8 +53,9 @@ class RecordingCheck {
     Add(CheckGaps(rows));
     Add(CheckLimits(unknown_, repaired_));
     Shifts shifts;
-    Add(CheckClocks(repaired_, rows, unknown_, shifts));
-    Add(CheckForceClocks(repaired_, unknown_, shifts));
+    const std::set<std::string> unknown = UnknownOfMotion();
+    Add(CheckClocks(repaired_, rows, unknown, shifts));
+    Add(CheckForceClocks(repaired_, unknown, shifts));
     if (repaired_.wrist0) Faults(shifts);
     Add(CheckHungMass(repaired_, result_.findings));
     std::vector<std::string> spoilt = SpoiltStreams(result_.findings);
@@ -66,6 +68,18 @@ class RecordingCheck {
  private:
   void Add(const std::vector<Finding>& more) {
     result_.findings.insert(result_.findings.end(), more.begin(), more.end());
+  }
+
+  /// A wrist that does not fit the port makes no motion to compare clocks by.
+  std::set<std::string> UnknownOfMotion() const {
+    std::set<std::string> unknown = unknown_;
+    Scene scene = TakeScene(repaired_);
+    scene.unknown = unknown_;
+    RelationList wrist(scene);
+    AddWristRelations(wrist);
+    const std::vector<Relation> relations = wrist.Take();
+    if (WorstOf(relations, "port") != nullptr) unknown.insert("port");
+    return unknown;
   }
 
   void Faults(const Shifts& shifts) {

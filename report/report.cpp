@@ -135,6 +135,17 @@ void Report::AddWarnings(const std::vector<std::string>& warnings) {
   body_ += "</ul></aside>\n";
 }
 
+void Report::AddBeware(const std::vector<std::pair<std::string, std::string>>& doubts_and_mends) {
+  if (doubts_and_mends.empty()) return;
+  body_ += "<aside class=\"warnings\"><h3>Beware: the input is doubtful</h3>\n<ul>\n";
+  for (const auto& [doubt, mend] : doubts_and_mends) {
+    body_ += fmt::format("<li>{}", EscapeHtml(doubt));
+    if (!mend.empty()) body_ += fmt::format("<br>Mend: {}", EscapeHtml(mend));
+    body_ += "</li>\n";
+  }
+  body_ += "</ul></aside>\n";
+}
+
 void Report::AddHeading(const std::string& text) {
   body_ += fmt::format("<h2>{}</h2>\n", EscapeHtml(text));
 }

@@ -26,6 +26,9 @@ class Report {
 
   /// Adds the result in a sentence, large and at the head of the page, and more of it below.
   void AddLead(const std::string& says, const std::string& more = "");
+  /// Adds doubts of the input, each with the line that mends it, in a box that cannot be
+  /// overlooked; adds nothing for an empty list.
+  void AddBeware(const std::vector<std::pair<std::string, std::string>>& doubts_and_mends);
   /// Adds large numbers: the name of each, its value with unit.
   void AddNumbers(const std::vector<std::pair<std::string, std::string>>& figures);
   /// Adds a list of remarks in a box that cannot be overlooked; adds nothing for an empty list.

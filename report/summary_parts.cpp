@@ -52,6 +52,12 @@ bool IsTable(const Json& value) {
          std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_object(); });
 }
 
+/// Findings are the result of a check; elsewhere they have a box of their own.
+bool IsShownAsTable(const Json& summary, const std::string& key) {
+  const bool in_a_box = key == "findings" && TextOf(summary, "command") != "check";
+  return key != "warnings" && key != "verdict" && !in_a_box && IsTable(summary[key]);
+}
+
 std::vector<std::string> ColumnKeys(const Json& items) {
   std::vector<std::string> keys;
   for (const auto& item : items) {
@@ -116,6 +122,15 @@ Report TitledPage(const std::filesystem::path& folder, const std::string& title)
                                    TextOf(summary, "version")));
 }
 
+void AddFindings(Report& report, const std::filesystem::path& folder) {
+  const Json summary = ReadSummary(folder);
+  std::vector<std::pair<std::string, std::string>> findings;
+  if (TextOf(summary, "command") == "check") return;  // its result, in a table
+  for (const auto& f : summary.value("findings", Json::array()))
+    findings.emplace_back(TextOf(f, "text"), TextOf(f, "mend"));
+  report.AddBeware(findings);
+}
+
 std::string CommandOf(const std::filesystem::path& folder) {
   const std::string command = TextOf(ReadSummary(folder), "command");
   if (command.empty()) {
@@ -141,7 +156,7 @@ void AddSummaryNumbers(Report& report, const std::filesystem::path& folder) {
 void AddSummaryTables(Report& report, const std::filesystem::path& folder) {
   const Json summary = ReadSummary(folder);
   for (const auto& [key, value] : summary.items()) {
-    if (key != "warnings" && key != "verdict" && IsTable(value)) AddJsonTable(report, key, value);
+    if (IsShownAsTable(summary, key)) AddJsonTable(report, key, value);
   }
 }
 
@@ -154,12 +169,14 @@ Report BeginPage(const std::filesystem::path& folder, const std::string& title) 
     const Lead lead = LeadOf(folder);
     report.AddLead(lead.says, lead.more);
   }
+  AddFindings(report, folder);
   AddSummaryNumbers(report, folder);
   std::vector<std::string> warnings;
   for (const auto& w : summary.value("warnings", Json::array())) warnings.push_back(Shown("", w));
   report.AddWarnings(warnings);
-  const bool has_tables = std::any_of(summary.items().begin(), summary.items().end(),
-                                      [](const auto& item) { return IsTable(item.value()); });
+  const bool has_tables =
+      std::any_of(summary.items().begin(), summary.items().end(),
+                  [&](const auto& item) { return IsShownAsTable(summary, item.key()); });
   if (has_tables) report.AddHeading("Results");
   AddSummaryTables(report, folder);
   return report;

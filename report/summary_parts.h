@@ -15,6 +15,10 @@ Report TitledPage(const std::filesystem::path& folder, const std::string& title)
 /// for each list or map of alike things (controllers, views, ...).
 Report BeginPage(const std::filesystem::path& folder, const std::string& title);
 
+/// Adds what the check of the input found (the summary's `findings`), each with the line that mends
+/// it; nothing where it found nothing, and for a check itself.
+void AddFindings(Report& report, const std::filesystem::path& folder);
+
 /// Adds every number of summary.json in large.
 void AddSummaryNumbers(Report& report, const std::filesystem::path& folder);
 /// Adds a table for each list or map of alike things in summary.json.

@@ -126,6 +126,7 @@ void OutputFolder::WriteSummary(nlohmann::json results) const {
   auto& warnings = results["warnings"];
   if (!warnings.is_array()) warnings = nlohmann::json::array();
   for (const auto& warning : warnings_) warnings.push_back(warning);
+  if (!findings_.empty()) results["findings"] = findings_;
   std::ofstream out(folder_ / "summary.json");
   // File names may hold bytes that are not UTF-8: they are replaced, not a reason to fail.
   out << results.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/common/interruption.h"
@@ -58,10 +59,14 @@ class OutputFolder {
     warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
   }
   const std::vector<std::string>& warnings() const { return warnings_; }
+  /// What the check of the input found (FindingsJson): the summary's `findings`, and first on the
+  /// page.
+  void Beware(nlohmann::json findings) { findings_ = std::move(findings); }
 
   /// Writes summary.json: the object `results` with `command`, `version`, `seconds` since the
-  /// constructor and `warnings` (those in `results` first). Throws WorkError where the disk
-  /// refuses, and where a number in `results` is NaN or infinite, which JSON cannot hold.
+  /// constructor, `warnings` (those in `results` first) and `findings`, where there are any. Throws
+  /// WorkError where the disk refuses, and where a number in `results` is NaN or infinite, which
+  /// JSON cannot hold.
   void WriteSummary(nlohmann::json results) const;
 
   /// Makes the folder NAME. Throws WorkError where the disk refuses or another program has put
@@ -79,6 +84,7 @@ class OutputFolder {
   bool committed_ = false, resumed_ = false, keep_ = false;
   std::vector<std::string> warnings_;
   std::optional<Interruption> interruption_;  // until committed
+  nlohmann::json findings_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "apps/common/input_check.h"
 #include "recording/streams/sensor_streams.h"
 
 namespace flextip {
@@ -17,6 +18,7 @@ void AddRecordingInput(CLI::App& command, RecordingInput& input) {
   command.add_option("--tracked", input.tracked,
                      "Take the tip from this result of flextip track instead of vision0");
   AddCalibrationOption(command, input.calibrations);
+  AddNoCheckOption(command, input.no_check);
 }
 
 std::vector<std::filesystem::path> RecordingInput::Files() const {
@@ -40,7 +42,7 @@ std::string InputRead::NotUsed() const {
 }
 
 InputRead ReadInput(const RecordingInput& input) {
-  InputRead read{ReadRecording(input.recording, {.check_frames = false}), {}};
+  InputRead read{ReadRecording(input.recording, {.check_frames = false}), {}, {}};
   Recording& recording = read.recording;
   if (!input.tracked.empty()) recording.vision0.reset();
   read.calibrations = ApplyCalibrations(input.calibrations, recording, read.warnings);
@@ -55,6 +57,12 @@ InputRead ReadInput(const RecordingInput& input) {
     read.warnings.push_back(
         fmt::format("{}: the tips were tracked without {}", input.tracked.string(), name));
   }
+  return read;
+}
+
+InputRead ReadInput(const RecordingInput& input, const plausibility::CommandUse& use, bool quiet) {
+  InputRead read = ReadInput(input);
+  read.findings = CheckInput({input.recording, input.no_check, quiet}, use, read.recording);
   return read;
 }
 

@@ -3,8 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <vector>
 
 #include "apps/common/calibration_input.h"
+#include "plausibility/command_use.h"
 #include "recording/recording_reader.h"
 
 namespace flextip {
@@ -13,6 +15,7 @@ struct RecordingInput {
   std::filesystem::path recording, out;
   std::filesystem::path tracked;  ///< a result of flextip track; empty: the recording's own tips
   CalibrationFiles calibrations;
+  bool no_check = false;
 
   /// Everything that is read, for OutputFolder.
   std::vector<std::filesystem::path> Files() const;
@@ -23,14 +26,18 @@ struct InputRead : ReadResult {
 
   /// Returns the streams of which estimation and diagnosis use nothing: "cam0, command0".
   std::string NotUsed() const;
+  std::vector<plausibility::Finding> findings;  ///< that do not stop the command
 };
 
-/// RECORDING, --output, --tracked and --calibration. `input` must outlive the parsing.
+/// RECORDING, --output, --tracked, --calibration and --no-check. `input` must outlive the parsing.
 void AddRecordingInput(CLI::App& command, RecordingInput& input);
 
 /// The recording without a look at its frames, vision0 replaced by the tracked one where that was
 /// asked for, and with the calibrations in it; tracked tips are taken as they are. Throws
 /// InputError.
 InputRead ReadInput(const RecordingInput& input);
+/// The same, checked for what the command does with it (CheckInput). Throws WorkError where the
+/// command would work on what is wrong.
+InputRead ReadInput(const RecordingInput& input, const plausibility::CommandUse& use, bool quiet);
 
 }  // namespace flextip

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/command_uses.h"
 #include "apps/common/commands.h"
+#include "apps/common/findings.h"
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/common/recording_input.h"
@@ -60,11 +62,12 @@ void CheckNames(const std::vector<std::string>& effects) {
 
 void Run(const Options& options, bool quiet) {
   CheckNames(options.without);
-  const InputRead read = ReadInput(options.input);
+  const InputRead read = ReadInput(options.input, UseOfDiagnose(), quiet);
   const Recording& recording = read.recording;
   OutputFolder output(options.input.out, "diagnose",
                       {.force = options.force, .inputs = options.input.Files()});
   output.Warn(read.warnings);
+  output.Beware(FindingsJson(read.findings));
   const diagnosis::DiagnosisResult result = diagnosis::Diagnose(
       recording, options.input.recording.string(), {.without = options.without});
   output.Warn(result.warnings);
@@ -80,7 +83,8 @@ void Run(const Options& options, bool quiet) {
                             {"converged", result.converged},
                             {"streams_not_used", read.NotUsed()}};
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
-  const Judgement judged = diagnosis::JudgeDiagnosis(result);
+  Judgement judged = diagnosis::JudgeDiagnosis(result);
+  MentionFindings(read.findings, judged);
   summary["verdict"] = JudgementJson(judged);
   output.WriteSummary(summary);
   report::WriteDiagnoseReport(output.folder());

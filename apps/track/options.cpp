@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "apps/common/input_check.h"
 #include "core/error.h"
 
 namespace flextip {
@@ -62,6 +63,7 @@ void AddTrackerOptions(CLI::App& command, TrackOptions& options) {
       ->check(CLI::PositiveNumber)
       ->needs(outline)
       ->type_name("METRES");
+  AddNoCheckOption(command, options.no_check);
   command.add_flag("--force", options.force, "Replace the folder of an earlier run");
   command.add_flag("--resume", options.resume, "Go on where an interrupted run ended");
 }

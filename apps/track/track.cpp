@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "apps/common/commands.h"
+#include "apps/common/findings.h"
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
+#include "apps/track/check.h"
 #include "apps/track/options.h"
 #include "apps/track/overlay.h"
 #include "apps/track/summary.h"
@@ -107,6 +109,8 @@ void RunTrack(TrackOptions options, bool quiet) {
       {.force = options.force, .inputs = options.Files(), .resume = options.resume});
   TrackInput input = OpenTrackInput(options);
   output.Warn(input.warnings);
+  const auto findings = CheckTrackInput(options, input, quiet);
+  output.Beware(FindingsJson(findings));
   options.tracker.tube = ShaftSeen(options, input);
   std::optional<Series<Eigen::Vector3d>> truth;
   if (options.IsRecording() || !options.truth.empty()) {
@@ -129,13 +133,15 @@ void RunTrack(TrackOptions options, bool quiet) {
   const TrackSums& sums = tables.sums;
   const int cameras = static_cast<int>(input.frames->Cameras());
   nlohmann::json summary = TrackSummary(sums, cameras, truth.has_value());
+  if (!input.recording.cam0->has_T_RC) summary["frame"] = "C";
   if (!input.calibrations.empty()) summary["calibrations"] = CalibrationsJson(input.calibrations);
   if (truth && sums.score.frames == 0) {
     output.Warn("no frame with the tip seen falls into the truth's time");
   }
   tables.Finish(*input.recording.tags0, input.recording.cam0->calibration.rate_hz,
                 input.recording.cam0->has_T_RC);
-  const Judgement judged = JudgeTrack(TrackTotalsOf(sums, input));
+  Judgement judged = JudgeTrack(TrackTotalsOf(sums, input));
+  MentionFindings(findings, judged);
   summary["verdict"] = JudgementJson(judged);
   output.WriteSummary(summary);
   report::WriteTrackReport(output.folder());

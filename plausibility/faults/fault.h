@@ -15,6 +15,7 @@ struct Fault {
   std::string looks;    ///< "em0: positions look like millimetres"
   std::string mend;     ///< the line that mends it
   std::function<void(Scene&)> undo;
+  double clock_shift_s = 0.0;  ///< of a clock: seconds to add to the subject's stamps
 };
 
 /// Returns the faults that the streams and settings of a scene can have.

@@ -52,7 +52,11 @@ class FaultSearch {
                           fmt::format("{}: {}", best->fault.looks, worst->text), best->fault.mend});
       scene_ = std::move(best->scene);
       relations_ = std::move(best->relations);
-      undone_.push_back(std::move(best->fault));
+      if (best->fault.clock_shift_s != 0.0) {
+        shifts_[best->fault.subject] = best->fault.clock_shift_s;
+      } else {
+        undone_.push_back(std::move(best->fault));
+      }
     }
     if (CountViolated(relations_) > 0) Unexplained();
   }
@@ -127,7 +131,8 @@ class FaultSearch {
                             if (!s.Has("vision0"))
                               for (Instant& now : s.instants) now.tip.reset();
                             for (const Fault& fault : undone_) fault.undo(s);
-                          }});
+                          },
+                          shift});
       }
     }
     return faults;
@@ -155,10 +160,10 @@ class FaultSearch {
   }
 
   const Recording& recording_;
-  const Shifts& shifts_;
+  Shifts shifts_;
   Scene scene_;
   std::vector<Relation> relations_;
-  std::vector<Fault> undone_;
+  std::vector<Fault> undone_;  // but for clocks
 };
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "report/diagnose/words.h"
 #include "report/pages.h"
 #include "report/report.h"
+#include "report/summary_parts.h"
 
 namespace flextip::report {
 namespace {
@@ -276,6 +277,7 @@ void WriteDiagnoseReport(const fs::path& folder) {
                 fmt::format("{}   (flextip {})", summary.command, summary.version));
   report.AddHtml(HeadlineHtml(headline));
   AddGainFigures(report, result);
+  AddFindings(report, folder);
   AddWarningsOnce(report, result, summary);
   report.AddHeading("Causes");
   AddProbabilities(report, result);

@@ -112,6 +112,7 @@ void WriteCalibrateReport(const fs::path& folder) {
     report.AddHtml(ValuesHtml(verdict.value("values", Json::array())));
     report.AddHtml(NotFoundHtml(verdict.value("not_found", Json::array())));
   }
+  AddFindings(report, folder);
   report.AddWarnings(Warnings(summary, verdict));
   auto pictures = PicturesIn(folder, kPictures);
   const auto views = PicturesIn(folder / "overlay", kPictures);

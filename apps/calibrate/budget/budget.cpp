@@ -9,6 +9,8 @@
 
 #include "apps/calibrate/budget/output.h"
 #include "apps/calibrate/calibrate.h"
+#include "apps/common/command_uses.h"
+#include "apps/common/findings.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
@@ -111,7 +113,7 @@ std::vector<TimedBudget> Budgets(const CalibrateBudgetOptions& options, const Re
 void RunCalibrateBudget(const CalibrateBudgetOptions& options, bool quiet) {
   OutputFolder output(options.input.out, "calibrate budget",
                       {.force = options.force, .inputs = options.input.Files()});
-  const InputRead read = ReadInput(options.input);
+  const InputRead read = ReadInput(options.input, UseOfBudget(), quiet);
   if (!read.recording.cam0 || !read.recording.tags0) {
     throw InputError::At(options.input.recording.string(), 0,
                          "has no cam0 or no tags0: the tip is seen by neither");
@@ -121,6 +123,7 @@ void RunCalibrateBudget(const CalibrateBudgetOptions& options, bool quiet) {
                          "cam0: T_RC is unknown, expected --calibration of calibrate hand-eye");
   }
   output.Warn(read.warnings);
+  output.Beware(FindingsJson(read.findings));
   std::vector<const Calibration*> calibrations;
   for (const UsedCalibration& used : read.calibrations) calibrations.push_back(&used.calibration);
   const StatedChain chain = GatherChain(calibrations);

@@ -9,6 +9,8 @@
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/em/output.h"
 #include "apps/calibrate/verdict_json.h"
+#include "apps/common/command_uses.h"
+#include "apps/common/findings.h"
 #include "apps/common/output.h"
 #include "apps/common/recording_input.h"
 #include "calibration/em/em_calibration.h"
@@ -59,8 +61,9 @@ void PrintResult(const CalibrateEmOptions& options, const EmResult& result) {
 void RunCalibrateEm(const CalibrateEmOptions& options, bool quiet) {
   OutputFolder output(options.input.out, "calibrate em",
                       {.force = options.force, .inputs = {options.input.recording}});
-  const auto read = ReadInput(options.input);
+  const auto read = ReadInput(options.input, UseOfEm(options.reference), quiet);
   output.Warn(read.warnings);
+  output.Beware(FindingsJson(read.findings));
   const EmPairs found = PairsOf(options, read.recording);
   output.Warn(found.warnings);
   const EmResult result =

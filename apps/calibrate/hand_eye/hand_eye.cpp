@@ -13,6 +13,9 @@
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/hand_eye/output.h"
 #include "apps/calibrate/verdict_json.h"
+#include "apps/common/command_uses.h"
+#include "apps/common/findings.h"
+#include "apps/common/input_check.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "calibration/hand_eye/hand_eye.h"
@@ -33,6 +36,7 @@ struct HandEyeCommand {
   std::filesystem::path recording, out, camera;
   std::string board;
   bool eye_in_hand = false, refine_intrinsics = false, no_time_offset = false, force = false;
+  bool no_check = false;
   int max_views = 80;
 };
 
@@ -104,12 +108,15 @@ void WriteResults(const HandEyeCommand& options, const Recording& recording,
 void RunHandEye(const HandEyeCommand& options, bool quiet) {
   std::optional<BoardSpec> board;
   if (!options.board.empty()) board = ParseBoardSpec(options.board);
-  const ReadResult read = ReadRecording(options.recording);
+  ReadResult read = ReadRecording(options.recording);
   const Recording& recording = read.recording;
   const std::string target = CheckStreams(options, recording);
+  const auto findings = CheckInput({options.recording, options.no_check, quiet},
+                                   UseOfHandEye(target == "tags0"), read.recording);
   OutputFolder output(options.out, "calibrate hand-eye",
                       {.force = options.force, .inputs = {options.recording}});
   output.Warn(read.warnings);
+  output.Beware(FindingsJson(findings));
 
   HandEyeInput input;
   input.mount = options.eye_in_hand ? HandEyeMount::kEyeInHand : HandEyeMount::kEyeToHand;
@@ -161,6 +168,7 @@ void AddCalibrateHandEye(CLI::App& calibrate, AppContext& context) {
   command->add_option("--views", options->max_views, "Most pictures to use, spread evenly")
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();
+  AddNoCheckOption(*command, options->no_check);
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->footer(
       "Example:\n"

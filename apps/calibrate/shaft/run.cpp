@@ -3,16 +3,19 @@
 #include <fmt/format.h>
 
 #include "apps/calibrate/verdict_json.h"
+#include "apps/common/findings.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
 
 namespace flextip {
 
-ShaftRun::ShaftRun(const RecordingInput& from, const std::string& command, bool force)
+ShaftRun::ShaftRun(const RecordingInput& from, const plausibility::CommandUse& use, bool force,
+                   bool quiet)
     : input(from),
-      read(ReadInput(from)),
-      output(from.out, command, {.force = force, .inputs = from.Files()}) {
+      read(ReadInput(from, use, quiet)),
+      output(from.out, use.command, {.force = force, .inputs = from.Files()}) {
   output.Warn(read.warnings);
+  output.Beware(FindingsJson(read.findings));
 }
 
 void ShaftRun::Write(const ShaftFindings& findings) {

@@ -24,7 +24,7 @@ struct ShaftFindings {
 
 /// Reads the recording and begins the folder; its warnings begin with the reading's.
 struct ShaftRun {
-  ShaftRun(const RecordingInput& from, const std::string& command, bool force);
+  ShaftRun(const RecordingInput& from, const plausibility::CommandUse& use, bool force, bool quiet);
 
   /// Writes all files, the page too, and puts the folder in its place.
   void Write(const ShaftFindings& findings);

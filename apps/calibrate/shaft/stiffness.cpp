@@ -10,6 +10,7 @@
 
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/shaft/run.h"
+#include "apps/common/command_uses.h"
 #include "calibration/shaft/stiffness_calibration.h"
 #include "calibration/verdict/shaft.h"
 #include "recording/text/csv.h"
@@ -137,7 +138,7 @@ void Run(Options options, bool quiet) {
       {"constant", StiffnessChoice::kConstant},
       {"taper", StiffnessChoice::kTaper}};
   options.stiffness.choice = choices.at(options.model);
-  ShaftRun run(options.input, "calibrate stiffness", options.force);
+  ShaftRun run(options.input, UseOfStiffness(), options.force, quiet);
   const StiffnessCalibration result =
       CalibrateStiffness(run.read.recording, options.input.recording.string(), options.stiffness);
   Warn(result, run.output);

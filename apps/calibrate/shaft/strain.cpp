@@ -11,6 +11,7 @@
 
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/shaft/run.h"
+#include "apps/common/command_uses.h"
 #include "calibration/shaft/strain_calibration.h"
 #include "calibration/verdict/shaft.h"
 #include "recording/text/csv.h"
@@ -173,7 +174,7 @@ void Warn(const StrainCalibration& result, OutputFolder& output) {
 }
 
 void Run(const Options& options, bool quiet) {
-  ShaftRun run(options.input, "calibrate strain", options.force);
+  ShaftRun run(options.input, UseOfStrain(), options.force, quiet);
   const StrainCalibration result =
       CalibrateStrain(run.read.recording, options.input.recording.string(), options.strain);
   Warn(result, run.output);

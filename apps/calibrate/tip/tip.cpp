@@ -10,6 +10,9 @@
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/tip/output.h"
 #include "apps/calibrate/verdict_json.h"
+#include "apps/common/command_uses.h"
+#include "apps/common/findings.h"
+#include "apps/common/input_check.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
@@ -78,8 +81,10 @@ TipBody CollarBody(const CalibrateTipOptions& options, OutputFolder& output, boo
 }
 
 TipBody BodyOf(const CalibrateTipOptions& options, OutputFolder& output, bool quiet) {
-  const auto read = ReadInput(options.input);
+  InputRead read = ReadInput(options.input);
   const std::string sensor = ChooseSensor(options, read.recording);
+  const InputCheck check{options.input.recording, options.input.no_check, quiet};
+  output.Beware(FindingsJson(CheckInput(check, UseOfTip(sensor), read.recording)));
   if (sensor == "tags0") return CollarBody(options, output, quiet);
   output.Warn(read.warnings);
   if (sensor == "em0") {
