@@ -21,6 +21,7 @@ std::string Typed(int argc, char** argv) {
 }
 
 void AddCommands(CLI::App& app, AppContext& context) {
+  AddAlign(app, context);
   AddBoard(app, context);
   AddCalibrate(app, context);
   AddCheck(app, context);
@@ -31,6 +32,7 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddDetect(app, context);
   AddDiagnose(app, context);
   AddEstimate(app, context);
+  AddExport(app, context);
   AddImport(app, context);
   AddMap(app, context);
   AddReport(app, context);

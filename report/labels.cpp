@@ -70,6 +70,9 @@ const std::map<std::string, std::string>& Labels() {
       {"scored_samples", "samples compared with the truth"},
       // shape
       {"shape ok", "shapes solved"},
+      // align
+      {"offset_standard_deviation_s", "its standard deviation"},
+      {"rate_standard_deviation", "standard deviation of the rate"},
       // collar
       {"tag_px", "side of a tag"},
       {"tip_rms_m", "tip error, RMS"},

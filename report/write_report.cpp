@@ -29,6 +29,7 @@ const std::vector<CommandPage>& Pages() {
       {"shape", WriteShapeReport, {"shapes.csv"}},
       {"detect", WriteDetectReport, {"tags.csv"}},
       {"calibrate", WriteCalibrateReport},
+      {"align", WriteCalibrateReport, {"figures.json"}},
       {"compare", WriteCompareReport, {"figures.json"}},
       {"board", WriteCalibrateReport},
       {"collar", WriteCalibrateReport, {"figures.json", "drawing.png"}},

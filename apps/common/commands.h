@@ -28,6 +28,7 @@ inline void OnRun(CLI::App& command, AppContext& context, std::function<void()> 
 //   command.add_option(...);
 //   command.footer("Example:\n  flextip track RECORDING -o OUT");
 //   OnRun(command, context, [options, &context] { RunTrack(*options, context); });
+void AddAlign(CLI::App& app, AppContext& context);
 void AddBoard(CLI::App& app, AppContext& context);
 void AddCalibrate(CLI::App& app, AppContext& context);
 void AddCheck(CLI::App& app, AppContext& context);
@@ -38,6 +39,7 @@ void AddCompletion(CLI::App& app, AppContext& context);
 void AddConvert(CLI::App& app, AppContext& context);
 void AddDetect(CLI::App& app, AppContext& context);
 void AddEstimate(CLI::App& app, AppContext& context);
+void AddExport(CLI::App& app, AppContext& context);
 void AddImport(CLI::App& app, AppContext& context);
 void AddMap(CLI::App& app, AppContext& context);
 void AddReport(CLI::App& app, AppContext& context);

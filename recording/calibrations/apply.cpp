@@ -56,12 +56,15 @@ void CalibrationUse::ApplyNumbers(const std::string& name) {
     field_names_.push_back(name);
     return;
   }
-  if (eye == "intrinsics") {
+  const std::string quantity = name.substr(name.find('.') + 1);
+  if (quantity == "time_rate" || quantity == "time_origin_s") {
+    CheckClock(name);  // STREAM.time_offset_s takes it
+  } else if (eye == "intrinsics") {
     SetIntrinsics(name);
   } else if (eye == "distortion_coefficients") {
     SetDistortion(name);
-  } else if (eye == "time_offset_s") {
-    ShiftFrames(name);
+  } else if (quantity == "time_offset_s") {
+    SetClock(name);
   } else if (name == "tip.p_WE") {
     MoveTip();
   } else if (name == "tags0.p_E") {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,7 +49,9 @@ class CalibrationUse {
   void PlaceSecondCamera(const Pose& T_C0C1);
   void SetIntrinsics(const std::string& name);
   void SetDistortion(const std::string& name);
-  void ShiftFrames(const std::string& name);
+  void SetClock(const std::string& name);
+  void CheckClock(const std::string& name) const;
+  void ShiftFrames(const std::string& name, const std::function<TimeNs(TimeNs)>& time);
   void MoveTip();
   void MoveTipOnCollar();
   void RegisterEm(const Pose& T_RF);

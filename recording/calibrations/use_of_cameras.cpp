@@ -32,10 +32,6 @@ void MoveTips(const Pose& T_NO, VisionStream& vision) {
   }
 }
 
-void Shift(TimeNs by_ns, auto& series) {
-  for (auto& sample : series) sample.t_ns += by_ns;
-}
-
 }  // namespace
 
 RegistrationNoise NoiseAt(const Eigen::MatrixXd& covariance, const Pose& T_RA,
@@ -125,23 +121,6 @@ void CalibrationUse::SetDistortion(const std::string& name) {
   }                                                     // the recording already says so
   camera.distortion_coefficients = terms;
   if (SeenBy(name)) WarnOfTips(name);
-}
-
-void CalibrationUse::ShiftFrames(const std::string& name) {
-  const TimeNs by_ns = std::llround(1e9 * Numbers(name, 1)[0]);
-  CameraStream& camera = Camera(name);
-  const auto shift = [&](CameraStream& eye) {
-    Shift(by_ns, eye.filenames);
-    Shift(by_ns, eye.frame_numbers);
-  };
-  if (camera.filenames.empty() && camera.frame_numbers.empty() && !SeenBy(name)) {
-    Refuse(name, "there are no frames with times of their own to be shifted");
-  }
-  shift(camera);
-  if (name == "cam0.time_offset_s" && recording_.cam1 && !Finds("cam1.time_offset_s")) {
-    shift(*recording_.cam1);  // both eyes have one clock
-  }
-  if (SeenBy(name)) Shift(by_ns, recording_.vision0->tips);
 }
 
 }  // namespace flextip

@@ -1,4 +1,5 @@
-// The page of flextip calibrate, collar and board: verdict, figures, pictures, then every number.
+// The page of flextip calibrate, align, collar and board: verdict, figures, pictures, then every
+// number.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,6 +27,7 @@ constexpr std::size_t kResiduals = 400;  // rows of residuals.csv that a page sh
 
 std::string TitleOf(const std::string& command) {
   static const std::map<std::string, std::string> titles = {
+      {"align", "Clocks"},
       {"board", "Calibration board"},
       {"collar", "Tag collar"},
       {"calibrate budget", "Error budget of the tip"},

@@ -22,10 +22,10 @@ Names With(Names names, const Names& more) {
 /// The closed loop is a folder of its own: it joins the plant with the controllers.
 const std::map<std::string, Names>& Arrows() {
   static const Names models{"core", "kinematics", "estimation", "control", "vision", "recording"};
-  static const Names libraries{"core",        "kinematics", "estimation", "control",
-                               "vision",      "recording",  "pipeline",   "plausibility",
-                               "calibration", "simulation", kClosedLoop,  "diagnosis",
-                               "report",      "workspace",  "targets",    "exchange"};
+  static const Names libraries{
+      "core",     "kinematics",   "estimation",  "control",    "vision",    "recording",
+      "pipeline", "plausibility", "calibration", "simulation", kClosedLoop, "diagnosis",
+      "report",   "workspace",    "targets",     "exchange",   "exports"};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
@@ -45,6 +45,7 @@ const std::map<std::string, Names>& Arrows() {
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording", "report"}},
+      {"exports", {"core", "recording", "report", "vision"}},
       {"targets", {"core", "calibration", "vision", "report"}},
       {"reproduction",
        {"core", "kinematics", "estimation", "control", "pipeline", "recording", "simulation",
@@ -61,7 +62,8 @@ const std::map<std::string, Names>& Arrows() {
 /// Foreign header's beginning -> the folders whose .cpp files may include it.
 const std::map<std::string, Names>& ForeignHeaders() {
   static const std::map<std::string, Names> foreign{
-      {"opencv2/", {"vision", "recording", "calibration", "simulation", "apps", "bench", "tests"}},
+      {"opencv2/",
+       {"vision", "recording", "calibration", "simulation", "exports", "apps", "bench", "tests"}},
       // The renderer draws the library's patterns.
       {"apriltag", {"vision", "simulation", "tests"}},
       {"ceres/", {"estimation", "calibration", "tests"}},
@@ -71,7 +73,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
         "tests"}},
       {"geos", {"reproduction"}},
       {"boost/", {"workspace", "reproduction"}},
-      {"nlohmann/", {"report", "reproduction", "apps", "bench", "testdata", "tests"}},
+      {"nlohmann/", {"report", "exports", "reproduction", "apps", "bench", "testdata", "tests"}},
       {"CLI/", {"reproduction", "apps", "bench", "testdata"}},
   };
   return foreign;

@@ -241,5 +241,29 @@ TEST(CalibrationApply, FramesAndTheirTipsMoveInTime) {
   EXPECT_THAT(ErrorOf(WithNumbers("cam0.time_offset_s", {0.1}), r), HasSubstr("no frames"));
 }
 
+TEST(CalibrationApply, AStreamTakesItsClock) {
+  const Recording before = Plain();
+  Recording r = before;
+  const TimeNs origin_ns = before.em0->samples.front().t_ns;
+  Calibration c;
+  c.numbers["em0.time_offset_s"] = {1.5};
+  c.numbers["em0.time_rate"] = {0.001};
+  c.numbers["em0.time_origin_s"] = {1e-9 * static_cast<double>(origin_ns)};
+  Apply(c, r);
+  for (std::size_t i = 0; i < r.em0->samples.size(); ++i) {
+    const double since_ns = static_cast<double>(before.em0->samples[i].t_ns - origin_ns);
+    EXPECT_NEAR(static_cast<double>(r.em0->samples[i].t_ns - origin_ns), 1.5e9 + 1.001 * since_ns,
+                2.0);
+  }
+  EXPECT_EQ(r.wrist0->samples[0].t_ns, before.wrist0->samples[0].t_ns);
+  c.numbers.erase("em0.time_origin_s");
+  EXPECT_THAT(ErrorOf(c, before), HasSubstr("there is no em0.time_origin_s with it"));
+  c.numbers["em0.time_origin_s"] = {0.0};
+  c.numbers["em0.time_rate"] = {1.0};
+  EXPECT_THAT(ErrorOf(c, before), HasSubstr("em0.time_rate: found 1"));
+  EXPECT_THAT(ErrorOf(WithNumbers("truth0.time_offset_s", {1.0}), before),
+              HasSubstr("unknown name"));
+}
+
 }  // namespace
 }  // namespace flextip

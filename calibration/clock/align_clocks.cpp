@@ -1,0 +1,193 @@
+#include "calibration/clock/align_clocks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/clock/clock_fit.h"
+#include "core/error.h"
+
+namespace flextip {
+namespace {
+
+constexpr double kSpeedBandwidth_s = 0.12;
+constexpr std::size_t kCandidates = 6, kRefined = 2;
+// Twice the log likelihood by which the best offset must surpass all others: hundreds of them.
+constexpr double kTelling = 25.0;
+constexpr double kMostSd_s = 0.1;
+
+/// Twice the log likelihood ratio of two misfits over so many independent residuals.
+double Evidence(double misfit, double other, double independent) {
+  return independent * std::log(std::max(other, 1e-15) / std::max(misfit, 1e-15));
+}
+
+void Fail(StreamClock& clock, ClockStatus status, const std::string& reason) {
+  clock.status = status;
+  clock.reason = reason;
+}
+
+/// The best fit from every likely start.
+ClockFit BestFit(const Motion& target, const Motion& reference, const SmoothMotion& smooth,
+                 const MisfitProfile& profile, const ClockOptions& options) {
+  std::vector<double> starts = LikelyOffsets(
+      SmoothMotion(target, std::max(kSpeedBandwidth_s, UsualBandwidth(target))), target.own_rows,
+      SmoothMotion(reference, std::max(kSpeedBandwidth_s, UsualBandwidth(reference))),
+      reference.own_rows, options.most_offset_s, options.least_overlap_s, kCandidates);
+  const auto least = std::min_element(
+      profile.misfit.begin(), profile.misfit.end(),
+      [](double a, double b) { return !std::isnan(a) && (std::isnan(b) || a < b); });
+  if (!std::isnan(*least)) {
+    starts.push_back(profile.offset_s[static_cast<std::size_t>(least - profile.misfit.begin())]);
+  }
+  const auto misfit = [&](double start_s) {
+    const double m = MisfitAt(target, smooth, start_s, options.least_overlap_s);
+    return std::isnan(m) ? 2.0 : m;
+  };
+  std::stable_sort(starts.begin(), starts.end(),
+                   [&](double a, double b) { return misfit(a) < misfit(b); });
+  starts.resize(std::min(starts.size(), kRefined));
+  ClockFit best;
+  for (const double start_s : starts) {
+    const ClockFit fit = FitClock(target, smooth, start_s);
+    const bool within = std::abs(fit.offset_s) <= options.most_offset_s + 0.5;
+    if (fit.converged && within && (!best.converged || fit.misfit < best.misfit)) best = fit;
+  }
+  return best;
+}
+
+StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_ns,
+                    const ClockOptions& options) {
+  StreamClock clock{.stream = target.stream, .reference = reference.stream};
+  const SmoothMotion smooth(reference, UsualBandwidth(reference));
+  clock.profile = MisfitOver(target, smooth, options.most_offset_s, options.least_overlap_s);
+  const bool any = std::any_of(clock.profile.misfit.begin(), clock.profile.misfit.end(),
+                               [](double m) { return !std::isnan(m); });
+  if (!any) {
+    Fail(clock, ClockStatus::kTooShort,
+         fmt::format("{} and {} have less than {:g} s in common at every offset within {:g} s",
+                     target.stream, reference.stream, options.least_overlap_s,
+                     options.most_offset_s));
+    return clock;
+  }
+  const ClockFit fit = BestFit(target, reference, smooth, clock.profile, options);
+  if (!fit.converged) {
+    Fail(clock, ClockStatus::kNotConverged,
+         fmt::format("no offset of {} against {} came to rest", target.stream, reference.stream));
+    return clock;
+  }
+  clock.offset_s = fit.offset_s;
+  clock.rate = fit.rate;
+  clock.origin_ns = epoch_ns + std::llround(1e9 * fit.origin_s);
+  clock.covariance = fit.covariance;
+  clock.misfit = fit.misfit;
+  clock.samples = fit.samples;
+  const double next = NextBestMisfit(clock.profile, fit.offset_s);
+  const double sd_s = std::sqrt(fit.covariance(0, 0));
+  if (Evidence(fit.misfit, 1.0, fit.independent) < kTelling || sd_s > kMostSd_s) {
+    Fail(clock, ClockStatus::kNoSharedMotion,
+         fmt::format("{} does not move as {} does at any offset within {:g} s", target.stream,
+                     reference.stream, options.most_offset_s));
+  } else if (Evidence(fit.misfit, next, fit.independent) < kTelling) {
+    Fail(clock, ClockStatus::kAmbiguous,
+         fmt::format("other offsets of {} against {} fit nearly as well: the motion is too slow, "
+                     "too small or repeats itself",
+                     target.stream, reference.stream));
+  } else {
+    clock.status = ClockStatus::kOk;
+  }
+  return clock;
+}
+
+/// The clock against the main reference, by way of a stream whose clock is known.
+StreamClock Through(StreamClock clock, const StreamClock& between) {
+  const double since_s =
+      1e-9 * static_cast<double>(clock.origin_ns - between.origin_ns) + clock.offset_s;
+  clock.by = clock.reference;
+  clock.reference = between.reference;
+  clock.offset_s += between.offset_s + between.rate * since_s;
+  clock.rate += between.rate + clock.rate * between.rate;
+  Eigen::Matrix2d by_between;
+  by_between << 1.0, since_s, 0.0, 1.0;
+  clock.covariance += by_between * between.covariance * by_between.transpose();
+  return clock;
+}
+
+}  // namespace
+
+const char* Name(ClockStatus status) {
+  switch (status) {
+    case ClockStatus::kOk:
+      return "ok";
+    case ClockStatus::kTooShort:
+      return "too short";
+    case ClockStatus::kNoSharedMotion:
+      return "no shared motion";
+    case ClockStatus::kAmbiguous:
+      return "ambiguous";
+    case ClockStatus::kNotConverged:
+      break;
+  }
+  return "not converged";
+}
+
+ClockResult AlignClocks(const Recording& recording, const ClockOptions& options) {
+  const Motions motions = MotionsOf(recording);
+  std::string known;
+  for (const Motion& m : motions.streams) known += (known.empty() ? "" : ", ") + m.stream;
+  if (motions.streams.size() < 2) {
+    throw InputError(fmt::format("the recording has {}: two streams that move are needed",
+                                 known.empty() ? "no stream that moves" : known + " alone"));
+  }
+  const Motion* reference =
+      options.reference.empty() ? &motions.streams.front() : motions.Find(options.reference);
+  if (reference == nullptr) {
+    throw InputError(fmt::format("--reference {}: expected one of {}", options.reference, known));
+  }
+  ClockResult result{.reference = reference->stream};
+  for (const Motion& target : motions.streams) {
+    if (&target == reference) continue;
+    result.streams.push_back(Compare(target, *reference, motions.epoch_ns, options));
+  }
+  const std::vector<StreamClock> direct = result.streams;
+  for (StreamClock& clock : result.streams) {
+    for (const StreamClock& between : direct) {
+      if (clock.IsUsable() || !between.IsUsable()) continue;
+      const StreamClock other = Compare(*motions.Find(clock.stream), *motions.Find(between.stream),
+                                        motions.epoch_ns, options);
+      if (other.IsUsable()) clock = Through(other, between);
+    }
+  }
+  return result;
+}
+
+Calibration ClockEntries(const ClockResult& result, const std::string& camera) {
+  Calibration calibration;
+  calibration.kind = "clocks";
+  std::map<std::string, Eigen::Matrix3d> covariance;  // of rate_at, offset, rate by the name
+  for (const StreamClock& clock : result.streams) {
+    const std::string name = clock.stream == "vision0" ? camera : clock.stream;
+    if (!clock.IsUsable()) {
+      calibration.unobservable.push_back({name + ".time_offset_s", clock.reason});
+      continue;
+    }
+    calibration.numbers[name + ".time_offset_s"] = {clock.offset_s};
+    calibration.numbers[name + ".time_origin_s"] = {1e-9 * static_cast<double>(clock.origin_ns)};
+    calibration.numbers[name + ".time_rate"] = {clock.rate};
+    Eigen::Matrix3d& block = covariance[name];
+    block.setZero();
+    block(0, 0) = clock.covariance(0, 0);
+    block(0, 2) = block(2, 0) = clock.covariance(0, 1);
+    block(2, 2) = clock.covariance(1, 1);
+  }
+  const auto n = static_cast<Eigen::Index>(3 * covariance.size());
+  calibration.covariance = Eigen::MatrixXd::Zero(n, n);
+  Eigen::Index at = 0;
+  for (const auto& [name, block] : covariance) {
+    calibration.covariance.block<3, 3>(at, at) = block;
+    at += 3;
+  }
+  return calibration;
+}
+
+}  // namespace flextip
