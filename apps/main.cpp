@@ -8,17 +8,12 @@
 
 #include "apps/common/commands.h"
 #include "apps/common/exit_code.h"
+#include "apps/common/output.h"
 #include "apps/common/usage.h"
 #include "core/version.h"
 
 namespace flextip {
 namespace {
-
-std::string Typed(int argc, char** argv) {
-  std::string line = "flextip";
-  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
-  return line;
-}
 
 void AddCommands(CLI::App& app, AppContext& context) {
   AddAlign(app, context);
@@ -44,7 +39,7 @@ void AddCommands(CLI::App& app, AppContext& context) {
 
 int Run(int argc, char** argv) {
   AppContext context;
-  context.command_line = Typed(argc, argv);
+  OutputFolder::NoteTyped("flextip", argc, argv);
   CLI::App app("Control of thin, bending surgical instruments by sight", "flextip");
   app.set_version_flag("--version", std::string("flextip ") + kVersion);
   app.add_flag("-q,--quiet", context.quiet, "No progress bar and no remarks, only errors");

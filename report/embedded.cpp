@@ -19,6 +19,7 @@ FLEXTIP_EMBED(flextip_plotly_js, FLEXTIP_PLOTLY_JS);
 FLEXTIP_EMBED(flextip_plotly_flat_js, FLEXTIP_PLOTLY_FLAT_JS);
 FLEXTIP_EMBED(flextip_page_css, FLEXTIP_PAGE_CSS);
 FLEXTIP_EMBED(flextip_figures_js, FLEXTIP_FIGURES_JS);
+FLEXTIP_EMBED(flextip_tables_js, FLEXTIP_TABLES_JS);
 
 namespace flextip::report {
 namespace {
@@ -35,5 +36,6 @@ std::string_view PlotlyFlatJs() {
 }
 std::string_view PageCss() { return Between(flextip_page_css_begin, flextip_page_css_end); }
 std::string_view FiguresJs() { return Between(flextip_figures_js_begin, flextip_figures_js_end); }
+std::string_view TablesJs() { return Between(flextip_tables_js_begin, flextip_tables_js_end); }
 
 }  // namespace flextip::report

@@ -11,5 +11,6 @@ std::string_view PlotlyJs();
 std::string_view PlotlyFlatJs();
 std::string_view PageCss();    ///< report/page.css
 std::string_view FiguresJs();  ///< report/figures.js
+std::string_view TablesJs();   ///< report/tables.js
 
 }  // namespace flextip::report

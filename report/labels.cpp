@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "report/unit_suffix.h"
 
@@ -28,20 +30,17 @@ constexpr std::array<UnitSuffix, 15> kUnits{{{"_m_N", "mm/N", 1000},
                                              {"_m", "mm", 1000},
                                              {"_N", "N", 1}}};
 
-/// Keys of summary.json; "COMMAND KEY" where a key means something else there.
-const std::map<std::string, std::string>& Labels() {
-  static const std::map<std::string, std::string> labels{
+using Labelled = std::pair<std::string, std::string>;
+
+/// Keys of summary.json; "COMMAND KEY" where a key means something else there. Of a command the
+/// first are the most important.
+const std::vector<Labelled>& Labels() {
+  static const std::vector<Labelled> labels{
       {"seconds", "time taken"},
-      {"streams_not_used", "streams that were not used"},
       // track
       {"track ok", "frames with the tip seen"},
       {"track predicted", "frames with the tip predicted"},
       {"track lost", "frames with the tip lost"},
-      {"frames_by_pixels", "frames fitted to the tags' pixels"},
-      {"frames_by_corners", "frames fitted to the tags' corners"},
-      {"tags_per_frame", "tags a frame"},
-      {"noise_grey", "noise of the tags' pixels"},
-      {"rms_reprojection_error_px", "corners to the fit, RMS"},
       {"scored_frames", "seen frames compared with the truth"},
       {"scored_frames_predicted", "predicted frames compared with the truth"},
       {"tip_rms_error_m", "tip error, RMS"},
@@ -54,6 +53,11 @@ const std::map<std::string, std::string>& Labels() {
       {"predicted_tip_max_error_m", "predicted tip's error, largest"},
       {"predicted_tip_mean_nees", "predicted tip's error² over its variance (honest: 3)"},
       {"predicted_tip_share_inside_95", "predicted tip's errors inside their 95 % ellipsoid"},
+      {"frames_by_pixels", "frames fitted to the tags' pixels"},
+      {"frames_by_corners", "frames fitted to the tags' corners"},
+      {"tags_per_frame", "tags a frame"},
+      {"noise_grey", "noise of the tags' pixels"},
+      {"rms_reprojection_error_px", "corners to the fit, RMS"},
       // simulate
       {"rendered", "seen through rendered frames"},
       {"max_deviation_m", "largest deviation"},
@@ -89,8 +93,21 @@ const std::map<std::string, std::string>& Labels() {
       {"collar noise_grey", "noise of a pixel"},
       // map
       {"without_measures", "points without measures"},
-      {"largest_norm_G", "largest ||G||"}};
+      {"largest_norm_G", "largest ||G||"},
+      // all
+      {"streams_not_used", "streams that were not used"}};
   return labels;
+}
+
+/// Returns the place of a key in the table, its length where the key is not there.
+std::size_t PlaceOf(const std::string& key, const std::string& command) {
+  const auto& labels = Labels();
+  for (const std::string& wanted : {command + " " + key, key}) {
+    const auto found = std::find_if(labels.begin(), labels.end(),
+                                    [&](const Labelled& l) { return l.first == wanted; });
+    if (found != labels.end()) return static_cast<std::size_t>(found - labels.begin());
+  }
+  return labels.size();
 }
 
 bool IsShare(const std::string& key) { return key.ends_with("share_inside_95"); }
@@ -98,16 +115,18 @@ bool IsShare(const std::string& key) { return key.ends_with("share_inside_95"); 
 }  // namespace
 
 std::string Label(const std::string& key, const std::string& command) {
-  for (const std::string& wanted : {command + " " + key, key}) {
-    const auto found = Labels().find(wanted);
-    if (found != Labels().end()) return found->second;
-  }
+  const std::size_t place = PlaceOf(key, command);
+  if (place < Labels().size()) return Labels()[place].second;
   std::string name = key;
   if (const UnitSuffix* unit = SuffixOf(key, kUnits)) {
     name.resize(name.size() - unit->ending.size());
   }
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
+}
+
+bool IsBefore(const std::string& a, const std::string& b, const std::string& command) {
+  return PlaceOf(a, command) < PlaceOf(b, command);
 }
 
 std::string SpokenValue(const std::string& key, double value) {

@@ -10,6 +10,10 @@ namespace flextip::report {
 /// summary.json) chooses where a key has a meaning for each.
 std::string Label(const std::string& key, const std::string& command = "");
 
+/// Whether `a` matters more than `b` among the numbers of a command; keys without a label of their
+/// own matter least.
+bool IsBefore(const std::string& a, const std::string& b, const std::string& command);
+
 /// Returns the number behind `key` in the unit people read: metres as mm, shares as %.
 std::string SpokenValue(const std::string& key, double value);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -31,9 +32,40 @@ std::string Count(const Json& json, const char* key) {
   return fmt::format("{:.0f}", Number(json, key));
 }
 
+using Runs = std::vector<std::pair<std::string, Json>>;
+
+/// "rod-track" -> "rod", "track".
+std::pair<std::string, std::string> ModelAndSensing(const std::string& controller) {
+  const std::size_t dash = controller.find('-');
+  if (dash == std::string::npos) return {controller, ""};
+  return {controller.substr(0, dash), controller.substr(dash + 1)};
+}
+
+/// How much less deviation the best controller has than `without`; empty where that did not run or
+/// is as good.
+std::string GainOver(const Runs& runs, const std::string& without, const char* of) {
+  const auto it =
+      std::find_if(runs.begin(), runs.end(), [&](const auto& r) { return r.first == without; });
+  if (it == runs.end()) return "";
+  const double best = Number(runs.front().second, "max_deviation_m");
+  const double factor = best > 0.0 ? Number(it->second, "max_deviation_m") / best : 0.0;
+  return factor > 1.05 ? fmt::format("{} divides the deviation by {:.2g}", of, factor) : "";
+}
+
+/// Why the best controller is best: beside those that differ from it in one thing.
+std::string WhyBest(const Runs& runs) {
+  const auto [model, sensing] = ModelAndSensing(runs.front().first);
+  const std::string bending = GainOver(runs, "straight-" + sensing, "knowing that the shaft bends");
+  const std::string seeing = GainOver(runs, model + "-calculate", "measuring the tip");
+  if (bending.empty() && seeing.empty()) return "";
+  std::string why = seeing.empty() || bending.empty() ? seeing + bending : seeing + ", " + bending;
+  why[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(why[0])));
+  return " " + why + ".";
+}
+
 /// Controllers by their largest deviation, the best first.
 Lead SimulateLead(const Json& summary) {
-  std::vector<std::pair<std::string, Json>> runs;
+  Runs runs;
   const Json controllers = summary.value("controllers", Json::object());
   for (const auto& [name, run] : controllers.items()) {
     if (run.is_object() && Has(run, "max_deviation_m")) runs.emplace_back(name, run);
@@ -49,7 +81,8 @@ Lead SimulateLead(const Json& summary) {
     const auto& [worst, other] = runs.back();
     lead.more =
         fmt::format("It is the best of {} controllers; the worst, {}, lets it go {} astray.",
-                    runs.size(), worst, Value(other, "max_deviation_m"));
+                    runs.size(), worst, Value(other, "max_deviation_m")) +
+        WhyBest(runs);
   }
   return lead;
 }
@@ -127,14 +160,20 @@ Lead ImportLead(const Json& summary) {
 }
 
 Lead ReproduceLead(const Json& summary) {
-  double numbers = 0.0, figures = 0.0;
+  double numbers = 0.0, figures = 0.0, compared = 0.0, agree = 0.0;
   for (const auto& chapter : summary.value("chapters", Json::array())) {
     numbers += Number(chapter, "numbers");
     figures += Number(chapter, "figures");
+    compared += Number(chapter, "compared");
+    agree += Number(chapter, "agree");
   }
   if (numbers + figures == 0.0) return {};
-  return {.says = fmt::format("{:.0f} numbers and {:.0f} figures of the thesis, done again.",
-                              numbers, figures)};
+  const std::string more =
+      fmt::format("{:.0f} numbers and {:.0f} figures, done again", numbers, figures);
+  if (compared == 0.0) return {.says = more + "."};
+  return {.says = fmt::format("{:.0f} of {:.0f} of the thesis's numbers agree to 5 %.", agree,
+                              compared),
+          .more = more + "; where a number differs, its row says why."};
 }
 
 }  // namespace

@@ -216,6 +216,8 @@ std::string Report::Html() const {
     html += fmt::format("<p class=\"subtitle\">{}</p>\n", EscapeHtml(subtitle_));
   }
   html += "</header>\n<main>\n" + body_ + "</main>\n";
+  if (!end_.empty()) html += "<footer>\n" + end_ + "</footer>\n";
+  html += fmt::format("<script>\n{}</script>\n", TablesJs());
   if (has_figures_) {
     html += fmt::format("<script>{}</script>\n<script>\n{}</script>\n",
                         has_space_ ? PlotlyJs() : PlotlyFlatJs(), FiguresJs());

@@ -35,6 +35,8 @@ class Report {
   void AddWarnings(const std::vector<std::string>& warnings);
   void AddHeading(const std::string& text);
   void AddTable(const Table& table);
+  /// Puts HTML below all that is added: how the results were made.
+  void SetEnd(const std::string& html) { end_ = html; }
   /// Adds HTML unchanged: for parts that a page draws itself. Its texts must be escaped already.
   void AddHtml(const std::string& html) { body_ += html; }
   /// Adds figures, side by side where there are several and the page is wide. Those of a page are
@@ -56,7 +58,7 @@ class Report {
   void AddDrawing(const std::string& title, const std::string& caption, const std::string& json,
                   bool in_space);
 
-  std::string title_, subtitle_, body_;
+  std::string title_, subtitle_, body_, end_;
   bool has_figures_ = false, has_space_ = false, has_flat_ = false;  ///< flat: fields or bars
 };
 

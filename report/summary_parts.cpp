@@ -11,6 +11,7 @@
 #include "report/diagnose/parts.h"
 #include "report/labels.h"
 #include "report/leads.h"
+#include "report/page_end.h"
 #include "report/result_files.h"
 #include "report/verdict.h"
 
@@ -118,8 +119,9 @@ void AddJsonTable(Report& report, const std::string& name, const Json& items) {
 
 Report TitledPage(const std::filesystem::path& folder, const std::string& title) {
   const Json summary = ReadSummary(folder);
-  return Report(title, fmt::format("{}   (flextip {})", TextOf(summary, "command"),
-                                   TextOf(summary, "version")));
+  Report report(title, "flextip " + TextOf(summary, "command"));
+  report.SetEnd(PageEnd(folder));
+  return report;
 }
 
 void AddFindings(Report& report, const std::filesystem::path& folder) {
@@ -140,16 +142,21 @@ std::string CommandOf(const std::filesystem::path& folder) {
 }
 
 void AddSummaryNumbers(Report& report, const std::filesystem::path& folder) {
-  std::vector<std::pair<std::string, std::string>> numbers;
   const Json summary = ReadSummary(folder);
   const std::string command = TextOf(summary, "command");
+  std::vector<std::string> keys;
   for (const auto& [key, value] : summary.items()) {
     const bool not_used = key == "streams_not_used" && value.is_string() &&
                           !value.get_ref<const std::string&>().empty();
-    if (IsScalar(value) || not_used) {
-      numbers.emplace_back(Label(key, command), Shown(key, value));
-    }
+    // How long it took stands at the end of the page.
+    if ((IsScalar(value) && key != "seconds") || not_used) keys.push_back(key);
   }
+  std::stable_sort(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) {
+    return IsBefore(a, b, command);
+  });
+  std::vector<std::pair<std::string, std::string>> numbers;
+  for (const std::string& key : keys)
+    numbers.emplace_back(Label(key, command), Shown(key, summary[key]));
   report.AddNumbers(numbers);
 }
 

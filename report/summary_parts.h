@@ -19,7 +19,7 @@ Report BeginPage(const std::filesystem::path& folder, const std::string& title);
 /// it; nothing where it found nothing, and for a check itself.
 void AddFindings(Report& report, const std::filesystem::path& folder);
 
-/// Adds every number of summary.json in large.
+/// Adds every number of summary.json in large, the most important first.
 void AddSummaryNumbers(Report& report, const std::filesystem::path& folder);
 /// Adds a table for each list or map of alike things in summary.json.
 void AddSummaryTables(Report& report, const std::filesystem::path& folder);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -66,6 +68,14 @@ void PrintRows(const std::vector<TableRow>& rows) {
                row.quantity);
 }
 
+bool IsCompared(const TableRow& row) { return row.thesis && row.flextip; }
+
+/// Agreement as the page's first sentence counts it: to a twentieth of the thesis's number.
+bool Agrees(const TableRow& row) {
+  constexpr double kShare = 0.05;
+  return IsCompared(row) && std::abs(*row.flextip - *row.thesis) <= kShare * std::abs(*row.thesis);
+}
+
 void RunReproduce(const Options& options) {
   OutputFolder output(options.out, "reproduce", {.force = options.force});
   ChapterResult all;
@@ -78,6 +88,8 @@ void RunReproduce(const Options& options) {
     chapters.push_back({{"chapter", chapter.name},
                         {"seconds", seconds.count()},
                         {"numbers", result.rows.size()},
+                        {"compared", std::ranges::count_if(result.rows, IsCompared)},
+                        {"agree", std::ranges::count_if(result.rows, Agrees)},
                         {"figures", result.figures.size()}});
     std::move(result.rows.begin(), result.rows.end(), std::back_inserter(all.rows));
     std::move(result.figures.begin(), result.figures.end(), std::back_inserter(all.figures));
@@ -106,6 +118,7 @@ void AddOptions(CLI::App& app, Options& options) {
 }
 
 int Run(int argc, char** argv) {
+  OutputFolder::NoteTyped("flextip reproduce", argc, argv);
   CLI::App app("The thesis's figures and numbers beside ours", "flextip reproduce");
   Options options;
   AddOptions(app, options);

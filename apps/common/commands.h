@@ -12,7 +12,6 @@ namespace flextip {
 /// What every command is given. It outlives the parsing and the work.
 struct AppContext {
   bool quiet = false;          ///< no progress and no chatter; errors still go to stderr
-  std::string command_line;    ///< as it was typed, for summaries
   std::function<void()> work;  ///< set by the command that was chosen, run after parsing
 };
 

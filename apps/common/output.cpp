@@ -1,5 +1,7 @@
 #include "apps/common/output.h"
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -43,11 +45,37 @@ bool HasNoNumber(const nlohmann::json& json) {
   return std::any_of(json.begin(), json.end(), HasNoNumber);
 }
 
+/// As a shell takes it.
+std::string Quoted(const std::string& argument) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
+  std::string quoted = "'";
+  for (const char c : argument) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string& Typed() {
+  static std::string line;
+  return line;
+}
+
+std::string Date() {
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+}
+
 }  // namespace
+
+void OutputFolder::NoteTyped(const std::string& program, int argc, char** argv) {
+  Typed() = program;
+  for (int i = 1; i < argc; ++i) Typed() += " " + Quoted(argv[i]);
+}
 
 OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
                            const OutputOptions& options)
-    : command_(command), force_(options.force) {
+    : command_(command), force_(options.force), inputs_(options.inputs) {
   if (name.empty()) throw InputError("the output folder has no name");
   name_ = Normal(name);
   std::error_code error;
@@ -123,6 +151,10 @@ void OutputFolder::WriteSummary(nlohmann::json results) const {
   results["command"] = command_;
   results["version"] = kVersion;
   results["seconds"] = seconds.count();
+  results["date"] = Date();
+  if (!Typed().empty()) results["typed"] = Typed();
+  results["inputs"] = nlohmann::json::array();
+  for (const fs::path& input : inputs_) results["inputs"].push_back(input.string());
   auto& warnings = results["warnings"];
   if (!warnings.is_array()) warnings = nlohmann::json::array();
   for (const auto& warning : warnings_) warnings.push_back(warning);

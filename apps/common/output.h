@@ -53,6 +53,9 @@ class OutputFolder {
   void OnlyNoteInterrupt() { interruption_->OnlyNote(); }
   bool StopRequested() const { return interruption_->Requested(); }
 
+  /// Keeps the command line for the summaries of this process; `program` stands for argv[0].
+  static void NoteTyped(const std::string& program, int argc, char** argv);
+
   /// A line for the summary's `warnings`.
   void Warn(const std::string& warning) { warnings_.push_back(warning); }
   void Warn(const std::vector<std::string>& warnings) {
@@ -63,10 +66,10 @@ class OutputFolder {
   /// page.
   void Beware(nlohmann::json findings) { findings_ = std::move(findings); }
 
-  /// Writes summary.json: the object `results` with `command`, `version`, `seconds` since the
-  /// constructor, `warnings` (those in `results` first) and `findings`, where there are any. Throws
-  /// WorkError where the disk refuses, and where a number in `results` is NaN or infinite, which
-  /// JSON cannot hold.
+  /// Writes summary.json: the object `results` with `command`, `version`, `typed` (the command
+  /// line), `date` (UTC), `inputs`, `seconds` since the constructor, `warnings` (those in `results`
+  /// first) and `findings`, where there are any. Throws WorkError where the disk refuses, and where
+  /// a number in `results` is NaN or infinite, which JSON cannot hold.
   void WriteSummary(nlohmann::json results) const;
 
   /// Makes the folder NAME. Throws WorkError where the disk refuses or another program has put
@@ -83,6 +86,7 @@ class OutputFolder {
   bool force_;
   bool committed_ = false, resumed_ = false, keep_ = false;
   std::vector<std::string> warnings_;
+  std::vector<std::filesystem::path> inputs_;
   std::optional<Interruption> interruption_;  // until committed
   nlohmann::json findings_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

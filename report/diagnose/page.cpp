@@ -11,6 +11,7 @@
 #include "report/diagnose/residuals.h"
 #include "report/diagnose/result.h"
 #include "report/diagnose/words.h"
+#include "report/page_end.h"
 #include "report/pages.h"
 #include "report/report.h"
 #include "report/summary_parts.h"
@@ -273,8 +274,8 @@ void WriteDiagnoseReport(const fs::path& folder) {
   const auto residuals = fs::exists(table) ? ReadResultTable(table) : ResultTable{};
   const auto headline = MakeHeadline(result);
 
-  Report report("Diagnosis: " + headline.title,
-                fmt::format("{}   (flextip {})", summary.command, summary.version));
+  Report report("Diagnosis: " + headline.title, "flextip " + summary.command);
+  report.SetEnd(PageEnd(folder));
   report.AddHtml(HeadlineHtml(headline));
   AddGainFigures(report, result);
   AddFindings(report, folder);

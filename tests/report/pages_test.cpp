@@ -197,7 +197,14 @@ TEST_F(Pages, LeadWithTheResult) {
   WriteSimulateReport(folder_);
   EXPECT_THAT(Page(), HasSubstr("rod-track keeps the tip within 0.31 mm of the desired path "
                                 "(0.12 mm RMS)."));
-  EXPECT_THAT(Page(), HasSubstr("the worst, straight-track, lets it go 5 mm astray."));
+  EXPECT_THAT(Page(),
+              HasSubstr("the worst, straight-track, lets it go 5 mm astray. Knowing that the "
+                        "shaft bends divides the deviation by 16."));
+  Write("summary.json", R"({"command": "simulate", "version": "1", "controllers": {
+    "straight-calculate": {"max_deviation_m": 0.006}, "rod-calculate": {"max_deviation_m": 0.002},
+    "straight-track": {"max_deviation_m": 0.001}, "rod-track": {"max_deviation_m": 0.001}}})");
+  WriteSimulateReport(folder_);
+  EXPECT_THAT(Page(), HasSubstr("astray. Measuring the tip divides the deviation by 6."));
   Write("summary.json", R"({"command": "track", "version": "1", "frames": 120, "ok": 118,
     "verdict": {"grade": "beware", "says": "The tip was seen in 118 of 120 frames",
       "reasons": ["the lens is bent"], "next": "calibrate the camera"}})");
@@ -207,6 +214,32 @@ TEST_F(Pages, LeadWithTheResult) {
   EXPECT_THAT(Page(), HasSubstr("<li>the lens is bent</li>"));
   EXPECT_THAT(Page(), HasSubstr("<b>Next:</b> calibrate the camera."));
   EXPECT_LT(Page().find("The tip was seen in"), Page().find("<dl class=\"figures\">"));
+}
+
+TEST_F(Pages, EndWithHowTheyWereMade) {
+  Write("summary.json", R"({"command": "detect", "version": "9.8.7", "seconds": 1.5, "tags": 3,
+    "typed": "flextip detect 'a b.png' <x>", "date": "2026-11-23T18:50:07Z",
+    "inputs": ["a b.png", "camera.yaml"]})");
+  WriteDetectReport(folder_);
+  const std::string end = Page().substr(Page().find("<footer>"));
+  EXPECT_THAT(end, HasSubstr("<dd>flextip detect &#39;a b.png&#39; &lt;x&gt;</dd>"));
+  EXPECT_THAT(end, HasSubstr("<dd>a b.png, camera.yaml</dd>"));
+  EXPECT_THAT(end, HasSubstr("<dd>2026-11-23 18:50 UTC</dd>"));
+  EXPECT_THAT(end, HasSubstr("<dd>1.5 s</dd>"));
+  EXPECT_THAT(end, HasSubstr("<dd>flextip 9.8.7</dd>"));
+  EXPECT_THAT(Page(), testing::Not(HasSubstr("time taken")));
+}
+
+TEST_F(Pages, PutTheImportantNumbersFirst) {
+  Write("summary.json", R"({"command": "track", "version": "1", "frames": 120, "ok": 118,
+    "aardvark": 1, "tags_per_frame": 3.5, "tip_rms_error_m": 0.0001})");
+  WriteTrackReport(folder_);
+  const std::string page = Page();
+  const auto at = [&](const std::string& text) { return page.find("<dt>" + text + "</dt>"); };
+  EXPECT_LT(at("frames with the tip seen"), at("tip error, RMS"));
+  EXPECT_LT(at("tip error, RMS"), at("tags a frame"));
+  EXPECT_LT(at("tags a frame"), at("aardvark"));
+  EXPECT_NE(at("aardvark"), std::string::npos);
 }
 
 TEST_F(Pages, AreMadeAgainByTheCommandOfTheSummary) {
