@@ -21,6 +21,7 @@ constexpr const char* kZ = "z (mm)";
 
 void WriteEstimateReport(const fs::path& folder) {
   Report report = BeginPage(folder, "Instrument fitted to the sensors");
+  if (fs::exists(folder / "figures.json")) report.AddFigureFile(folder / "figures.json");
   const auto data = folder / "state0" / "data.csv";
   if (fs::exists(data)) {
     const auto table = ReadResultTable(data);

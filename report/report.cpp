@@ -9,7 +9,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "report/embedded.h"
+#include "report/embedded/embedded.h"
 #include "report/result_files.h"
 
 namespace flextip::report {

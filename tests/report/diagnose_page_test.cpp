@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "report/diagnose/residuals.h"
-#include "report/embedded.h"
+#include "report/embedded/embedded.h"
 #include "tests/report/diagnose_fixture.h"
 
 namespace flextip::report {

@@ -10,7 +10,7 @@
 #include <regex>
 
 #include "core/error.h"
-#include "report/embedded.h"
+#include "report/embedded/embedded.h"
 
 namespace flextip::report {
 namespace {

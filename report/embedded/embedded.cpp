@@ -1,4 +1,4 @@
-#include "report/embedded.h"
+#include "report/embedded/embedded.h"
 
 // The assembler copies each file between two symbols. The build gives the paths and rebuilds this
 // file when one of them changes.

@@ -9,8 +9,8 @@ namespace flextip::report {
 // all that is flat (contours, bars).
 std::string_view PlotlyJs();
 std::string_view PlotlyFlatJs();
-std::string_view PageCss();    ///< report/page.css
-std::string_view FiguresJs();  ///< report/figures.js
-std::string_view TablesJs();   ///< report/tables.js
+std::string_view PageCss();    ///< report/embedded/page.css
+std::string_view FiguresJs();  ///< report/embedded/figures.js
+std::string_view TablesJs();   ///< report/embedded/tables.js
 
 }  // namespace flextip::report

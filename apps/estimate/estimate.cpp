@@ -13,6 +13,7 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
+#include "apps/estimate/figures.h"
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
 #include "diagnosis/model/latency.h"
@@ -179,6 +180,7 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   CsvWriter csv(kColumns);
   for (const auto& e : estimates) AddRow(csv, e.t_ns, e.value);
   WriteTextFile(output.folder() / "state0" / "data.csv", csv.text());
+  report::WriteFigures(output.folder() / "figures.json", EstimateFigures(recording, estimates));
   const EstimateTotals totals = TotalsOf(estimates);
   Judgement judged = JudgeEstimates(totals);
   MentionFindings(read.findings, judged);
