@@ -127,23 +127,28 @@ void RunBatch(const ShapeOptions& options, bool quiet) {
   if (!quiet) fmt::print("{} shapes in {}\n", shapes.size(), (options.out / "shapes.csv").string());
 }
 
-/// --force is the load on the tip with a value, and leave to replace the results of an earlier run
-/// without one, as in the other commands. It may be given twice.
-void AddForceOption(CLI::App& command, ShapeOptions& options) {
+/// --tip-force is the load and --overwrite the leave to replace earlier results. --force stands for
+/// both, as scripts have it: with a value the load, alone the leave. It may be given twice.
+void AddForceOptions(CLI::App& command, ShapeOptions& options) {
   const auto take = [&options](const std::vector<std::string>& texts) {
     for (const auto& text : texts) {
       const auto force = ParseVector(text);
       if (!force && text != kNoValue) {
-        throw CLI::ValidationError("--force", "'" + text + "' is not x,y,z");
+        throw CLI::ValidationError("--tip-force", "'" + text + "' is not x,y,z");
       }
       if (force) options.problem.f_tip = *force;
       (force ? options.has_force : options.replace) = true;
     }
   };
   command
-      .add_option_function<std::vector<std::string>>(
-          "--force", take,
-          "Force on the tip in R (N); without a value: replace the folder of an earlier run")
+      .add_option_function<std::string>(
+          "--tip-force", [take](const std::string& text) { take({text}); },
+          "Force on the tip in R (N)")
+      ->type_name("X,Y,Z");
+  command.add_flag("--overwrite", options.replace, "Replace the folder of an earlier run");
+  command
+      .add_option_function<std::vector<std::string>>("--force", take,
+                                                     "With X,Y,Z: --tip-force; alone: --overwrite")
       ->type_name("X,Y,Z")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(0, 1);
@@ -182,7 +187,7 @@ void CheckUsage(const CLI::App& command, const ShapeOptions& options) {
   for (const char* name : {"--length", "--stiffness", "--wrist", "--port"}) {
     if (command.count(name) == 0) throw InputError(fmt::format("shape: {} is required", name));
   }
-  if (!options.has_force) throw InputError("shape: --force X,Y,Z is required");
+  if (!options.has_force) throw InputError("shape: --tip-force X,Y,Z is required");
 }
 
 }  // namespace
@@ -192,7 +197,7 @@ void AddShape(CLI::App& app, AppContext& context) {
   auto options = std::make_shared<ShapeOptions>();
   auto* batch = command->add_option("--batch", options->batch, "Solve every row of a table");
   AddProblemOptions(*command, options->problem, batch);
-  AddForceOption(*command, *options);
+  AddForceOptions(*command, *options);
   command->add_option("--model", options->model, "rod (exact), beam (thesis) or straight")
       ->transform(CLI::CheckedTransformer(kModels).description(""))
       ->type_name("MODEL");
@@ -203,7 +208,7 @@ void AddShape(CLI::App& app, AppContext& context) {
   command->footer(
       "Examples:\n"
       "  flextip shape --length 0.6 --stiffness 0.304 --wrist 0,0,0 --port 0.28,0,0 \\\n"
-      "      --force 0,0,-2 --plot shape.png\n"
+      "      --tip-force 0,0,-2 --plot shape.png\n"
       "  flextip shape --batch problems.csv -o shapes\n");
   OnRun(*command, context, [command, options, &context] {
     CheckUsage(*command, *options);

@@ -154,8 +154,9 @@ TEST(ShapeCommand, FailsWithOneOnAShaftThatBuckles) {
 
 TEST(ShapeCommand, RefusesWrongUsage) {
   EXPECT_TRUE(IsRefused(RunProgram({"shape"}), {"--length is required"}));
-  EXPECT_TRUE(IsRefused(RunProgram(kShape), {"--force X,Y,Z is required"}));
   EXPECT_TRUE(IsRefused(RunProgram(With(kShape, {"--force", "1,2"})), {"'1,2' is not x,y,z"}));
+  EXPECT_TRUE(IsRefused(RunProgram(With(kShape, {"--tip-force", "1,2"})), {"'1,2' is not x,y,z"}));
+  EXPECT_TRUE(IsRefused(RunProgram(kShape), {"--tip-force X,Y,Z is required"}));
   EXPECT_TRUE(IsRefused(RunProgram(With(kShape, {"--force", "1,2,nan"})), {"is not x,y,z"}));
   EXPECT_TRUE(
       IsRefused(RunProgram(With(kShape, {"--force", "0,0,1", "--model", "jelly"})), {"jelly"}));
@@ -191,6 +192,7 @@ TEST(ShapeCommand, DrawsAPictureAndAPage) {
   EXPECT_TRUE(PageIsMadeAgain(folder / "out"));
   EXPECT_TRUE(IsRefused(RunProgram(arguments), {"--force replaces it"}));
   EXPECT_EQ(RunProgram(With(arguments, {"--force"})).exit_code, 0);
+  EXPECT_EQ(RunProgram(With(arguments, {"--overwrite"})).exit_code, 0);
 }
 
 }  // namespace
