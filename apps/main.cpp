@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/common/commands.h"
+#include "apps/common/defaults.h"
 #include "apps/common/exit_code.h"
 #include "apps/common/output.h"
 #include "apps/common/usage.h"
@@ -43,6 +44,7 @@ int Run(int argc, char** argv) {
   CLI::App app("Control of thin, bending surgical instruments by sight", "flextip");
   app.set_version_flag("--version", std::string("flextip ") + kVersion);
   app.add_flag("-q,--quiet", context.quiet, "No progress bar and no remarks, only errors");
+  AddDefaults(app, context);
   app.footer("Every command explains itself: flextip help COMMAND\n");
   app.require_subcommand(1);
   app.fallthrough();

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "recording/text/csv.h"
@@ -23,6 +25,29 @@ std::filesystem::path FileOf(const std::filesystem::path& folder, std::string na
 std::string Seconds(TimeNs t_ns) {
   const TimeNs whole = t_ns / kSecond_ns, rest = t_ns % kSecond_ns;
   return fmt::format("{}{}.{:09}", t_ns < 0 ? "-" : "", std::abs(whole), std::abs(rest));
+}
+
+/// A column's name with its unit, and its cells, in the asked units.
+struct Column {
+  std::string name;
+  double factor = 1.0;  ///< 1: cells are copied as they are
+};
+
+Column InUnits(const std::string& name, const TableUnits& units) {
+  struct Change {
+    const char *from, *to;
+    double factor;
+    bool wanted;
+  };
+  constexpr double kDegrees = 57.29577951308232;
+  for (const Change& change : {Change{" [m]", " [mm]", 1e3, units.millimetres},
+                               Change{" [m2]", " [mm2]", 1e6, units.millimetres},
+                               Change{" [rad]", " [deg]", kDegrees, units.degrees}}) {
+    const std::size_t kept = name.size() - std::min(name.size(), std::string(change.from).size());
+    if (change.wanted && name.ends_with(change.from))
+      return {name.substr(0, kept) + change.to, change.factor};
+  }
+  return {name};
 }
 
 }  // namespace
@@ -65,7 +90,8 @@ std::string PlainColumn(const std::string& column) {
 }
 
 std::vector<WrittenFile> WritePlainCsv(const std::vector<TimedTable>& tables,
-                                       const std::filesystem::path& folder) {
+                                       const std::filesystem::path& folder,
+                                       const TableUnits& units) {
   TimeNs first_ns = std::numeric_limits<TimeNs>::max();
   for (const TimedTable& table : tables) {
     if (!table.t_ns.empty()) first_ns = std::min(first_ns, table.t_ns.front());
@@ -73,11 +99,21 @@ std::vector<WrittenFile> WritePlainCsv(const std::vector<TimedTable>& tables,
   std::vector<WrittenFile> written;
   for (const TimedTable& table : tables) {
     std::vector<std::string> header{"time_s"};
-    for (const std::string& column : table.cells.names) header.push_back(PlainColumn(column));
+    std::vector<double> factors;
+    for (const std::string& name : table.cells.names) {
+      const Column column = InUnits(name, units);
+      header.push_back(PlainColumn(column.name));
+      factors.push_back(column.factor);
+    }
     CsvWriter csv(header, false);
     for (std::size_t row = 0; row < table.t_ns.size(); ++row) {
       csv.Add(Seconds(table.t_ns[row] - first_ns));
-      for (const auto& column : table.cells.texts) csv.Add(column[row]);
+      for (std::size_t k = 0; k < factors.size(); ++k) {
+        const std::string& cell = table.cells.texts[k][row];
+        const double number = table.cells.numbers[k][row];
+        const bool as_it_is = factors[k] == 1.0 || !std::isfinite(number);
+        csv.Add(as_it_is ? cell : fmt::format("{}", factors[k] * number));
+      }
       csv.EndRow();
     }
     written.push_back({FileOf(folder, table.name, ".csv"), table.t_ns.size()});

@@ -21,11 +21,17 @@ struct WrittenFile {
 std::vector<WrittenFile> WriteTum(const std::vector<TimedTable>& tables,
                                   const std::filesystem::path& folder);
 
+/// In place of metres and radians.
+struct TableUnits {
+  bool millimetres = false, degrees = false;
+};
+
 /// Writes each table as FOLDER/NAME.csv with a header that every program reads: no `#`, units
 /// joined to the name (`p_RW_x_m`), and `time_s` since the first time of all tables beside
-/// `timestamp_ns`.
+/// `timestamp_ns`. Columns in m, m2 and rad are turned into the asked `units`.
 std::vector<WrittenFile> WritePlainCsv(const std::vector<TimedTable>& tables,
-                                       const std::filesystem::path& folder);
+                                       const std::filesystem::path& folder,
+                                       const TableUnits& units = {});
 
 /// Returns "p_RW_x_m" for "p_RW_x [m]", "status" for "status []", "x_per_s" for "x [1/s]".
 std::string PlainColumn(const std::string& column);

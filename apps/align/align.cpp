@@ -46,7 +46,7 @@ void RunAlign(const AlignOptions& options, bool quiet) {
   report::WriteReport(output.folder());
   output.Commit();
   if (!quiet) Print(verdict, output.name());
-  if (verdict.grade == CalibrationGrade::kNotFound) throw WorkError(verdict.says);
+  if (verdict.grade == Grade::kNotFound) throw WorkError(verdict.says);
 }
 
 }  // namespace

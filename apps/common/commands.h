@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <utility>
@@ -11,8 +12,9 @@ namespace flextip {
 
 /// What every command is given. It outlives the parsing and the work.
 struct AppContext {
-  bool quiet = false;          ///< no progress and no chatter; errors still go to stderr
-  std::function<void()> work;  ///< set by the command that was chosen, run after parsing
+  bool quiet = false;              ///< no progress and no chatter; errors still go to stderr
+  std::filesystem::path defaults;  ///< a file with values of options; empty: none was given
+  std::function<void()> work;      ///< set by the command that was chosen, run after parsing
 };
 
 /// Makes `work` what the program does when `command` is chosen. It returns on success, throws

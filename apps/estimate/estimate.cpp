@@ -13,6 +13,7 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/recording_input.h"
+#include "apps/common/unit_option.h"
 #include "apps/estimate/figures.h"
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
@@ -211,7 +212,8 @@ void AddEstimate(CLI::App& app, AppContext& context) {
       ->type_name("MODEL.yaml");
   command
       ->add_option("--port-prior", options->port_prior_m,
-                   "How well the port is registered: standard deviation per axis (m)")
+                   "How well the port is registered: standard deviation per axis: 0.001 or 1mm")
+      ->transform(LengthInAnyUnit())
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--window", options->window_samples,

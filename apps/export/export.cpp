@@ -1,6 +1,7 @@
 // flextip export: recordings and results for other programs and for viewers.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -24,6 +25,7 @@ struct ExportOptions {
   fs::path input, out;
   std::vector<fs::path> more;
   std::string format = "svg";
+  std::vector<std::string> units;
   bool force = false;
 };
 
@@ -35,6 +37,13 @@ nlohmann::json FileList(const std::vector<exports::WrittenFile>& files) {
   return list;
 }
 
+exports::TableUnits UnitsOf(const ExportOptions& options) {
+  const auto asked = [&](const char* unit) {
+    return std::find(options.units.begin(), options.units.end(), unit) != options.units.end();
+  };
+  return {.millimetres = asked("mm"), .degrees = asked("deg")};
+}
+
 /// Writes one kind of text file for each table into the folder OUT.
 void RunTexts(const ExportOptions& options, const char* kind, bool quiet) {
   const auto tables = exports::ReadTimedTables(options.input);
@@ -42,7 +51,7 @@ void RunTexts(const ExportOptions& options, const char* kind, bool quiet) {
                       {.force = options.force, .inputs = {options.input}});
   const bool tum = std::string(kind) == "tum";
   const auto files = tum ? exports::WriteTum(tables, output.folder())
-                         : exports::WritePlainCsv(tables, output.folder());
+                         : exports::WritePlainCsv(tables, output.folder(), UnitsOf(options));
   for (const auto& file : files) {
     if (file.has_turn) continue;
     output.Warn(fmt::format("{}: no orientation was measured; the file has the identity",
@@ -139,8 +148,13 @@ void AddExport(CLI::App& app, AppContext& context) {
                                 "Example:\n  flextip export tum RECORDING -o trajectories\n");
   OnRun(*tum, context,
         [options = tum_options, &context] { RunTexts(*options, "tum", context.quiet); });
-  auto [csv, csv_options] = add("csv", "Tables with plain headers",
-                                "Example:\n  flextip export csv RECORDING -o tables\n");
+  auto [csv, csv_options] =
+      add("csv", "Tables with plain headers",
+          "Example:\n  flextip export csv RECORDING --unit mm --unit deg -o tables\n");
+  csv->add_option("--unit", csv_options->units, "mm in place of m, deg in place of rad; both")
+      ->check(CLI::IsMember({"mm", "deg"}))
+      ->allow_extra_args(false)
+      ->type_name("UNIT");
   OnRun(*csv, context,
         [options = csv_options, &context] { RunTexts(*options, "csv", context.quiet); });
   auto [pictures, picture_options] =

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "apps/common/vector_option.h"
+#include "apps/common/unit_option.h"
 #include "exchange/streams/names.h"
 
 namespace flextip {
@@ -19,10 +19,19 @@ void AddNumber(CLI::App& command, const std::string& name, T& value, const std::
       ->group("Instrument");
 }
 
+void AddLength(CLI::App& command, const std::string& name, std::optional<double>& value,
+               const std::string& text) {
+  command.add_option(name, value, text)
+      ->transform(LengthInAnyUnit())
+      ->check(CLI::PositiveNumber)
+      ->type_name("LENGTH")
+      ->group("Instrument");
+}
+
 void AddPlace(CLI::App& command, const std::string& name, std::optional<Eigen::Vector3d>& value,
               const std::string& description) {
   const auto take = [&value, name](const std::string& text) {
-    value = ParseVector(text);
+    value = ParsePlace(text);
     if (!value) throw CLI::ValidationError(name, "'" + text + "' is not x,y,z");
   };
   command.add_option_function<std::string>(name, take, description)
@@ -61,15 +70,15 @@ void AddFileOptions(CLI::App& command, ImportOptions& options) {
 }
 
 void AddInstrumentOptions(CLI::App& command, ImportOptions& options) {
-  AddNumber(command, "--length", options.length_m, "M", "Wrist to tip along the shaft");
-  AddNumber(command, "--diameter", options.diameter_m, "M", "Outer diameter");
+  AddLength(command, "--length", options.length_m, "Wrist to tip along the shaft: 0.6 or 600mm");
+  AddLength(command, "--diameter", options.diameter_m, "Outer diameter");
   AddNumber(command, "--stiffness", options.stiffness_Nm2, "NM2", "Bending stiffness E I");
   command
       .add_option("--mass-per-length", options.mass_per_length_kg_m,
                   "Of the shaft (kg/m); 0: weight is not modelled")
       ->check(CLI::NonNegativeNumber)
       ->group("Instrument");
-  AddPlace(command, "--port", options.port, "The port's place in R (m)");
+  AddPlace(command, "--port", options.port, "The port's place in R: 0.28,0,0 or 280mm,0,0");
   AddPlace(command, "--gravity", options.gravity, "Gravity in R (m/s2)");
 }
 

@@ -13,6 +13,7 @@
 #include "apps/common/commands.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
+#include "apps/common/unit_option.h"
 #include "apps/common/vector_option.h"
 #include "apps/shape/figures.h"
 #include "apps/shape/table.h"
@@ -31,6 +32,7 @@ struct ShapeOptions {
   ShapeModel model = ShapeModel::kRod;
   bool json = false;
   bool has_force = false;  ///< --force x,y,z was given
+  std::string unit = "m";  ///< of printed lengths; JSON and files stay in SI
   bool replace = false;    ///< --force was given without a value
   std::filesystem::path plot, batch, out;
 };
@@ -45,13 +47,15 @@ std::string Triple(const Eigen::Vector3d& v) {
   return fmt::format("{:>13.7g} {:>13.7g} {:>13.7g}", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
 }
 
-void PrintShape(const Shape& shape) {
-  fmt::print("tip (m)                 {}\n", Triple(shape.p_tip));
+void PrintShape(const Shape& shape, const std::string& unit) {
+  const double scale = unit == "mm" ? 1e3 : 1.0;
+  fmt::print("{:<23} {}\n", fmt::format("tip ({})", unit), Triple(scale * shape.p_tip));
   fmt::print("tangent at the wrist    {}\n", Triple(shape.t_wrist));
   fmt::print("tangent at the tip      {}\n", Triple(shape.t_tip));
   fmt::print("force of the port (N)   {}\n", Triple(shape.f_port));
   fmt::print("force of the wrist (N)  {}\n", Triple(shape.f_wrist));
-  fmt::print("port along shaft (m)    {:>13.7g}\n", shape.s_port_m);
+  fmt::print("{:<23} {:>13.7g}\n", fmt::format("port along shaft ({})", unit),
+             scale * shape.s_port_m);
 }
 
 /// The solved shape, or the error that says what was wrong with the problem.
@@ -99,7 +103,7 @@ void RunSingle(const ShapeOptions& options) {
   if (options.json) {
     fmt::print("{}\n", ShapeJson(options.problem, shape));
   } else {
-    PrintShape(shape);
+    PrintShape(shape, options.unit);
   }
   if (!options.plot.empty()) {
     WritePlot(options.plot, ShapeFigures(options.problem, shape));
@@ -160,12 +164,15 @@ void AddProblemOptions(CLI::App& command, RodProblem& problem, CLI::Option* batc
     return number && *number > 0 ? "" : "'" + text + "' is not a positive number";
   };
   std::vector<CLI::Option*> options{
-      command.add_option("--length", problem.length_m, "From the wrist's pivot to the tip (m)")
-          ->check(CLI::Validator(positive, "M")),
+      command
+          .add_option("--length", problem.length_m,
+                      "From the wrist's pivot to the tip: 0.6 or 600mm")
+          ->transform(LengthInAnyUnit())
+          ->check(CLI::Validator(positive, "LENGTH")),
       command.add_option("--stiffness", problem.bending_stiffness_Nm2, "E I (N m2)")
           ->check(CLI::Validator(positive, "NM2")),
-      AddVectorOption(command, "--wrist", problem.p_wrist, "The wrist's pivot in R (m)"),
-      AddVectorOption(command, "--port", problem.p_port, "The port in R (m)"),
+      AddPlaceOption(command, "--wrist", problem.p_wrist, "The wrist's pivot in R"),
+      AddPlaceOption(command, "--port", problem.p_port, "The port in R: 0.28,0,0 or 280mm,0,0"),
       AddVectorOption(command, "--weight", problem.q_weight, "Weight per length in R (N/m)")};
   for (auto* option : options) option->excludes(batch);
 }
@@ -201,6 +208,9 @@ void AddShape(CLI::App& app, AppContext& context) {
   command->add_option("--model", options->model, "rod (exact), beam (thesis) or straight")
       ->transform(CLI::CheckedTransformer(kModels).description(""))
       ->type_name("MODEL");
+  command->add_option("--unit", options->unit, "Of the lengths that are printed: m or mm")
+      ->check(CLI::IsMember({"m", "mm"}))
+      ->capture_default_str();
   command->add_flag("--json", options->json, "Print the shape as JSON");
   command->add_option("--plot", options->plot,
                       "Draw the shape into this file: .png, .svg, .pdf or .html");

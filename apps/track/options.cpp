@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "apps/common/input_check.h"
+#include "apps/common/unit_option.h"
 #include "core/error.h"
 
 namespace flextip {
@@ -60,9 +61,10 @@ void AddTrackerOptions(CLI::App& command, TrackOptions& options) {
   command
       .add_option("--diameter", options.diameter_m,
                   "Of the shaft as it is seen; without it the recording's outer_diameter_m")
+      ->transform(LengthInAnyUnit())
       ->check(CLI::PositiveNumber)
       ->needs(outline)
-      ->type_name("METRES");
+      ->type_name("LENGTH");
   AddNoCheckOption(command, options.no_check);
   command.add_flag("--force", options.force, "Replace the folder of an earlier run");
   command.add_flag("--resume", options.resume, "Go on where an interrupted run ended");
@@ -107,6 +109,13 @@ bool TrackOptions::IsRecording() const {
   const bool plain = !live.empty() || std::filesystem::is_regular_file(source) ||
                      (!camera.empty() && !std::filesystem::exists(source / "recording.yaml"));
   return !plain;
+}
+
+void TrackOptions::LeaveDefaultsOfPlainPictures() {
+  if (!std::filesystem::exists(source / "recording.yaml")) return;
+  camera.clear();
+  collar.clear();
+  rate_hz = 0.0;
 }
 
 std::string TrackOptions::InputName() const {

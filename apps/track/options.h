@@ -28,6 +28,9 @@ struct TrackOptions {
        no_check = false;
   bool until_stopped = false;  ///< --live was given: Ctrl-C ends the run with its results
 
+  /// Forgets camera, collar and rate of a defaults file where the source is a recording.
+  void LeaveDefaultsOfPlainPictures();
+
   /// Whether the source has its own camera, collar and times.
   bool IsRecording() const;
   std::string InputName() const;

@@ -39,7 +39,7 @@ std::optional<TubeShape> ShaftSeen(const TrackOptions& options, const TrackInput
       options.diameter_m > 0 ? options.diameter_m : input.recording.instrument.outer_diameter_m;
   if (!(diameter_m > 0)) {
     throw InputError::At(options.InputName(), 0,
-                         "is no recording, expected --diameter METRES with --outline");
+                         "is no recording, expected --diameter LENGTH with --outline");
   }
   return TubeOf(*input.recording.tags0, diameter_m, options.end == "round");
 }
@@ -157,7 +157,10 @@ void AddTrack(CLI::App& app, AppContext& context) {
   auto* command = app.add_subcommand("track", "Localise tags and the tip in frames");
   auto options = std::make_shared<TrackOptions>();
   AddTrackOptions(*command, *options);
-  OnRun(*command, context, [options, &context] { RunTrack(*options, context.quiet); });
+  OnRun(*command, context, [options, &context] {
+    if (!context.defaults.empty()) options->LeaveDefaultsOfPlainPictures();
+    RunTrack(*options, context.quiet);
+  });
 }
 
 }  // namespace flextip

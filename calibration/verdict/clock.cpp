@@ -73,7 +73,7 @@ CalibrationVerdict JudgeClocks(const ClockResult& result, const std::string& rec
     AddReasons(clock, verdict);
   }
   if (found.empty()) {
-    verdict.grade = CalibrationGrade::kNotFound;
+    verdict.grade = Grade::kNotFound;
     verdict.says =
         fmt::format("No stream shares a motion with {} that tells its clock.", result.reference);
     verdict.next =

@@ -61,6 +61,29 @@ TEST(Program, TakesHelpAndVersionAsWords) {
             RunProgram({"calibrate", "tip", "--help"}).out);
 }
 
+TEST(Program, TakesOptionsOfEveryDayFromAFile) {
+  const TestFolder folder;
+  folder.Write("day.toml",
+               "[shape]\nlength = 0.6\nstiffness = 0.304\nwrist = \"0,0,0\"\n"
+               "port = \"0.28,0,0\"\n");
+  const std::string file = (folder / "day.toml").string();
+  const auto typed = RunProgram({"shape", "--length", "0.6", "--stiffness", "0.304", "--wrist",
+                                 "0,0,0", "--port", "0.28,0,0", "--tip-force", "0,0,-2", "--json"});
+  ASSERT_EQ(typed.exit_code, 0) << typed.err;
+  const auto run = RunProgram({"--defaults", file, "shape", "--tip-force", "0,0,-2", "--json"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, typed.out);
+  // What is typed goes before.
+  const auto longer = RunProgram(
+      {"--defaults", file, "shape", "--tip-force", "0,0,-2", "--json", "--length", "0.5"});
+  EXPECT_EQ(longer.exit_code, 0) << longer.err;
+  EXPECT_NE(longer.out, typed.out);
+  folder.Write("wrong.toml", "[shape]\nlenght = 0.6\n");
+  EXPECT_TRUE(
+      IsRefused(RunProgram({"--defaults", (folder / "wrong.toml").string(), "shape"}), {"lenght"}));
+  EXPECT_TRUE(IsRefused(RunProgram({"--defaults", "no-such.toml", "shape"}), {"no-such.toml"}));
+}
+
 TEST(Program, KeepsNothingOfAnInterruptedCommandAndSaysSo) {
   const TestFolder folder;
   const auto out = (folder / "out").string();

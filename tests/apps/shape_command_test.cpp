@@ -152,6 +152,20 @@ TEST(ShapeCommand, FailsWithOneOnAShaftThatBuckles) {
   EXPECT_THAT(result.err, StartsWith("flextip: shape: "));
 }
 
+TEST(ShapeCommand, TakesAndPrintsMillimetres) {
+  const auto si = RunProgram(With(kShape, {"--tip-force", "0,0,-2"}));
+  const auto mm = RunProgram({"shape", "--length", "600mm", "--stiffness", "0.304", "--wrist",
+                              "0,0,0", "--port", "28cm,0mm,0", "--tip-force", "0,0,-2"});
+  EXPECT_EQ(mm.exit_code, 0) << mm.err;
+  EXPECT_EQ(mm.out, si.out);
+  const auto printed = RunProgram(With(kShape, {"--tip-force", "0,0,-2", "--unit", "mm"}));
+  double m = 0.0, in_mm = 0.0;
+  ASSERT_EQ(std::sscanf(si.out.c_str(), "tip (m) %lf", &m), 1) << si.out;
+  ASSERT_EQ(std::sscanf(printed.out.c_str(), "tip (mm) %lf", &in_mm), 1) << printed.out;
+  EXPECT_NEAR(in_mm, 1e3 * m, 1e-3);
+  EXPECT_TRUE(IsRefused(RunProgram({"shape", "--length", "600 miles"}), {"is no length"}));
+}
+
 TEST(ShapeCommand, RefusesWrongUsage) {
   EXPECT_TRUE(IsRefused(RunProgram({"shape"}), {"--length is required"}));
   EXPECT_TRUE(IsRefused(RunProgram(With(kShape, {"--force", "1,2"})), {"'1,2' is not x,y,z"}));

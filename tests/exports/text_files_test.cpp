@@ -54,6 +54,22 @@ TEST(Tum, HasEveryPoseOfTheRecording) {
   EXPECT_EQ(i, recording.em0->samples.size());
 }
 
+TEST(PlainCsv, TurnsIntoTheAskedUnits) {
+  const Folder folder;
+  WritePlainCsv(ReadTimedTables(kSample), folder.Path(), {.millimetres = true});
+  const Recording recording = ReadRecording(kSample, {.check_frames = false}).recording;
+  std::ifstream in(folder.Path() / "wrist0.csv");
+  std::string header, line;
+  std::getline(in, header);
+  EXPECT_THAT(header, testing::StartsWith("time_s,timestamp_ns,p_RW_x_mm,p_RW_y_mm,p_RW_z_mm"));
+  EXPECT_THAT(header, testing::HasSubstr("q_RW_w"));
+  std::getline(in, line);
+  std::istringstream cells(line);
+  std::string cell;
+  for (int i = 0; i < 3; ++i) std::getline(cells, cell, ',');
+  EXPECT_NEAR(std::stod(cell), 1e3 * recording.wrist0->samples.front().value.p_RW.x(), 1e-9);
+}
+
 // The tip's direction is the x axis of the orientation.
 TEST(Tum, MakesOrientationsOfDirections) {
   for (const TimedTable& table : ReadTimedTables(kSample)) {
