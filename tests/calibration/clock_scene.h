@@ -26,7 +26,7 @@ struct ClockScene {
   double remembered = 0.0;    ///< correlation of the EM sensor's noise from sample to sample
   bool periodic = false;      ///< the same two seconds again and again
   bool em_elsewhere = false;  ///< the EM sensor moves on its own
-  TrueClock em, vision, strain;
+  TrueClock em = {}, vision = {}, strain = {};
 };
 
 inline constexpr TimeNs kClockStart_ns = 1'700'000'000'000'000'000;
