@@ -237,7 +237,8 @@ NamedColumns NameRoles(const std::vector<std::string>& columns) {
     const std::string suffix = mark == std::string::npos ? "" : name.substr(mark + 1);
     if (unit.empty() && ParseUnit(suffix)) {
       const auto by_shorter = RoleOf(WordsOf(name.substr(0, mark)));
-      if (by_shorter && (!found || found->role.starts_with("plain"))) {
+      const bool says_less = !found || found->role.starts_with("plain");
+      if (by_shorter && (says_less || found->role == by_shorter->role)) {
         found = by_shorter;
         unit = suffix;
       }

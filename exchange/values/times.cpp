@@ -87,15 +87,16 @@ std::optional<TimeNs> TakeZone(std::string_view& text) {
   if (Take(text, "Zz")) return 0;
   const TimeNs sign = !text.empty() && text.front() == '-' ? -1 : 1;
   if (!Take(text, "+-")) return {};
-  const auto hours = TakeNumber(text, 2);
-  if (!hours) return {};
-  int minutes = 0;
-  if (Take(text, ":") || !text.empty()) {
-    const auto taken = TakeNumber(text, 2);
-    if (!taken) return {};
-    minutes = *taken;
+  std::string digits(TakeDigits(text));
+  if (digits.size() == 2 && Take(text, ":")) {
+    const std::string_view minutes = TakeDigits(text);
+    if (minutes.size() != 2) return {};
+    digits += minutes;
   }
-  return sign * (*hours * 3600LL + minutes * 60LL) * kNsPerSecond;
+  if (digits.size() == 2) digits += "00";
+  if (digits.size() != 4) return {};
+  const TimeNs number = *ParseInteger(digits);
+  return sign * (number / 100 * 3600 + number % 100 * 60) * kNsPerSecond;
 }
 
 // YYYY-MM-DD: nanoseconds since 1970.

@@ -82,8 +82,9 @@ TEST_F(DvrkImport, TakesBagAndVideosWithTheirTimes) {
     ASSERT_EQ(frames.size(), static_cast<std::size_t>(kVideoFrames));
     EXPECT_EQ(frames[2].t_ns, kFirst + 80'000'000 - 100'000'000);
     EXPECT_THAT(imported.log.warnings, Contains(HasSubstr("0.1 s, is taken off")));
-    // No lens of the right eye is told.
-    EXPECT_FALSE(imported.recording.cam1);
+    // No file tells the lens of the right video: the bag's own pictures are the right eye.
+    ASSERT_TRUE(imported.recording.cam1);
+    EXPECT_EQ(imported.recording.cam1->video, "");
     EXPECT_THAT(imported.log.warnings, Contains(HasSubstr("right.mp4 is left out")));
   }
 }
