@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/calibration_input.h"
+#include "apps/common/input/calibration_input.h"
 #include "apps/common/commands.h"
-#include "apps/common/findings.h"
+#include "apps/common/input/findings.h"
 #include "apps/common/output.h"
 #include "core/error.h"
 #include "plausibility/check_recording.h"

@@ -79,9 +79,11 @@ set(FLEXTIP_PUBLIC_HEADERS
   estimation/tissue_secants.h
   estimation/window_estimator.h
   estimation/window_port.h
+  exchange/describe.h
   exchange/import.h
   exchange/import_log.h
   exchange/import_plan.h
+  exchange/list_text.h
   exchange/mapping_file.h
   kinematics/arm.h
   kinematics/beam.h

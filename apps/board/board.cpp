@@ -6,8 +6,8 @@
 #include <string>
 
 #include "apps/calibrate/verdict_json.h"
-#include "apps/common/camera_option.h"
 #include "apps/common/commands.h"
+#include "apps/common/input/camera_option.h"
 #include "apps/common/output.h"
 #include "calibration/boards/face.h"
 #include "report/pages.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/collar/output.h"
-#include "apps/common/camera_option.h"
 #include "apps/common/commands.h"
+#include "apps/common/input/camera_option.h"
 #include "apps/common/length_option.h"
 #include "apps/common/output.h"
 #include "core/error.h"

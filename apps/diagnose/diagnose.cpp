@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/command_uses.h"
 #include "apps/common/commands.h"
-#include "apps/common/findings.h"
+#include "apps/common/input/command_uses.h"
+#include "apps/common/input/findings.h"
+#include "apps/common/input/recording_input.h"
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
-#include "apps/common/recording_input.h"
 #include "apps/diagnose/result_files.h"
 #include "core/error.h"
 #include "diagnosis/diagnose.h"

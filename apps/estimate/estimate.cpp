@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/command_uses.h"
 #include "apps/common/commands.h"
-#include "apps/common/findings.h"
+#include "apps/common/input/command_uses.h"
+#include "apps/common/input/findings.h"
+#include "apps/common/input/recording_input.h"
 #include "apps/common/judgement.h"
+#include "apps/common/length_option.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
-#include "apps/common/recording_input.h"
-#include "apps/common/unit_option.h"
 #include "apps/estimate/figures.h"
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
@@ -210,10 +210,8 @@ void AddEstimate(CLI::App& app, AppContext& context) {
       ->add_option("--model", options->model,
                    "Know of the effects in this model.yaml (from flextip diagnose)")
       ->type_name("MODEL.yaml");
-  command
-      ->add_option("--port-prior", options->port_prior_m,
-                   "How well the port is registered: standard deviation per axis: 0.001 or 1mm")
-      ->transform(LengthInAnyUnit())
+  AddLength(*command, "--port-prior", options->port_prior_m,
+            "How well the port is registered: standard deviation per axis: 0.001 or 1mm")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--window", options->window_samples,

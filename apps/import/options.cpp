@@ -4,7 +4,8 @@
 
 #include <map>
 
-#include "apps/common/unit_option.h"
+#include "apps/common/length_option.h"
+#include "apps/common/vector_option.h"
 #include "exchange/streams/names.h"
 
 namespace flextip {
@@ -16,15 +17,6 @@ void AddNumber(CLI::App& command, const std::string& name, T& value, const std::
   command.add_option(name, value, text)
       ->check(CLI::PositiveNumber)
       ->type_name(unit)
-      ->group("Instrument");
-}
-
-void AddLength(CLI::App& command, const std::string& name, std::optional<double>& value,
-               const std::string& text) {
-  command.add_option(name, value, text)
-      ->transform(LengthInAnyUnit())
-      ->check(CLI::PositiveNumber)
-      ->type_name("LENGTH")
       ->group("Instrument");
 }
 
@@ -70,8 +62,12 @@ void AddFileOptions(CLI::App& command, ImportOptions& options) {
 }
 
 void AddInstrumentOptions(CLI::App& command, ImportOptions& options) {
-  AddLength(command, "--length", options.length_m, "Wrist to tip along the shaft: 0.6 or 600mm");
-  AddLength(command, "--diameter", options.diameter_m, "Outer diameter");
+  AddLength(command, "--length", options.length_m, "Wrist to tip along the shaft: 0.6 or 600mm")
+      ->check(CLI::PositiveNumber)
+      ->group("Instrument");
+  AddLength(command, "--diameter", options.diameter_m, "Outer diameter")
+      ->check(CLI::PositiveNumber)
+      ->group("Instrument");
   AddNumber(command, "--stiffness", options.stiffness_Nm2, "NM2", "Bending stiffness E I");
   command
       .add_option("--mass-per-length", options.mass_per_length_kg_m,

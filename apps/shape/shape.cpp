@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "apps/common/commands.h"
+#include "apps/common/length_option.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
-#include "apps/common/unit_option.h"
 #include "apps/common/vector_option.h"
 #include "apps/shape/figures.h"
 #include "apps/shape/table.h"
@@ -164,11 +164,9 @@ void AddProblemOptions(CLI::App& command, RodProblem& problem, CLI::Option* batc
     return number && *number > 0 ? "" : "'" + text + "' is not a positive number";
   };
   std::vector<CLI::Option*> options{
-      command
-          .add_option("--length", problem.length_m,
-                      "From the wrist's pivot to the tip: 0.6 or 600mm")
-          ->transform(LengthInAnyUnit())
-          ->check(CLI::Validator(positive, "LENGTH")),
+      AddLength(command, "--length", problem.length_m,
+                "From the wrist's pivot to the tip: 0.6 or 600mm")
+          ->check(CLI::Validator(positive, "")),
       command.add_option("--stiffness", problem.bending_stiffness_Nm2, "E I (N m2)")
           ->check(CLI::Validator(positive, "NM2")),
       AddPlaceOption(command, "--wrist", problem.p_wrist, "The wrist's pivot in R"),

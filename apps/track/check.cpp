@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "apps/common/command_uses.h"
-#include "apps/common/input_check.h"
+#include "apps/common/input/command_uses.h"
+#include "apps/common/input/input_check.h"
 
 namespace flextip {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include "apps/common/input_check.h"
-#include "apps/common/unit_option.h"
+#include "apps/common/input/input_check.h"
+#include "apps/common/length_option.h"
 #include "core/error.h"
 
 namespace flextip {
@@ -58,13 +58,10 @@ void AddTrackerOptions(CLI::App& command, TrackOptions& options) {
                       "round or flat")
           ->check(CLI::IsMember({"round", "flat"}))
           ->type_name("END");
-  command
-      .add_option("--diameter", options.diameter_m,
-                  "Of the shaft as it is seen; without it the recording's outer_diameter_m")
-      ->transform(LengthInAnyUnit())
+  AddLength(command, "--diameter", options.diameter_m,
+            "Of the shaft as it is seen; without it the recording's outer_diameter_m")
       ->check(CLI::PositiveNumber)
-      ->needs(outline)
-      ->type_name("LENGTH");
+      ->needs(outline);
   AddNoCheckOption(command, options.no_check);
   command.add_flag("--force", options.force, "Replace the folder of an earlier run");
   command.add_flag("--resume", options.resume, "Go on where an interrupted run ended");

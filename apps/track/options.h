@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/calibration_input.h"
+#include "apps/common/input/calibration_input.h"
 #include "recording/frames/track_input.h"
 #include "vision/tracking/tip_tracker.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "apps/common/commands.h"
-#include "apps/common/findings.h"
+#include "apps/common/input/findings.h"
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/draw_vector.h"
 #include "core/pose.h"
 #include "core/rotation.h"
 
@@ -140,8 +141,8 @@ void MakePositive(Recording& r) {
 std::string Vary(Recording& r, Rng& rng) {
   std::string words;
   if (Chance(rng, 0.7)) {
-    const Vector3d turn = Vector3d(Uniform(rng, -1, 1), Uniform(rng, -1, 1), Uniform(rng, -1, 1));
-    const Vector3d p(Uniform(rng, -1, 1), Uniform(rng, -1, 1), Uniform(rng, -1, 1));
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const Vector3d turn = DrawVector<3>(uniform, rng), p = DrawVector<3>(uniform, rng);
     Pose T;
     T.R = ExpRotation(3.0 * turn);
     T.p = p;

@@ -56,6 +56,26 @@ ClockFit BestFit(const Motion& target, const Motion& reference, const SmoothMoti
   return best;
 }
 
+/// The best offset elsewhere, as well fitted as the best one: the grid alone would make it worse.
+OffsetMisfit Rival(const Motion& target, const SmoothMotion& reference,
+                   const MisfitProfile& profile, const ClockFit& best) {
+  constexpr double kApart_s = 0.1;
+  OffsetMisfit rival = NextBest(profile, best.offset_s);
+  if (rival.misfit >= 1.0) return rival;
+  const ClockFit fit = FitClock(target, reference, rival.offset_s);
+  const bool is_other = std::abs(fit.offset_s - best.offset_s) > kApart_s;
+  if (fit.converged && is_other && fit.misfit < rival.misfit) rival = {fit.offset_s, fit.misfit};
+  return rival;
+}
+
+/// What evidence differs by because two offsets compare parts of the streams that are not the same:
+/// four standard deviations of the sum of squares over these parts.
+double Chance(const Motion& target, const ClockFit& fit, double other_s) {
+  const double span_s = std::max(1e-9, target.t_s.back() - target.t_s.front());
+  const double apart = std::min(1.0, 2.0 * std::abs(other_s - fit.offset_s) / span_s);
+  return 4.0 * std::sqrt(2.0 * apart * fit.independent);
+}
+
 StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_ns,
                     const ClockOptions& options) {
   StreamClock clock{.stream = target.stream, .reference = reference.stream};
@@ -82,13 +102,14 @@ StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_
   clock.covariance = fit.covariance;
   clock.misfit = fit.misfit;
   clock.samples = fit.samples;
-  const double next = NextBestMisfit(clock.profile, fit.offset_s);
+  const OffsetMisfit next = Rival(target, smooth, clock.profile, fit);
   const double sd_s = std::sqrt(fit.covariance(0, 0));
   if (Evidence(fit.misfit, 1.0, fit.independent) < kTelling || sd_s > kMostSd_s) {
     Fail(clock, ClockStatus::kNoSharedMotion,
          fmt::format("{} does not move as {} does at any offset within {:g} s", target.stream,
                      reference.stream, options.most_offset_s));
-  } else if (Evidence(fit.misfit, next, fit.independent) < kTelling) {
+  } else if (Evidence(fit.misfit, next.misfit, fit.independent) <
+             kTelling + Chance(target, fit, next.offset_s)) {
     Fail(clock, ClockStatus::kAmbiguous,
          fmt::format("other offsets of {} against {} fit nearly as well: the motion is too slow, "
                      "too small or repeats itself",

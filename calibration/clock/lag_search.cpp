@@ -139,7 +139,7 @@ MisfitProfile MisfitOver(const Motion& target, const SmoothMotion& reference, do
   return profile;
 }
 
-double NextBestMisfit(const MisfitProfile& profile, double offset_s) {
+OffsetMisfit NextBest(const MisfitProfile& profile, double offset_s) {
   const auto& offsets = profile.offset_s;
   const auto& misfit = profile.misfit;
   const auto near = static_cast<std::size_t>(
@@ -150,9 +150,9 @@ double NextBestMisfit(const MisfitProfile& profile, double offset_s) {
   std::size_t high = std::min(at + least, misfit.size() - 1);
   while (low > 0 && !(misfit[low - 1] < misfit[low])) --low;
   while (high + 1 < misfit.size() && !(misfit[high + 1] < misfit[high])) ++high;
-  double best = 1.0;
+  OffsetMisfit best{offset_s, 1.0};
   for (std::size_t i = 0; i < misfit.size(); ++i) {
-    if ((i < low || i > high) && misfit[i] < best) best = misfit[i];
+    if ((i < low || i > high) && misfit[i] < best.misfit) best = {offsets[i], misfit[i]};
   }
   return best;
 }

@@ -30,7 +30,12 @@ MisfitProfile MisfitOver(const Motion& target, const SmoothMotion& reference, do
 double MisfitAt(const Motion& target, const SmoothMotion& reference, double offset_s,
                 double least_overlap_s);
 
-/// Returns the least misfit outside the valley around `offset_s`: 1 where there is none.
-double NextBestMisfit(const MisfitProfile& profile, double offset_s);
+struct OffsetMisfit {
+  double offset_s = 0.0, misfit = 1.0;
+};
+
+/// Returns the least misfit outside the valley around `offset_s`, and where; a misfit of 1 where
+/// there is none.
+OffsetMisfit NextBest(const MisfitProfile& profile, double offset_s);
 
 }  // namespace flextip

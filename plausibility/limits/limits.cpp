@@ -18,7 +18,8 @@ std::vector<Finding> CheckLimits(const std::set<std::string>& unknown, Recording
   std::vector<Finding> findings;
   CheckInstrument(unknown, recording, findings);
   CheckSensors(unknown, recording, findings);
-  if (recording.cam0 && recording.cam0->has_T_RC && !unknown.contains("cam0.T_RC")) CheckIdentity(recording, findings);
+  if (recording.cam0 && recording.cam0->has_T_RC && !unknown.contains("cam0.T_RC"))
+    CheckIdentity(recording, findings);
   if (recording.cam0) CheckCamera("cam0", recording.cam0->calibration, findings);
   if (recording.cam1) CheckCamera("cam1", recording.cam1->calibration, findings);
   if (recording.tags0) CheckCollar(recording, findings);

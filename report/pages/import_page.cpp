@@ -88,16 +88,15 @@ std::vector<Figure> FiguresOf(const fs::path& folder) {
   std::vector<Figure> figures;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto [group, part] = GroupAndPart(names[i]);
-    const auto same = std::find_if(figures.begin(), figures.end(),
-                                   [&g = group](const Figure& f) { return f.y_label == g; });
-    if (same == figures.end()) {
-      figures.push_back(
-          {.title = folder.filename().string(), .x_label = "time (s)", .y_label = group});
+    auto figure = std::find_if(figures.begin(), figures.end(),
+                               [&g = group](const Figure& f) { return f.y_label == g; });
+    if (figure == figures.end()) {
+      figure = figures.insert(
+          figure, {.title = folder.filename().string(), .x_label = "time (s)", .y_label = group});
     }
-    Figure& figure = same == figures.end() ? figures.back() : *same;
     FigureTrace trace{.name = part};
     table.Trace(i, trace.x, trace.y);
-    figure.traces.push_back(std::move(trace));
+    figure->traces.push_back(std::move(trace));
   }
   return figures;
 }

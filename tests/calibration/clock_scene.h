@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "core/draw_vector.h"
 #include "recording/recording.h"
 
 namespace flextip {
@@ -60,7 +61,7 @@ inline Recording DrawClocks(const ClockScene& scene, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   const RandomPath path(scene.periodic, random), other(false, random);
-  const auto draw = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
+  const auto draw = [&] { return DrawVector<3>(normal, random); };
   Recording r;
   r.instrument.length_m = 0.6;
   r.p_RP = {0.28, 0.0, 0.0};

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/draw_vector.h"
+
 namespace flextip::exchange {
 namespace {
 
@@ -42,8 +44,7 @@ TEST(Noise, OfRotationsIsFound) {
   for (int i = 0; i < kRows; ++i) {
     const Eigen::Quaterniond smooth(
         Eigen::AngleAxisd(2.0 * std::sin(0.01 * i), Eigen::Vector3d(1, 2, 3).normalized()));
-    const Eigen::Vector3d w =
-        2e-3 * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
+    const Eigen::Vector3d w = 2e-3 * DrawVector<3>(normal, generator);
     Eigen::Quaterniond q = smooth * Eigen::Quaterniond(Eigen::AngleAxisd(w.norm(), w.normalized()));
     if (i % 3 == 0) q.coeffs() = -q.coeffs();  // the same rotation
     rotations.push_back(q);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "exchange/streams/sensor_settings.h"
 
 namespace flextip::exchange::test_support {
@@ -19,9 +20,9 @@ std::vector<PoseRow> KnownMotion() {
     PoseRow row;
     row.t_ns = t_ns;
     row.p = Eigen::Vector3d(0.2 + 0.05 * std::sin(3 * t), -0.1 * t, 0.03 * std::cos(2 * t)) +
-            1e-4 * Eigen::Vector3d(noise(generator), noise(generator), noise(generator));
-    const Eigen::Vector3d w(0.3 * std::sin(t) + 1e-3 * noise(generator), 0.5,
-                            -0.4 + 1e-3 * noise(generator));
+            1e-4 * DrawVector<3>(noise, generator);
+    const double first = noise(generator), last = noise(generator);
+    const Eigen::Vector3d w(0.3 * std::sin(t) + 1e-3 * first, 0.5, -0.4 + 1e-3 * last);
     row.q = Eigen::Quaterniond(Eigen::AngleAxisd(w.norm(), w.normalized()));
     rows.push_back(row);
     t_ns += 20'000'000 + static_cast<TimeNs>(std::lround(1e5 * noise(generator)));

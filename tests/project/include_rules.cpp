@@ -63,7 +63,8 @@ const std::map<std::string, Names>& Arrows() {
 const std::map<std::string, Names>& ForeignHeaders() {
   static const std::map<std::string, Names> foreign{
       {"opencv2/",
-       {"vision", "recording", "calibration", "simulation", "exports", "apps", "bench", "tests"}},
+       {"vision", "recording", "exchange", "calibration", "simulation", "exports", "apps", "bench",
+        "tests"}},
       // The renderer draws the library's patterns.
       {"apriltag", {"vision", "simulation", "tests"}},
       {"ceres/", {"estimation", "calibration", "tests"}},
@@ -73,7 +74,8 @@ const std::map<std::string, Names>& ForeignHeaders() {
         "tests"}},
       {"geos", {"reproduction"}},
       {"boost/", {"workspace", "reproduction"}},
-      {"nlohmann/", {"report", "exports", "reproduction", "apps", "bench", "testdata", "tests"}},
+      {"nlohmann/",
+       {"exchange", "report", "exports", "reproduction", "apps", "bench", "testdata", "tests"}},
       {"CLI/", {"reproduction", "apps", "bench", "testdata"}},
   };
   return foreign;

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/calibrate/verdict_json.h"
-#include "apps/common/findings.h"
+#include "apps/common/input/findings.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
 

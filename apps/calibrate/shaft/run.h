@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/common/output.h"
-#include "apps/common/recording_input.h"
+#include "apps/common/input/recording_input.h"
 #include "calibration/shaft/known_loads.h"
 #include "calibration/verdict/verdict.h"
 #include "report/figure.h"

@@ -10,7 +10,7 @@
 
 #include "apps/calibrate/calibrate.h"
 #include "apps/calibrate/shaft/run.h"
-#include "apps/common/command_uses.h"
+#include "apps/common/input/command_uses.h"
 #include "calibration/shaft/stiffness_calibration.h"
 #include "calibration/verdict/shaft.h"
 #include "recording/text/csv.h"

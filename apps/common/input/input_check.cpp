@@ -1,10 +1,10 @@
-#include "apps/common/input_check.h"
+#include "apps/common/input/input_check.h"
 
 #include <fmt/format.h>
 
 #include <cstdio>
 
-#include "apps/common/findings.h"
+#include "apps/common/input/findings.h"
 #include "core/error.h"
 #include "plausibility/check_recording.h"
 #include "plausibility/pictures/check_pictures.h"

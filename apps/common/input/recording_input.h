@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "apps/common/calibration_input.h"
+#include "apps/common/input/calibration_input.h"
 #include "plausibility/command_use.h"
 #include "recording/recording_reader.h"
 

@@ -1,4 +1,4 @@
-#include "apps/common/calibration_input.h"
+#include "apps/common/input/calibration_input.h"
 
 #include <fstream>
 #include <set>

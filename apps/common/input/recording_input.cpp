@@ -1,9 +1,9 @@
-#include "apps/common/recording_input.h"
+#include "apps/common/input/recording_input.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "apps/common/input_check.h"
+#include "apps/common/input/input_check.h"
 #include "recording/streams/sensor_streams.h"
 
 namespace flextip {

@@ -1,4 +1,4 @@
-#include "apps/common/camera_option.h"
+#include "apps/common/input/camera_option.h"
 
 #include "recording/cameras/camera_formats.h"
 

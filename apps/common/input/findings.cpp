@@ -1,4 +1,4 @@
-#include "apps/common/findings.h"
+#include "apps/common/input/findings.h"
 
 #include <fmt/format.h>
 

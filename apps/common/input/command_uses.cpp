@@ -1,4 +1,4 @@
-#include "apps/common/command_uses.h"
+#include "apps/common/input/command_uses.h"
 
 namespace flextip {
 namespace {
