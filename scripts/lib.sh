@@ -14,6 +14,8 @@ TEST_PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev clang clang-format clang-tidy groff-base
   opencv-doc poppler-utils
 )
+# The documentation site (scripts/site).
+SITE_PACKAGES=(mkdocs mkdocs-material python3)
 NODE_PACKAGES=(nodejs npm)
 
 say() { printf '\033[1m==> %s\033[0m\n' "$*"; }

@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""Tests of markdown_page.py and printed.py: each rule sees what it is there for."""
+"""Tests of the scripts of this folder: each rule sees what it is there for."""
+import pathlib
+import tempfile
 import unittest
 
 from markdown_page import inline_commands, steps, unmarked
 from printed import matches, missing
+from site_links import check
 
 PAGE = """# A page
 
@@ -84,6 +87,21 @@ class Printed(unittest.TestCase):
     def test_lines_are_wanted_in_order(self):
         self.assertEqual(missing(["a 1", "…", "b 2"], "a 1\nx\nb 2\n"), [])
         self.assertEqual(missing(["b 2", "a 1"], "a 1\nb 2\n"), ["a 1"])
+
+
+class SiteLinks(unittest.TestCase):
+    def test_broken_links_anchors_and_foreign_files_are_seen(self):
+        with tempfile.TemporaryDirectory() as folder:
+            site = pathlib.Path(folder)
+            (site / "a.html").write_text(
+                '<a href="b.html#x">x</a><a href="b.html#y">y</a><a href="c.html">c</a>'
+                '<a href="https://elsewhere">e</a><img src="https://elsewhere/p.png">')
+            (site / "b.html").write_text('<h1 id="x">x</h1><a href="a.html">a</a>')
+            found, count = check(site)
+        self.assertEqual(found, ["a.html: b.html#y: the page has no such anchor",
+                                 "a.html: c.html: there is no such file",
+                                 "a.html: https://elsewhere/p.png: loaded from a network"])
+        self.assertEqual(count, 6)
 
 
 if __name__ == "__main__":
