@@ -71,6 +71,8 @@ def stage_pages(root, stage):
 
 def title(root, page):
     """Returns the first heading of a page; of a folder's README the folder."""
+    if page == "README.md":
+        return "Overview"
     folder = pathlib.PurePosixPath(page).parent.as_posix()
     if page.endswith("README.md") and folder not in (".", "docs"):
         return folder + "/"
