@@ -8,14 +8,14 @@ BUILD_PACKAGES=(
   libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev libcairo2-dev
   pkg-config
 )
+# The documentation site (scripts/site).
+SITE_PACKAGES=(mkdocs mkdocs-material python3)
 # More for tests, benchmarks, the thesis's figures and checks; opencv-doc holds real chessboard
 # pictures, poppler-utils turns printed pages into pictures.
 TEST_PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev clang clang-format clang-tidy groff-base
-  opencv-doc poppler-utils
+  opencv-doc poppler-utils "${SITE_PACKAGES[@]}"
 )
-# The documentation site (scripts/site).
-SITE_PACKAGES=(mkdocs mkdocs-material python3)
 NODE_PACKAGES=(nodejs npm)
 
 say() { printf '\033[1m==> %s\033[0m\n' "$*"; }

@@ -16,7 +16,7 @@ LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 # The sections of the navigation, with the pages that come first; a section takes the rest of its
 # folder in alphabetical order, so that a new page is never left out.
 SECTIONS = [
-    ("Start", None, ["README.md", "docs/README.md", "docs/tour.md", "docs/troubleshooting.md",
+    ("Start", None, ["docs/README.md", "docs/tour.md", "docs/troubleshooting.md",
                      "docs/glossary.md"]),
     ("Use", "docs/usage", ["docs/usage/recordings.md", "docs/usage/check.md",
                            "docs/usage/collar.md", "docs/usage/calibrate.md",
@@ -71,10 +71,8 @@ def stage_pages(root, stage):
 
 def title(root, page):
     """Returns the first heading of a page; of a folder's README the folder."""
-    if page == "README.md":
-        return "Overview"
     folder = pathlib.PurePosixPath(page).parent.as_posix()
-    if page.endswith("README.md") and folder not in (".", "docs"):
+    if page.endswith("README.md") and folder != "docs":
         return folder + "/"
     text = (root / page).read_text(encoding="utf-8")
     heading = re.search(r"^# (.+)$", text, re.MULTILINE)
@@ -83,7 +81,7 @@ def title(root, page):
 
 def navigation(root, pages):
     """Returns mkdocs's nav: each page once."""
-    left, nav = set(pages), []
+    left, nav = set(pages) - {"README.md"}, [{"Overview": "README.md"}]
     named = {page for _, _, first in SECTIONS for page in first}
     for name, folder, first in SECTIONS:
         inside = [page for page in pages if pathlib.PurePosixPath(page).parent.as_posix() == folder]
