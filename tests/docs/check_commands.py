@@ -29,10 +29,12 @@ class Help:
         self.program, self.texts = program, {}
 
     def of(self, words):
+        """Returns the help of a command; None where there is no such command."""
         if words not in self.texts:
             asked = subprocess.run([self.program, *words, "--help"], capture_output=True,
                                    encoding="utf-8", timeout=60, check=False)
-            self.texts[words] = asked.stdout if asked.returncode == 0 else None
+            known = f"Usage: flextip {' '.join(words)} " in asked.stdout
+            self.texts[words] = asked.stdout if known else None
         return self.texts[words]
 
     def complaint(self, command):
@@ -44,8 +46,7 @@ class Help:
         if tokens[0] == "help":
             return ""
         if len(tokens) > 1 and re.fullmatch(r"[a-z][a-z-]*", tokens[1]):
-            longer = self.of(words + (tokens[1],))
-            if longer and longer != self.of(words):
+            if self.of(words + (tokens[1],)):
                 words += (tokens[1],)
         text = self.of(words)
         if text is None:
