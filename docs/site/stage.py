@@ -53,7 +53,7 @@ def stage_pages(root, stage):
     wanted = set()
     for file in project_files(root):
         name = file.relative_to(root).as_posix()
-        if name.startswith(("docs/site/", "tests/")):
+        if name.startswith("tests/"):
             continue
         if file.suffix == ".md":
             pages.append(name)
