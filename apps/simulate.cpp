@@ -1,7 +1,9 @@
 // flextip simulate: a closed loop of plant, sensors, vision and controllers, written as recordings.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <memory>
@@ -29,8 +31,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kNoController = "none";
+
 struct SimulateOptions {
   fs::path scenario, model, out;
+  std::vector<std::string> frames_of;  ///< controllers whose frames are kept; empty: of all
   bool render = false, force = false;
 };
 
@@ -54,16 +59,39 @@ class SharedProgress {
   std::vector<std::size_t> done_;
 };
 
-void SaveFrame(const fs::path& folder, TimeNs t_ns, const Image& image) {
+void SaveImage(const fs::path& file, const Image& image, const std::vector<int>& how) {
   const int type = image.channels == 3 ? CV_8UC3 : CV_8UC1;
   const cv::Mat frame(image.height_px, image.width_px, type,
-                      const_cast<std::uint8_t*>(image.data.data()));
-  const fs::path file = folder / fmt::format("{}.png", t_ns);
-  // Fast rather than small: a run writes hundreds.
-  if (!cv::imwrite(file.string(), frame, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+                      const_cast<std::uint8_t*>(image.data.data()));  // only read
+  if (!cv::imwrite(file.string(), frame, how)) {
     throw WorkError(file.string() + ": cannot be written");
   }
 }
+
+/// The frames of a run as files: all of them without loss, or none; the last as a picture to look
+/// at in both cases.
+class FrameFiles {
+ public:
+  FrameFiles(const fs::path& folder, bool keep) : folder_(folder), keep_(keep) {
+    fs::create_directories(keep ? folder / "cam0" / "data" : folder);
+  }
+  void Add(TimeNs t_ns, const Image& image) {
+    last_ = image;
+    // Noise repeats nothing: codes by frequency alone are smaller here than repeats, and fast.
+    const std::vector<int> how{cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY,
+                               cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY};
+    if (keep_) SaveImage(folder_ / "cam0" / "data" / fmt::format("{}.png", t_ns), image, how);
+  }
+  void Finish(Recording& recording) const {
+    SaveImage(folder_ / "last_frame.jpg", last_, {cv::IMWRITE_JPEG_QUALITY, 85});
+    if (!keep_) recording.cam0->filenames.clear();
+  }
+
+ private:
+  fs::path folder_;
+  bool keep_;
+  Image last_;
+};
 
 void WriteDeviation(const fs::path& file, const simulation::LoopResult& result) {
   CsvWriter csv({"timestamp [ns]", "p_desired_x [m]", "p_desired_y [m]", "p_desired_z [m]",
@@ -90,24 +118,26 @@ nlohmann::json Figures(const simulation::LoopSetup& setup, const simulation::Loo
   return figures;
 }
 
-/// One controller's run, written into `folder` as a recording.
+/// One controller's run, written into `folder` as a recording; of rendered frames those that
+/// `keep_frames` asks for.
 simulation::LoopResult RunOne(const simulation::Scenario& scenario, ControllerKind kind,
-                              const simulation::Laparoscope* laparoscope, const fs::path& folder,
+                              const simulation::Laparoscope* laparoscope, bool keep_frames,
+                              const fs::path& folder,
                               const std::function<void(int, int)>& progress) {
   simulation::LoopSetup setup = scenario.loop;
   setup.controller.kind = kind;
+  fs::create_directories(folder);
+  std::optional<FrameFiles> frames;
   std::optional<simulation::LoopCamera> camera;
   if (laparoscope != nullptr) {
-    const fs::path frames = folder / "cam0" / "data";
-    fs::create_directories(frames);
+    frames.emplace(folder, keep_frames);
     camera.emplace(simulation::LoopCamera{
         *laparoscope, scenario.tracker,
-        [frames](TimeNs t_ns, const Image& image) { SaveFrame(frames, t_ns, image); }});
-  } else {
-    fs::create_directories(folder);
+        [&frames](TimeNs t_ns, const Image& image) { frames->Add(t_ns, image); }});
   }
   simulation::LoopResult result =
       simulation::RunClosedLoop(setup, camera ? &*camera : nullptr, progress);
+  if (frames) frames->Finish(result.recording);
   WriteRecording(folder, result.recording);
   WriteTruth(folder, result.truth);
   WriteDeviation(folder / "deviation.csv", result);
@@ -121,6 +151,23 @@ void RefuseWhatIsNotRendered(const std::string& file, const simulation::LoopSetu
                                late ? "camera_latency" : "tip_compliance"));
 }
 
+/// Throws InputError where --frames-of names a controller that does not run.
+void CheckFramesOf(const SimulateOptions& options, const simulation::Scenario& scenario) {
+  std::vector<std::string> run;
+  for (const ControllerKind kind : scenario.controllers) run.emplace_back(Name(kind));
+  for (const std::string& name : options.frames_of) {
+    if (name == kNoController || std::find(run.begin(), run.end(), name) != run.end()) continue;
+    throw InputError(fmt::format("--frames-of: found {}, expected none, or of the scenario's {}",
+                                 name, fmt::join(run, ", ")));
+  }
+}
+
+/// Returns whether the frames of a controller are written.
+bool KeepsFrames(const SimulateOptions& options, ControllerKind kind) {
+  const auto& names = options.frames_of;
+  return names.empty() || std::find(names.begin(), names.end(), Name(kind)) != names.end();
+}
+
 void RunSimulate(const SimulateOptions& options, bool quiet) {
   simulation::Scenario scenario = simulation::ReadScenario(options.scenario);
   const std::string file = options.scenario.string();
@@ -131,6 +178,7 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
     throw InputError(file + ": without --render the sensors need a section tip");
   }
   if (options.render) RefuseWhatIsNotRendered(file, scenario.loop);
+  CheckFramesOf(options, scenario);
   std::vector<fs::path> inputs = {options.scenario};
   if (!options.model.empty()) {
     inputs.push_back(options.model);
@@ -156,8 +204,9 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
     tbb::parallel_for(std::size_t(0), runs, [&](std::size_t i) {
       const ControllerKind kind = scenario.controllers[i];
       const fs::path folder = runs == 1 ? output.folder() : output.folder() / Name(kind);
-      results[i] = RunOne(scenario, kind, laparoscope ? &*laparoscope : nullptr, folder,
-                          [&](int done, int total) { progress.Update(i, done, total); });
+      results[i] =
+          RunOne(scenario, kind, laparoscope ? &*laparoscope : nullptr, KeepsFrames(options, kind),
+                 folder, [&](int done, int total) { progress.Update(i, done, total); });
     });
   }
   nlohmann::json controllers;
@@ -196,12 +245,22 @@ void AddSimulate(CLI::App& app, AppContext& context) {
                    "Estimator and controllers know of the effects in this model.yaml (the "
                    "simulated instrument does not: its own are in the scenario)")
       ->type_name("MODEL.yaml");
-  command->add_flag("--render", options->render,
-                    "Render laparoscope frames and run the loop on what vision sees in them");
+  auto* render =
+      command->add_flag("--render", options->render,
+                        "Render laparoscope frames and run the loop on what vision sees in them");
+  command
+      ->add_option("--frames-of", options->frames_of,
+                   "Write the frames of these controllers alone (none: of no controller); without "
+                   "it of all, some 1 MB each")
+      ->needs(render)
+      ->delimiter(',')
+      ->type_name("CONTROLLER");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->footer(
       "With several controllers each gets a folder of its name, a recording of its own.\n"
-      "Example:\n  flextip simulate testdata/scenarios/press.yaml --render -o press\n");
+      "Examples:\n  flextip simulate testdata/scenarios/press.yaml --render -o press\n"
+      "the same, with the frames of one controller of six\n"
+      "  flextip simulate testdata/scenarios/press.yaml --render --frames-of rod-track -o press\n");
   OnRun(*command, context, [options, &context] { RunSimulate(*options, context.quiet); });
 }
 

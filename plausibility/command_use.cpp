@@ -16,15 +16,17 @@ FindingsForUse SortForUse(const std::vector<Finding>& findings, const CommandUse
   for (Finding f : findings) {
     const bool wrong = f.severity == Severity::kWrong;
     if (Holds(use.needs, f)) {
-      (wrong ? sorted.stopping : sorted.beware).push_back(std::move(f));
+      (wrong ? sorted.needed : sorted.beware).push_back(std::move(f));
     } else if (Holds(use.helped_by, f)) {
       if (wrong) {
         sorted.left_out.insert(f.Subject());
         f.text += fmt::format("; {} is left out here", f.Subject());
+        f.severity = Severity::kDoubtful;
       }
       sorted.beware.push_back(std::move(f));
     } else if (wrong) {
       f.text += fmt::format("; flextip {} does not use it", use.command);
+      f.severity = Severity::kDoubtful;
       sorted.beware.push_back(std::move(f));
     }
   }

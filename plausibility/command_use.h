@@ -22,8 +22,8 @@ struct CommandUse {
 
 /// The findings of a check, sorted for a command.
 struct FindingsForUse {
-  std::vector<Finding> stopping;  ///< wrong, of what the command needs
-  /// Doubtful, or wrong of something that the command does without; the text says so.
+  std::vector<Finding> needed;  ///< wrong, of what the command needs
+  /// Doubtful, or wrong of something that the command does without: doubtful here, and said so.
   std::vector<Finding> beware;
   Subjects left_out;  ///< streams of `helped_by` that are wrong
 };

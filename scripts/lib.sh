@@ -8,11 +8,13 @@ BUILD_PACKAGES=(
   libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev libcairo2-dev
   liblz4-dev libzstd-dev pkg-config
 )
-# More for tests, benchmarks, the thesis's figures and checks; librosbag-storage-dev reads bags of ROS 1,
-# opencv-doc holds real chessboard pictures, poppler-utils turns printed pages into pictures.
+# The documentation site (scripts/site).
+SITE_PACKAGES=(mkdocs mkdocs-material python3)
+# More for tests, benchmarks, the thesis's figures and checks; librosbag-storage-dev reads bags of
+# ROS 1, opencv-doc holds real chessboard pictures, poppler-utils turns printed pages into pictures.
 TEST_PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev librosbag-storage-dev
-  clang clang-format clang-tidy groff-base opencv-doc poppler-utils
+  clang clang-format clang-tidy groff-base opencv-doc poppler-utils "${SITE_PACKAGES[@]}"
 )
 NODE_PACKAGES=(nodejs npm)
 

@@ -87,8 +87,10 @@ void WriteResults(OutputFolder& output, const std::vector<RodProblem>& problems,
   output.Commit();
 }
 
-/// A page where the name ends in .html, else a picture.
+/// Writes a page where the name ends in .html, else a picture; makes the folder.
 void WritePlot(const std::filesystem::path& file, const std::vector<report::Figure>& figures) {
+  std::error_code error;  // without the folder the file cannot be written, which is reported
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
   if (file.extension() != ".html") {
     report::WritePicture(file, figures);
     return;

@@ -40,6 +40,8 @@ class OverlayWriter {
   void Add(const FrameSet& frames, const TipTrack& track, const CameraCalibration& camera,
            const TagCollar& collar);
   void Finish();
+  /// Returns whether browsers play the video; true where there is none.
+  bool PlaysInBrowsers() const { return !video_ || video_->PlaysInBrowsers(); }
 
  private:
   bool WantsPicture(TipStatus status);

@@ -82,6 +82,11 @@ void TrackFrames(const TrackOptions& options, TrackInput& input,
     progress.Update(static_cast<std::size_t>(tables.sums.frames - before), Remark(track));
   }
   overlay.Finish();
+  if (!overlay.PlaysInBrowsers()) {
+    output.Warn(
+        "overlay.mp4 is MPEG-4 part 2, which browsers do not play: no encoder of H.264 or "
+        "VP9 was found");
+  }
   if (tables.sums.frames == 0) {
     throw InputError::At(options.InputName(), 0, "no frame can be read");
   }

@@ -95,26 +95,49 @@ void WritePng(const std::filesystem::path& file, const Image& image) {
   if (!written) throw WorkError(fmt::format("{}: cannot be written", file.string()));
 }
 
+namespace {
+
+struct Codec {
+  char code[5];
+  bool plays_in_browsers;
+};
+
+/// Those of MP4 files, the one that most browsers play first.
+constexpr Codec kCodecs[] = {{"avc1", true}, {"vp09", true}, {"mp4v", false}};
+
+}  // namespace
+
 struct VideoFile::Impl {
   std::filesystem::path file;
   double rate_hz;
   cv::VideoWriter writer;
+  bool plays_in_browsers = true;
+
+  bool Open(cv::Size size) {
+    const QuietStderr quiet;
+    for (const auto& [code, plays] : kCodecs) {
+      const int fourcc = cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]);
+      plays_in_browsers = plays;
+      if (writer.open(file.string(), fourcc, rate_hz, size)) return true;
+    }
+    return false;
+  }
 };
 
 VideoFile::VideoFile(const std::filesystem::path& file, double rate_hz)
-    : impl_(std::make_unique<Impl>(Impl{file, rate_hz, {}})) {}
+    : impl_(std::make_unique<Impl>(Impl{file, rate_hz, {}, true})) {}
 VideoFile::~VideoFile() = default;
 
 void VideoFile::Add(const Image& image) {
   if (!impl_->writer.isOpened()) {
-    const int code = cv::VideoWriter::fourcc('m', 'p', '4', 'v');
-    const cv::Size size(image.width_px, image.height_px);
-    if (!impl_->writer.open(impl_->file.string(), code, impl_->rate_hz, size)) {
+    if (!impl_->Open({image.width_px, image.height_px})) {
       throw WorkError(fmt::format("{}: the video cannot be written", impl_->file.string()));
     }
   }
   impl_->writer.write(View(image));
 }
+
+bool VideoFile::PlaysInBrowsers() const { return impl_->plays_in_browsers; }
 
 void VideoFile::Finish() {
   impl_->writer.release();

@@ -29,14 +29,18 @@ void SilenceVideoCodecs();
 /// Throws WorkError where the disk refuses.
 void WritePng(const std::filesystem::path& file, const Image& image);
 
-/// A video written frame by frame. A file not closed by Finish is of no use.
+/// A video written frame by frame: H.264, or VP9 where there is no encoder of it, else MPEG-4
+/// part 2. A file not closed by Finish is of no use.
 class VideoFile {
  public:
+  /// Takes the name of an MP4 file.
   VideoFile(const std::filesystem::path& file, double rate_hz);
   ~VideoFile();
   /// Throws WorkError where no encoder is there or the disk refuses.
   void Add(const Image& image);
   void Finish();
+  /// Returns whether browsers play the file; true before the first frame.
+  bool PlaysInBrowsers() const;
 
  private:
   struct Impl;

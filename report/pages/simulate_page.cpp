@@ -99,10 +99,12 @@ void AddFrames(Report& report, const std::vector<Run>& runs) {
   for (const auto& run : runs) {
     auto files = PicturesIn(run.folder / "overlay", kPictures);
     if (files.empty()) files = PicturesIn(run.folder / "cam0" / "data", kPictures);
+    if (run.name.empty() && !files.empty())
+      return AddPictureFiles(report, "Through the laparoscope", files);
+    if (fs::exists(run.folder / "last_frame.jpg")) files = {run.folder / "last_frame.jpg"};
     if (files.empty()) continue;
-    if (run.name.empty()) return AddPictureFiles(report, "Through the laparoscope", files);
-    pictures.emplace_back(ReadBytes(files.back()),
-                          run.name + ", " + files.back().filename().string());
+    const std::string file = files.back().filename().string();
+    pictures.emplace_back(ReadBytes(files.back()), run.name.empty() ? file : run.name);
   }
   if (pictures.empty()) return;
   report.AddHeading("Through the laparoscope, at the end of each run");

@@ -28,6 +28,16 @@ ThinnedTable ReadFrames(const fs::path& file, const std::vector<ThinnedColumn>& 
   return ReadThinned(file, columns, "status", {"ok", "predicted", "lost"}, kBuckets);
 }
 
+/// Adds overlay.mp4, where there is one. It stays a file: an hour of video is no part of a page.
+void AddVideo(Report& report, const fs::path& folder) {
+  if (!fs::exists(folder / "overlay.mp4")) return;
+  report.AddHeading("The video");
+  report.AddHtml(
+      "<figure class=\"video\"><video controls muted preload=\"metadata\" src=\"overlay.mp4\">"
+      "<a href=\"overlay.mp4\">overlay.mp4</a></video>\n<figcaption>overlay.mp4, a file beside "
+      "this page: every frame with the tags and the tip that were found.</figcaption></figure>\n");
+}
+
 /// Where the tip was not seen.
 std::vector<FigureBand> StatusBands(const ThinnedTable& table) {
   std::vector<FigureBand> bands;
@@ -166,6 +176,7 @@ void WriteTrackReport(const fs::path& folder) {
   Report report = BeginPage(folder, "Tip tracked in frames");
   AddPictureFiles(report, "What was found in the frames",
                   PicturesIn(folder / "overlay", kPictures));
+  AddVideo(report, folder);
   AddTip(report, folder / "vision0" / "data.csv");
   AddFrames(report, folder / "frames.csv");
   report.Write(folder / "report.html");

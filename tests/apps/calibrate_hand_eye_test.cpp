@@ -205,7 +205,7 @@ TEST_F(CalibrateHandEyeCommand, FramesMayBeOfAVideo) {
   RecordChessboard(false, true);
   const auto run = Run({"--board", "chessboard:7x5:0.01"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(run.err, "");
+  EXPECT_THAT(run.err, testing::Not(HasSubstr("wrong:")));  // frames a second apart are said
   ExpectFound("cam0.T_RC", "board.T_WB", T_KB_);
   const auto summary = Summary();
   EXPECT_EQ(summary["views_used"], kViews);

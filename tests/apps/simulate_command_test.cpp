@@ -107,6 +107,36 @@ controllers: rod-track
   EXPECT_LT(wrong.norm(), 0.0006);
 }
 
+/// The frames of one controller of two are written; the other recording is whole without them.
+TEST(SimulateCommand, KeepsTheFramesThatAreAskedFor) {
+  const TestFolder folder;
+  const std::string source = FLEXTIP_SOURCE_DIR, data = source + "/testdata/";
+  std::string text = ReadText(source + "/examples/clip.yaml");
+  const auto replace = [&](const std::string& found, const std::string& replacement) {
+    text.replace(text.find(found), found.size(), replacement);
+  };
+  replace("../testdata/", data);
+  replace("../testdata/", data);
+  replace("controllers: rod-track", "controllers: [rod-track, straight-track]");
+  replace("-0.004]", "-0.001]");
+  const auto scenario = folder.Write("s.yaml", text), out = (folder / "out").string();
+  const auto run = [&](const std::string& names) {
+    return RunProgram({"simulate", scenario, "--render", "--frames-of", names, "-o", out});
+  };
+  EXPECT_TRUE(IsRefused(run("flex-track"), {"flex-track", "rod-track, straight-track"}));
+  const auto result = run("rod-track");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_FALSE(std::filesystem::is_empty(folder / "out/rod-track/cam0/data"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/straight-track/cam0/data"));
+  for (const std::string name : {"rod-track", "straight-track"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / ("out/" + name + "/last_frame.jpg"))) << name;
+    const auto recording = (folder / ("out/" + name)).string();
+    const auto state = RunProgram({"estimate", recording, "-o", (folder / name).string()});
+    EXPECT_EQ(state.exit_code, 0) << state.err;
+  }
+  EXPECT_TRUE(PageIsMadeAgain(folder / "out"));
+}
+
 TEST(SimulateCommand, RefusesModelsThatMeanNothing) {
   const TestFolder folder;
   const auto out = (folder / "out").string();

@@ -123,6 +123,14 @@ TEST_F(Pages, ShowPicturesOfAllCommands) {
   }
 }
 
+TEST_F(Pages, AVideoIsPlayedFromItsFile) {
+  WriteTrackReport(folder_);
+  EXPECT_THAT(Page(), Not(HasSubstr("<video")));
+  Write("overlay.mp4", "frames");
+  WriteTrackReport(folder_);
+  EXPECT_THAT(Page(), HasSubstr("<video controls muted preload=\"metadata\" src=\"overlay.mp4\">"));
+}
+
 TEST_F(Pages, ACalibrationBeginsWithItsVerdict) {
   Write("summary.json", R"({"command": "calibrate tip", "version": "1", "seconds": 1.5,
     "warnings": ["pose 3: <far off>", "p cannot be named: no turn", "the port moved"],

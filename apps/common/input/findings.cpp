@@ -12,9 +12,17 @@ std::string FindingText(const std::string& label, const plausibility::Finding& f
 
 void MentionFindings(const std::vector<plausibility::Finding>& findings, Judgement& judged) {
   if (findings.empty()) return;
-  std::string ids;
-  for (const plausibility::Finding& f : findings) ids += (ids.empty() ? "" : ", ") + f.id;
-  judged.Beware(fmt::format("the check of the recording found doubtful: {}", ids));
+  std::string wrong, doubtful;
+  for (const plausibility::Finding& f : findings) {
+    std::string& ids = f.severity == plausibility::Severity::kWrong ? wrong : doubtful;
+    ids += (ids.empty() ? "" : ", ") + f.id;
+  }
+  if (!wrong.empty()) {
+    judged.Beware("the recording does not look as it says, so this answer may be wrong: " + wrong);
+    judged.next = "mend the recording as the check says, and do it again";
+    judged.command = "flextip check RECORDING";
+  }
+  if (!doubtful.empty()) judged.Beware("the check of the recording found doubtful: " + doubtful);
 }
 
 nlohmann::json FindingsJson(const std::vector<plausibility::Finding>& findings) {

@@ -34,19 +34,14 @@ std::vector<Finding> CheckInput(const InputCheck& check, const plausibility::Com
                                 {.pictures = kPictures, .share = pictures.share}, result);
   }
   auto found = plausibility::SortForUse(result.findings, use);
-  for (const Finding& f : found.stopping) fmt::print(stderr, "{}", FindingText("wrong", f));
-  if (!check.quiet)
-    for (const Finding& f : found.beware) fmt::print(stderr, "{}", FindingText("beware", f));
-  if (!found.stopping.empty()) {
-    const std::size_t count = found.stopping.size();
-    throw WorkError(fmt::format(
-        "{}: {} {} wrong, and {} would be wrong with {}: mend the recording, or go on with "
-        "--no-check",
-        check.recording.string(), count, count == 1 ? "thing is" : "things are", use.command,
-        count == 1 ? "it" : "them"));
-  }
   plausibility::LeaveOut(found.left_out, recording);
-  return found.beware;
+  std::vector<Finding> all = found.needed;
+  all.insert(all.end(), found.beware.begin(), found.beware.end());
+  for (const Finding& f : all) {
+    const bool wrong = f.severity == plausibility::Severity::kWrong;
+    if (wrong || !check.quiet) fmt::print(stderr, "{}", FindingText(wrong ? "wrong" : "beware", f));
+  }
+  return all;
 }
 
 }  // namespace flextip

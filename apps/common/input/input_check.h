@@ -28,9 +28,10 @@ struct PicturesToCheck {
 };
 
 /// Checks `recording`, calibrations in it, for what the command does with it. Prints what was found
-/// on stderr, and takes streams out of `recording` that are wrong and only help. Returns the
-/// findings that do not stop the command, for OutputFolder::Beware.
-/// Throws WorkError where the command would work on what is wrong.
+/// on stderr (what is wrong even where `quiet`), and takes streams out of `recording` that are
+/// wrong and only help. Returns the findings, those that the command needs first; they go to the
+/// summary, the page and the grade of the answer. A finding stops no command: the check can err,
+/// too.
 std::vector<plausibility::Finding> CheckInput(const InputCheck& check,
                                               const plausibility::CommandUse& use,
                                               Recording& recording,

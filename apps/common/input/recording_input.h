@@ -36,8 +36,7 @@ void AddRecordingInput(CLI::App& command, RecordingInput& input);
 /// asked for, and with the calibrations in it; tracked tips are taken as they are. Throws
 /// InputError.
 InputRead ReadInput(const RecordingInput& input);
-/// The same, checked for what the command does with it (CheckInput). Throws WorkError where the
-/// command would work on what is wrong.
+/// The same, checked for what the command does with it (CheckInput).
 InputRead ReadInput(const RecordingInput& input, const plausibility::CommandUse& use, bool quiet);
 
 }  // namespace flextip
