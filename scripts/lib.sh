@@ -8,11 +8,12 @@ BUILD_PACKAGES=(
   libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev libcairo2-dev
   pkg-config
 )
-# More for tests, benchmarks, the thesis's figures and checks; opencv-doc holds real chessboard
-# pictures, poppler-utils turns printed pages into pictures.
+# More for tests, benchmarks, the Python module with its notebooks, the thesis's figures and checks;
+# opencv-doc holds real chessboard pictures, poppler-utils turns printed pages into pictures.
 TEST_PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev clang clang-format clang-tidy groff-base
-  opencv-doc poppler-utils
+  opencv-doc poppler-utils pybind11-dev python3-dev python3-numpy python3-pytest python3-nbconvert
+  python3-ipykernel python3-matplotlib python3-mypy
 )
 NODE_PACKAGES=(nodejs npm)
 
