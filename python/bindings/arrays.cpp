@@ -44,15 +44,16 @@ std::vector<TimeNs> TimesFrom(const std::string& what, const py::array& t_ns) {
 
 Rows::Rows(const std::string& what, const Doubles& array, std::size_t count, py::ssize_t width,
            py::ssize_t depth)
-    : what_(what), array_(array), numbers_(width * std::max<py::ssize_t>(depth, 1)) {
+    : what_(what), numbers_(static_cast<std::size_t>(width * std::max<py::ssize_t>(depth, 1))) {
   std::vector<py::ssize_t> expected{static_cast<py::ssize_t>(count), width};
   if (depth > 0) expected.push_back(depth);
   if (!std::equal(expected.begin(), expected.end(), array.shape(), array.shape() + array.ndim())) {
     throw InputError(fmt::format("{}: found the shape {}, expected ({})", what, ShapeText(array),
                                  fmt::join(expected, ", ")));
   }
-  for (py::ssize_t i = 0; i < array.size(); ++i) {
-    if (!std::isfinite(array.data()[i])) RefuseNotFinite(what);
+  values_.assign(array.data(), array.data() + array.size());
+  if (!std::all_of(values_.begin(), values_.end(), [](double v) { return std::isfinite(v); })) {
+    RefuseNotFinite(what);
   }
 }
 

@@ -85,9 +85,7 @@ class Rows {
   Rows(const std::string& what, const Doubles& array, std::size_t count, py::ssize_t width,
        py::ssize_t depth = 0);
 
-  const double* operator[](std::size_t i) const {
-    return array_.data() + static_cast<py::ssize_t>(i) * numbers_;
-  }
+  const double* operator[](std::size_t i) const { return values_.data() + i * numbers_; }
   Eigen::Vector3d Vector3(std::size_t i) const {
     return Eigen::Map<const Eigen::Vector3d>((*this)[i]);
   }
@@ -101,8 +99,8 @@ class Rows {
   bool IsUnit(std::size_t i, double length) const;
 
   std::string what_;
-  Doubles array_;
-  py::ssize_t numbers_;  // in a row
+  std::vector<double> values_;
+  std::size_t numbers_;  // in a row
 };
 
 /// Returns the picture in an array uint8 (H, W) or (H, W, 3: blue, green, red). Throws InputError

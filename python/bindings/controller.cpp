@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <variant>
 
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
@@ -20,6 +21,8 @@ namespace {
 
 using diagnosis::ExtendedModel;
 using SharedController = Shared<InstrumentController>;
+/// A Fixture whose first kind has a default, as pybind11 needs it.
+using AnyFixture = std::variant<ForbiddenHalfSpace, ForbiddenSphere, PathGuidance, ForbiddenMesh>;
 
 ControllerKind KindNamed(const std::string& name) {
   const auto kind = ControllerKindNamed(name);
@@ -147,8 +150,8 @@ void AddCommandClass(py::module_& module) {
 std::unique_ptr<SharedController> MakeController(
     const Recording& recording, const std::string& kind, double gain, double max_step_m,
     const std::string& beam_load_law, double max_tissue_gain, double min_singular_value,
-    double port_prior_m, int window_samples, const std::vector<Fixture>& fixtures, double margin_m,
-    double margin_sd, const std::optional<DirectionOptions>& direction,
+    double port_prior_m, int window_samples, const std::vector<AnyFixture>& fixtures,
+    double margin_m, double margin_sd, const std::optional<DirectionOptions>& direction,
     const Eigen::Vector3d& direction_free_axis, bool em_is_tip, bool straight_at_registered_port,
     const std::optional<ExtendedModel>& model, const std::optional<TrackerOptions>& tracker) {
   InstrumentControllerOptions options;
@@ -174,8 +177,11 @@ std::unique_ptr<SharedController> MakeController(
     options.direction->min_singular_value = min_singular_value;
   }
   options.direction_free_axis = direction_free_axis;
-  options.fixtures = {fixtures, NotNegative("margin_m", margin_m),
-                      NotNegative("margin_sd", margin_sd)};
+  for (const AnyFixture& fixture : fixtures) {
+    std::visit([&](const auto& one) { options.fixtures.list.emplace_back(one); }, fixture);
+  }
+  options.fixtures.margin_m = NotNegative("margin_m", margin_m);
+  options.fixtures.margin_sd = NotNegative("margin_sd", margin_sd);
   options.em_is_tip = em_is_tip;
   options.straight_at_registered_port = straight_at_registered_port;
   std::unique_ptr<InstrumentModel> found;
@@ -220,7 +226,7 @@ void AddController(py::module_& module) {
            py::arg("max_tissue_gain") = usual.max_tissue_gain,
            py::arg("min_singular_value") = usual.min_singular_value,
            py::arg("port_prior_m") = kPortRegistration_m, py::arg("window_samples") = 0,
-           py::arg("fixtures") = std::vector<Fixture>(), py::arg("margin_m") = 0.0,
+           py::arg("fixtures") = std::vector<AnyFixture>(), py::arg("margin_m") = 0.0,
            py::arg("margin_sd") = 0.0, py::arg("direction") = std::nullopt,
            py::arg("direction_free_axis") = Eigen::Vector3d::Zero().eval(),
            py::arg("em_is_tip") = false, py::arg("straight_at_registered_port") = false,

@@ -155,8 +155,8 @@ void AddScores(py::module_& module) {
           "RMS deviation with the model (m).");
 }
 
-void AddResiduals(py::class_<Diagnosis>& diagnosis) {
-  diagnosis
+void AddResiduals(py::class_<Diagnosis>& answer) {
+  answer
       .def_property_readonly(
           "residual_columns", [](const Diagnosis& d) { return d.result.residuals.columns; },
           "Names: t_s, regressors, base.CHANNEL.i, extended.CHANNEL.i (in standard deviations).")
@@ -191,7 +191,7 @@ void AddAnswer(py::class_<Diagnosis>& diagnosis) {
           [](const Diagnosis& d) {
             py::dict by_name;  // the most likely first
             for (const auto& h : d.result.probabilities) {
-              by_name[py::str(Joined(h.verdict))] = h.probability;
+              by_name[py::str(diagnosis::Joined(h.verdict))] = h.probability;
             }
             return by_name;
           },
@@ -219,9 +219,9 @@ void AddAnswer(py::class_<Diagnosis>& diagnosis) {
 void AddDiagnosis(py::module_& module) {
   AddModel(module);
   AddScores(module);
-  py::class_<Diagnosis> diagnosis(module, "Diagnosis", "The answer of diagnose().");
-  AddAnswer(diagnosis);
-  diagnosis
+  py::class_<Diagnosis> answer(module, "Diagnosis", "The answer of diagnose().");
+  AddAnswer(answer);
+  answer
       .def_property_readonly("base", OfResult(&DiagnosisResult::base),
                              "Errors of the base simulation.")
       .def_property_readonly("extended", OfResult(&DiagnosisResult::extended),
@@ -260,7 +260,7 @@ void AddDiagnosis(py::module_& module) {
             return warnings;
           },
           "What to be careful about, one line each.");
-  AddResiduals(diagnosis);
+  AddResiduals(answer);
   module.def(
       "diagnose",
       [](Recording recording, const std::string& name, const std::vector<std::string>& without,
