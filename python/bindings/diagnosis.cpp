@@ -182,8 +182,8 @@ void AddResiduals(py::class_<Diagnosis>& answer) {
           "Whether it was measured, (N, columns).");
 }
 
-void AddAnswer(py::class_<Diagnosis>& diagnosis) {
-  diagnosis.def_readonly("judgement", &Diagnosis::judgement, "Whether the answer holds.")
+void AddAnswer(py::class_<Diagnosis>& answer) {
+  answer.def_readonly("judgement", &Diagnosis::judgement, "Whether the answer holds.")
       .def_property_readonly("verdicts", OfResult(&DiagnosisResult::verdict),
                              "Effects judged present; [\"none\"] and [\"unknown\"] are answers.")
       .def_property_readonly(

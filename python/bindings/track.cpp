@@ -348,9 +348,10 @@ void AddTrack(py::module_& module) {
   module.def("track", track, py::arg("source"), py::kw_only(), py::arg("camera") = std::nullopt,
              py::arg("collar") = std::nullopt, py::arg("rate_hz") = std::nullopt,
              py::arg("calibrations") = Paths(), py::arg("black_white") = std::nullopt,
-             py::arg("options") = TrackerOptions(), py::arg("with_model") = true,
-             py::arg("outline") = std::nullopt, py::arg("diameter_m") = std::nullopt,
-             py::arg("max_frames") = std::nullopt, py::arg("truth") = std::nullopt,
+             py::arg_v("options", TrackerOptions(), "TrackerOptions()"),
+             py::arg("with_model") = true, py::arg("outline") = std::nullopt,
+             py::arg("diameter_m") = std::nullopt, py::arg("max_frames") = std::nullopt,
+             py::arg("truth") = std::nullopt,
              R"doc(Finds the tip in the frames of a recording, of pictures or of a video.
 
 source: a recording's folder; or, with camera and collar (files), a folder of pictures or a video.

@@ -51,8 +51,8 @@ void AddTracker(py::module_& module) {
           py::init([](const Recording& recording, const TrackerOptions& options, bool with_model) {
             return std::make_unique<SharedTracker>(TrackerSetupFor(recording, options, with_model));
           }),
-          py::arg("recording"), py::kw_only(), py::arg("options") = TrackerOptions(),
-          py::arg("with_model") = true,
+          py::arg("recording"), py::kw_only(),
+          py::arg_v("options", TrackerOptions(), "TrackerOptions()"), py::arg("with_model") = true,
           "recording: cameras, collar, instrument and port; its samples are not read. with_model: "
           "expect the tip by the wrist's readings and the shaft's model. Raises InputError for a "
           "camera or collar that cannot be used.")
@@ -62,7 +62,8 @@ void AddTracker(py::module_& module) {
                        const SensorReadings& readings) {
             return follow_all(tracker, {picture}, t_ns, readings);
           },
-          py::arg("picture"), py::arg("t_ns"), py::arg("readings") = SensorReadings(),
+          py::arg("picture"), py::arg("t_ns"),
+          py::arg_v("readings", SensorReadings(), "Readings()"),
           R"doc(Finds the tip in a picture.
 
 picture: uint8 (H, W), or (H, W, 3) in the order blue, green, red. t_ns: its time, after the last
@@ -71,7 +72,7 @@ one's. readings: the other sensors at that time (their tip is not looked at).
 Returns a TipTrack: that there is no tip is its status. Raises InputError for another type or size
 of picture.)doc")
       .def("track_stereo", follow_all, py::arg("pictures"), py::arg("t_ns"),
-           py::arg("readings") = SensorReadings(),
+           py::arg_v("readings", SensorReadings(), "Readings()"),
            "Finds the tip in a picture of each camera taken at the same time; None where a camera "
            "has none.");
 }
