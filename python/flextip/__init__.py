@@ -1,8 +1,8 @@
 """Control of thin, bending surgical instruments by sight.
 
 Units are SI and radians, times are whole nanoseconds. Quaternions are w, x, y, z. T_AB takes
-coordinates in B to coordinates in A, p_AB is the origin of B in A. Frames: R robot or world, W wrist,
-E tip, C camera, G tag, S electromagnetic sensor, P port.
+coordinates in B to coordinates in A, p_AB is the origin of B in A. Frames: R robot or world, W
+wrist, E tip, C camera, G tag, S electromagnetic sensor, P port.
 
 Bad input raises InputError with one line. What can be expected to fail (no tag in a picture, no
 equilibrium) is a status; a value that is not there is None, or a row of zeros in an array.

@@ -17,7 +17,8 @@ RECORDINGS = TESTDATA / "recordings"
 
 def run_program(*arguments):
     """Runs flextip and returns what it did; the test fails where the program does."""
-    done = subprocess.run([PROGRAM, "--quiet", *map(str, arguments)], capture_output=True, text=True)
+    command = [PROGRAM, "--quiet", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return done
 

@@ -96,26 +96,18 @@ def test_commands_refuse_as_the_program_does():
     refused(lambda: flextip.track(RECORDINGS / "rendered", outline="pointed"), "pointed")
     refused(lambda: flextip.track(RECORDINGS / "rendered", black_white=(9, 9)), "black_white")
     refused(lambda: flextip.simulate("nowhere.yaml"), "nowhere.yaml")
-    refused(lambda: flextip.simulate(TESTDATA / "scenarios/chapter4_up.yaml", render=True), "camera")
+    blind = TESTDATA / "scenarios/chapter4_up.yaml"
+    refused(lambda: flextip.simulate(blind, render=True), "camera")
     refused(lambda: flextip.simulate(SOURCE / "examples/clip.yaml"), "tip")
     refused(lambda: flextip.simulate(TESTDATA / "scenarios/press.yaml", controllers=["pid"]), "pid")
 
 
-def test_work_errors():
-    wrong = flextip.read_recording(RECORDINGS / "sample_0")
-    wrong.load0 = None
-    with pytest.raises(flextip.WorkError, match="cannot be written"):
-        flextip.write_model("/dev/null/model.yaml", _model())
-
-
-def _model():
-    import tempfile
-    from pathlib import Path
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "model.yaml"
-        file.write_text("format: flextip-model\nversion: 1\ncentre_m: [0, 0, 0]\nstart_ns: 0\n"
-                        "effects:\n  stiffness: {scale: 0.9}\n")
-        return flextip.read_model(file)
+def test_work_errors(tmp_path):
+    file = tmp_path / "model.yaml"
+    file.write_text("format: flextip-model\nversion: 1\ncentre_m: [0, 0, 0]\nstart_ns: 0\n"
+                    "effects:\n  stiffness: {scale: 0.9}\n")
+    with pytest.raises(flextip.WorkError):
+        flextip.write_model("/dev/null/model.yaml", flextip.read_model(file))
 
 
 def test_wrong_types_are_pythons_own_error():

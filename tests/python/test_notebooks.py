@@ -1,4 +1,4 @@
-"""Every notebook runs from top to bottom, as nbconvert --execute does; its page is left to look at."""
+"""Every notebook runs from top to bottom (nbconvert --execute); its page is left to look at."""
 
 import json
 import os

@@ -136,7 +136,8 @@ def test_diagnose(tmp_path):
     assert diagnosis.extended.heldout_rms == answer["extended"]["heldout_rms"]
     assert diagnosis.gain is not None
     same(diagnosis.gain.heldout_error_ratio, answer["gain"]["heldout_error_ratio"])
-    same(diagnosis.gain.heldout_error_ratio_interval, answer["gain"]["heldout_error_ratio_interval"])
+    interval = answer["gain"]["heldout_error_ratio_interval"]
+    same(diagnosis.gain.heldout_error_ratio_interval, interval)
     runs = {gain.controller: gain for gain in diagnosis.closed_loop}
     assert runs.keys() == {run["controller"] for run in answer["closed_loop_runs"]}
     for run in answer["closed_loop_runs"]:
@@ -169,7 +170,8 @@ def test_simulate(tmp_path):
     flextip.write_recording(tmp_path / "ours", simulation.runs[name].recording,
                             simulation.runs[name].truth)
     for file in ("recording.yaml", "wrist0/data.csv", "em0/data.csv", "truth0/data.csv"):
-        assert (tmp_path / "ours" / file).read_text() == (tmp_path / "out" / name / file).read_text()
+        theirs = tmp_path / "out" / name / file
+        assert (tmp_path / "ours" / file).read_text() == theirs.read_text()
 
 
 def test_simulate_renders(tmp_path):

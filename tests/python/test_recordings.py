@@ -18,7 +18,8 @@ def test_streams_are_the_files_columns():
     q = numbers(em, "q_RS_w []", "q_RS_x []", "q_RS_y []", "q_RS_z []")
     np.testing.assert_allclose(recording.em0.q_RS, q, atol=1e-8)  # normalised
     same(recording.em0.p_RS, vector(em, "p_RS", "m"))
-    same(recording.strain0.moments_Nm, numbers(strain, "m1_y [Nm]", "m1_z [Nm]", "m2_y [Nm]", "m2_z [Nm]"))
+    moments = numbers(strain, "m1_y [Nm]", "m1_z [Nm]", "m2_y [Nm]", "m2_z [Nm]")
+    same(recording.strain0.moments_Nm, moments)
     same(recording.load0.f_tip_N, vector(load, "f", "N"))
     assert list(recording.vision0.status) == vision["status []"]
     same(recording.vision0.covariance_m2[:, 1, 2], numbers(vision, "cov_yz [m2]"))
@@ -110,6 +111,7 @@ def test_camera_and_collar():
     assert [tag.id for tag in collar.tags] == [tag.id for tag in recording.tags0.tags]
     made = flextip.Camera(camera.intrinsics, camera.resolution, camera.T_RC,
                           distortion_model=camera.distortion_model,
-                          distortion_coefficients=camera.distortion_coefficients, gamma=camera.gamma)
+                          distortion_coefficients=camera.distortion_coefficients,
+                          gamma=camera.gamma)
     np.testing.assert_array_equal(made.T_RC, camera.T_RC)
     assert len(recording.cam0.filenames) == len(recording.cam0.t_ns) == 8

@@ -1,6 +1,7 @@
 """Code of a user, for mypy: it must pass with --strict, and each line marked WRONG must not."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 import flextip
 
@@ -11,7 +12,7 @@ def estimated_force(folder: str) -> float:
     return float(np.abs(found).max())
 
 
-def tip(tracker: flextip.Tracker, picture: np.ndarray[tuple[int, int], np.dtype[np.uint8]]) -> float:
+def tip(tracker: flextip.Tracker, picture: NDArray[np.uint8]) -> float:
     found = tracker.track(picture, 0)
     return 0.0 if found.p_RE is None else float(found.p_RE[0])
 
