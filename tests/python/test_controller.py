@@ -52,9 +52,9 @@ def test_calculating_with_a_straight_shaft_does_not():
 def test_the_load_is_found():
     _, command = closed_loop("rod-track", start())
     assert command.estimate.status == "ok"
-    assert command.estimate.f_tip_N[2] == pytest.approx(FORCE[2], abs=0.05)
     sd = np.sqrt(np.diag(command.estimate.covariance))[6:]
-    assert sd[0] > 3 * sd[2]  # along the shaft hardly known
+    assert (np.abs(command.estimate.f_tip_N - FORCE) < 3 * sd).all()
+    assert sd[2] < 0.3 and sd[0] > 3 * sd[2]  # along the shaft hardly known
 
 
 def test_fixtures_keep_the_tip_out():
@@ -81,13 +81,16 @@ def test_a_mesh_is_a_fixture():
 
 
 def test_direction_by_the_rod():
-    goal = start()
-    _, plain = closed_loop("rod-track", goal, cycles=3)
-    controller = flextip.Controller(setup(), direction=flextip.DirectionOptions())
-    tip = start()
-    wish = plain.estimate.d_RE + [0, 0.05, 0]
-    command = controller.step(0, readings(0, np.zeros(3), tip), goal, wish)
-    assert command.status == "ok" and np.linalg.norm(command.p_RW_command) > 1e-4
+    """Where the place matters little, a step turns the tip toward its wished direction."""
+    rod = flextip.Rod(0.6, 0.304)
+    tip = rod.solve(np.zeros(3), PORT, FORCE).tip
+    wish = (tip.t + [0, 0.03, 0]) / np.linalg.norm(tip.t + [0, 0.03, 0])
+    little = flextip.DirectionOptions(position_tolerance_m=0.1, direction_tolerance_rad=0.001)
+    command = flextip.Controller(setup(), direction=little).step(
+        0, readings(0, np.zeros(3), tip.p), tip.p, wish)
+    assert command.status == "ok"
+    turned = rod.solve(command.p_RW_command, PORT, FORCE).tip.t
+    assert np.linalg.norm(turned - wish) < 0.3 * np.linalg.norm(tip.t - wish)
 
 
 def test_only_watching_and_a_tip_that_counts_once():
