@@ -50,7 +50,7 @@ def test_calculating_with_a_straight_shaft_does_not():
 
 
 def test_the_load_is_found():
-    _, command = closed_loop("rod-track", start())
+    _, command = closed_loop("rod-track", start(), port_prior_m=1e-6)
     assert command.estimate.status == "ok"
     sd = np.sqrt(np.diag(command.estimate.covariance))[6:]
     assert (np.abs(command.estimate.f_tip_N - FORCE) < 3 * sd).all()

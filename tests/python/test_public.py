@@ -63,7 +63,7 @@ def test_arrays_state_shape_and_unit():
             if not isinstance(function, ast.FunctionDef) or function.name.startswith("__"):
                 continue
             returns = ast.unparse(function.returns)
-            is_array = any(kind in returns for kind in ("Floats", "Times", "Texts"))
+            is_array = any(kind in returns for kind in ("_Floats", "_Times", "_Texts"))
             doc = getattr(getattr(flextip, node.name), function.name).__doc__
             if is_array and not re.search(r"\((N|M|\d)[^)]*,[^)]*\)", doc):
                 lacking.append(f"{node.name}.{function.name}: {doc}")
@@ -152,8 +152,12 @@ def mypy(*arguments, cache):
 
 
 def test_stubtest(tmp_path):
-    done = mypy("mypy.stubtest", "flextip._flextip", "--ignore-missing-stub", cache=tmp_path)
-    assert done.returncode == 0, done.stdout + done.stderr
+    """Nothing is found but what all classes of pybind11 have: its metaclass, and no signature."""
+    done = mypy("mypy.stubtest", "flextip._flextip", "--concise", cache=tmp_path)
+    usual = ("metaclass differs", '__init__ is inconsistent, stub does not have *args argument "args"')
+    assert done.stdout.count(usual[0]) >= len(CLASSES) - 3, done.stderr
+    found = [line for line in done.stdout.splitlines() if not line.endswith(usual)]
+    assert not found
 
 
 def test_a_users_code_passes_mypy_and_wrong_code_does_not(tmp_path):
