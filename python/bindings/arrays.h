@@ -8,6 +8,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,6 +22,7 @@ namespace flextip::python {
 
 namespace py = pybind11;
 
+using Paths = std::vector<std::filesystem::path>;
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// Returns the array (N, shape...) of the items of `range`; write(item, row) fills a row of zeros.

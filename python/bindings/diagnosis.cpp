@@ -184,6 +184,10 @@ void AddResiduals(py::class_<Diagnosis>& answer) {
 
 void AddAnswer(py::class_<Diagnosis>& answer) {
   answer.def_readonly("judgement", &Diagnosis::judgement, "Whether the answer holds.")
+      .def("__repr__",
+           [](const Diagnosis& d) {
+             return fmt::format("<Diagnosis, {}: {}>", Name(d.judgement.grade), d.judgement.says);
+           })
       .def_property_readonly("verdicts", OfResult(&DiagnosisResult::verdict),
                              "Effects judged present; [\"none\"] and [\"unknown\"] are answers.")
       .def_property_readonly(

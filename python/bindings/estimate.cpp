@@ -144,6 +144,11 @@ void AddEstimates(py::module_& module) {
                         "Load, port and shape at every sample, in R. Rows whose status is neither "
                         "\"ok\" nor \"unobservable\" are zeros.")
       .def("__len__", [](const Estimates& e) { return e.samples.size(); })
+      .def("__repr__",
+           [](const Estimates& e) {
+             return fmt::format("<Estimates of {} samples, {}: {}>", e.samples.size(),
+                                Name(e.judgement.grade), e.judgement.says);
+           })
       .def_property_readonly(
           "t_ns", [](const Estimates& e) { return Times(e.samples); }, "Times, (N,) int64, ns.")
       .def_property_readonly(

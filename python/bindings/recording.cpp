@@ -17,8 +17,6 @@
 namespace flextip::python {
 namespace {
 
-using Paths = std::vector<std::filesystem::path>;
-
 /// As the commands that work on a whole recording read it (apps/common/recording_input).
 ReadResult ReadWhole(const std::filesystem::path& folder,
                      const std::optional<std::filesystem::path>& tracked, const Paths& calibrations,
@@ -91,6 +89,25 @@ void AddPart(py::class_<Recording>& recording, const char* name, T Recording::*p
       [part](Recording& r, const T& value) { r.*part = value; }, doc);
 }
 
+/// Returns "<Recording of wrist0, em0>".
+std::string Describe(const Recording& recording) {
+  std::string names;
+  const auto add = [&](bool there, const char* name) {
+    if (there) names += (names.empty() ? " of " : ", ") + std::string(name);
+  };
+  add(recording.wrist0.has_value(), "wrist0");
+  add(recording.command0.has_value(), "command0");
+  add(recording.em0.has_value(), "em0");
+  add(recording.em1.has_value(), "em1");
+  add(recording.strain0.has_value(), "strain0");
+  add(recording.load0.has_value(), "load0");
+  add(recording.cam0.has_value(), "cam0");
+  add(recording.cam1.has_value(), "cam1");
+  add(recording.tags0.has_value(), "tags0");
+  add(recording.vision0.has_value(), "vision0");
+  return "<Recording" + names + ">";
+}
+
 void AddRecordingClass(py::module_& module) {
   py::class_<Recording> recording(
       module, "Recording",
@@ -115,6 +132,7 @@ void AddRecordingClass(py::module_& module) {
   AddPart(recording, "cam1", &Recording::cam1, "A stereo laparoscope's other eye, or None.");
   AddPart(recording, "tags0", &Recording::tags0, "The tags on the instrument, or None.");
   AddPart(recording, "vision0", &Recording::vision0, "The tip as seen, or None.");
+  recording.def("__repr__", &Describe);
   recording.def(
       "copy", [](const Recording& r) { return Recording(r); }, "Returns a copy.");
 }

@@ -18,8 +18,6 @@
 namespace flextip::python {
 namespace {
 
-using Paths = std::vector<std::filesystem::path>;
-
 /// What flextip track writes, as an object.
 struct Track {
   Series<TipTrack> frames;
@@ -252,6 +250,11 @@ void AddTrackClass(py::module_& module) {
   py::class_<Track>(module, "Track",
                     "The tip in every frame, in R. Rows whose status is \"lost\" are zeros.")
       .def("__len__", [](const Track& t) { return t.frames.size(); })
+      .def("__repr__",
+           [](const Track& t) {
+             return fmt::format("<Track of {} frames, {}: {}>", t.frames.size(),
+                                Name(t.judgement.grade), t.judgement.says);
+           })
       .def(
           "__getitem__",
           [](const Track& t, py::ssize_t i) {

@@ -167,3 +167,11 @@ def test_a_users_code_passes_mypy_and_wrong_code_does_not(tmp_path):
     expected = {i for i, line in enumerate(lines, 1) if line.endswith("# WRONG")}
     found = {int(number) for number in re.findall(r"typed_use\.py:(\d+): error", done.stdout)}
     assert found == expected and len(expected) == 5, done.stdout + done.stderr
+
+
+def test_results_say_what_they_are():
+    recording = flextip.read_recording(SOURCE / "testdata/recordings/sample_0")
+    assert repr(recording) == "<Recording of wrist0, em0, strain0, load0, cam0, vision0>"
+    estimates = flextip.estimate(recording)
+    assert repr(estimates) == f"<Estimates of 1200 samples, good: {estimates.judgement.says}>"
+    assert repr(estimates.judgement).startswith("<Judgement good: ")
