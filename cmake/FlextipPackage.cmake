@@ -1,5 +1,5 @@
-# Debian packages by `cpack` in the build folder: flextip (the program, its man pages and completion)
-# and libflextip-dev (libraries and headers).
+# Debian packages by `cpack` in the build folder: flextip (the program, its man pages and completion),
+# libflextip-dev (libraries and headers) and, where it is built, python3-flextip (the module).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME flextip)
 set(CPACK_PACKAGE_CONTACT "the flextip project")
@@ -14,6 +14,15 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME flextip)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libflextip-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libeigen3-dev, libfmt-dev, libopencv-dev, libapriltag-dev, libyaml-cpp-dev, nlohmann-json3-dev, libtbb-dev, libceres-dev")
+if(FLEXTIP_BUILD_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-flextip)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python module flextip")
+endif()
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "The program flextip")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Libraries, headers, find_package and pkg-config files")
 include(CPack)

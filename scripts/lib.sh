@@ -10,11 +10,17 @@ BUILD_PACKAGES=(
 )
 # The documentation site (scripts/site).
 SITE_PACKAGES=(mkdocs mkdocs-material python3)
+# The Python module with its tests and notebooks.
+PYTHON_PACKAGES=(
+  pybind11-dev python3-dev python3-numpy python3-pytest python3-nbconvert python3-ipykernel
+  python3-matplotlib python3-mypy
+)
 # More for tests, benchmarks, the thesis's figures and checks; librosbag-storage-dev reads bags of
 # ROS 1, opencv-doc holds real chessboard pictures, poppler-utils turns printed pages into pictures.
 TEST_PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev librosbag-storage-dev
-  clang clang-format clang-tidy groff-base opencv-doc poppler-utils "${SITE_PACKAGES[@]}"
+  clang clang-format clang-tidy groff-base opencv-doc poppler-utils
+  "${SITE_PACKAGES[@]}" "${PYTHON_PACKAGES[@]}"
 )
 NODE_PACKAGES=(nodejs npm)
 

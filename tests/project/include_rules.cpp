@@ -51,6 +51,7 @@ const std::map<std::string, Names>& Arrows() {
        {"core", "kinematics", "estimation", "control", "pipeline", "recording", "simulation",
         kClosedLoop, "workspace", "report", "apps"}},
       {"apps", libraries},
+      {"python", libraries},
       {"examples", libraries},
       {"testdata", {"core", "recording", "simulation", "bench"}},
       {"bench", With(libraries, {"testdata"})},
@@ -77,11 +78,12 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"nlohmann/",
        {"exchange", "report", "exports", "reproduction", "apps", "bench", "testdata", "tests"}},
       {"CLI/", {"reproduction", "apps", "bench", "testdata"}},
+      {"pybind11/", {"python"}},
   };
   return foreign;
 }
 /// Headers of these folders are a program's own, not a library's.
-const Names kPrograms{"apps", "bench", "tests", "testdata", "reproduction"};
+const Names kPrograms{"apps", "bench", "tests", "testdata", "reproduction", "python"};
 
 struct Include {
   std::size_t line = 0;
