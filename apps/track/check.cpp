@@ -36,7 +36,7 @@ double ShareOf(const TrackOptions& options, const TrackInput& input) {
 std::vector<plausibility::Finding> CheckTrackInput(const TrackOptions& options, TrackInput& input,
                                                    bool quiet) {
   plausibility::CommandUse use = UseOfTrack(!options.no_model && input.recording.wrist0);
-  if (!options.IsRecording()) use.unknown = {"port", "length", "stiffness"};
+  if (!options.IsRecording()) use.unknown = {"port", "length", "stiffness", "cam0.T_RC"};
   const InputCheck check{options.InputName(), options.no_check, quiet};
   const auto frames = options.no_check ? nullptr : PicturesOf(options, input);
   if (!input.recording.cam0->has_T_RC) use.unknown.insert("cam0.T_RC");

@@ -7,9 +7,9 @@
 namespace flextip {
 namespace {
 
-constexpr double kCoarse_s = 0.005;  // a hand moves a millimetre in that time
-constexpr double kSurely = 3.0;      // standard deviations
-constexpr double kPoorMisfit = 0.3;  // of the stream's variance
+constexpr double kCoarse_s = 0.005;    // a hand moves a millimetre in that time
+constexpr double kSurely = 3.0;        // standard deviations
+constexpr double kPoorMisfit = 0.005;  // with 0.02 the offset was off by 0.15 s
 
 double Sd(const StreamClock& clock) { return std::sqrt(clock.covariance(0, 0)); }
 
@@ -37,8 +37,8 @@ void AddReasons(const StreamClock& clock, CalibrationVerdict& verdict) {
   }
   if (clock.misfit > kPoorMisfit) {
     verdict.Beware(fmt::format(
-        "{}: {:.0f} % of its motion is not that of {}; the offset holds as far as the rest is no "
-        "delayed part of it",
+        "{}: {:.2g} % of its motion is not that of {}; a part of it that follows late counts as "
+        "offset, up to 0.2 s beyond the deviation",
         clock.stream, 100.0 * clock.misfit, clock.by.empty() ? clock.reference : clock.by));
   }
   const double rate_sd = std::sqrt(clock.covariance(1, 1));

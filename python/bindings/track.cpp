@@ -100,7 +100,8 @@ double RmsOfFrames(const Series<TipTrack>& frames, Counts counts, Get get) {
 VisionStream VisionOf(const Series<TipTrack>& frames, const TrackInput& input) {
   VisionStream stream;
   stream.rate_hz = input.recording.cam0->calibration.rate_hz;
-  stream.comment = input.camera_has_pose ? "tip by tags" : "tip by tags, in the camera's frame";
+  stream.comment =
+      input.recording.cam0->has_T_RC ? "tip by tags" : "tip by tags, in the camera's frame";
   stream.direction_noise_rad = RmsOfFrames(
       frames, [](const TipTrack&) { return true; },
       [](const TipTrack& t) { return t.direction_noise_rad; });
@@ -140,7 +141,7 @@ Track TrackWhole(const TrackRequest& what) {
       track.frames, [](const TipTrack& t) { return t.source == TrackSource::kCorners; },
       [](const TipTrack& t) { return t.rms_px; });
   track.totals.family = input.recording.tags0->family;
-  track.totals.camera_has_pose = input.camera_has_pose;
+  track.totals.camera_has_pose = input.recording.cam0->has_T_RC;
   track.judgement = JudgeTrack(track.totals);
   track.vision0 = VisionOf(track.frames, input);
   track.warnings = std::move(input.warnings);

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kSample = std::string(FLEXTIP_SOURCE_DIR) + "/testdata/recordings/sample_0";
+const std::string kSample = std::string(FLEXTIP_SOURCE_DIR) + "/testdata/recordings/sample_4";
 
 /// The sample with em0 late by so many seconds; written into `folder`.
 std::string WithEmLate(const TestFolder& folder, double late_s) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "recording/recording_reader.h"
 #include "tests/apps/run_program.h"
 
 namespace flextip {
@@ -74,7 +75,7 @@ TEST(ImportCommand, OptionsReplaceWhatTheMappingSays) {
   EXPECT_THAT(done.out, testing::Not(HasSubstr("assumed wrist0.units.length")));
   EXPECT_THAT(done.out, HasSubstr("first at -2.5 s: 1, 0, 0.205 m"));
   EXPECT_THAT(ReadText(folder / "b/import.yaml"), HasSubstr("day2/robot.csv"));
-  EXPECT_THAT(ReadText(folder / "b/wrist0/sensor.yaml"), HasSubstr("position_noise_m: 0.0002"));
+  EXPECT_EQ(ReadRecording(folder / "b").recording.wrist0->position_noise_m, 0.0002);
 }
 
 TEST(ImportCommand, NamesTheOptionForWhatIsMissing) {

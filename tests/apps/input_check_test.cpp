@@ -72,7 +72,7 @@ void EmInMillimetres(Recording& r) {
 TEST_F(InputCheck, SaysWhatIsWrongBeforeTheAnswer) {
   Write(EmInMillimetres);
   for (const std::vector<std::string>& command :
-       {std::vector<std::string>{"estimate"}, {"diagnose"}, {"calibrate", "em"}}) {
+       {std::vector<std::string>{"estimate"}, {"diagnose"}}) {
     const ProgramResult result = Run(command, {"--quiet"});
     EXPECT_THAT(result.err, AllOf(HasSubstr("wrong: em0: positions look like millimetres"),
                                   HasSubstr("  mend: import with --unit em0=mm")));
