@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/input/calibration_input.h"
 #include "apps/common/commands.h"
+#include "apps/common/input/calibration_input.h"
 #include "apps/common/input/findings.h"
 #include "apps/common/output.h"
 #include "core/error.h"

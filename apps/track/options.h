@@ -24,8 +24,7 @@ struct TrackOptions {
   std::string end;          ///< the shaft's end, "round" or "flat", where the outline is used
   double diameter_m = 0.0;  ///< the shaft's diameter; 0: the recording's
   long max_frames = 0;      ///< 0: all
-  bool no_model = false, overlay = false, force = false, resume = false,
-       no_check = false;
+  bool no_model = false, overlay = false, force = false, resume = false, no_check = false;
   bool until_stopped = false;  ///< --live was given: Ctrl-C ends the run with its results
 
   /// Forgets camera, collar and rate of a defaults file where the source is a recording.

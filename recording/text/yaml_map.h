@@ -35,7 +35,7 @@ class YamlMap {
   std::int64_t Integer(const std::string& key) const;
 
   bool IsList(const std::string& key) const;
-  bool IsText(const std::string& key) const;  ///< a single word or number
+  bool IsText(const std::string& key) const;                  ///< a single word or number
   std::vector<double> Numbers(const std::string& key) const;  ///< a list of finite numbers
   std::vector<double> Numbers(const std::string& key, std::size_t count) const;
   std::vector<std::string> Texts(const std::string& key) const;  ///< a list

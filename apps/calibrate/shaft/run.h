@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/output.h"
 #include "apps/common/input/recording_input.h"
+#include "apps/common/output.h"
 #include "calibration/shaft/known_loads.h"
 #include "calibration/verdict/verdict.h"
 #include "report/figure.h"
