@@ -161,15 +161,16 @@ void AddReadings(py::module_& module) {
   AddForceReadings(module);
   py::class_<SensorReadings> readings(module, "Readings",
                                       "The newest sample of each sensor. None: no sample.");
-  readings.def(py::init([](std::optional<WristReading> wrist, std::optional<TipReading> tip,
-                           std::optional<EmReading> em0, std::optional<EmReading> em1,
-                           std::optional<StrainReading> strain, std::optional<LoadReading> load) {
-                 return SensorReadings{wrist, tip, em0, em1, strain, load};
-               }),
-               py::arg("wrist") = std::nullopt, py::arg("tip") = std::nullopt,
-               py::arg("em0") = std::nullopt, py::arg("em1") = std::nullopt,
-               py::arg("strain") = std::nullopt, py::arg("load") = std::nullopt,
-               "em0: on the shaft; em1: on the port.");
+  readings.def(
+      py::init([](const std::optional<WristReading>& wrist, const std::optional<TipReading>& tip,
+                  const std::optional<EmReading>& em0, const std::optional<EmReading>& em1,
+                  const std::optional<StrainReading>& strain,
+                  const std::optional<LoadReading>& load) {
+        return SensorReadings{wrist, tip, em0, em1, strain, load};
+      }),
+      py::arg("wrist") = std::nullopt, py::arg("tip") = std::nullopt, py::arg("em0") = std::nullopt,
+      py::arg("em1") = std::nullopt, py::arg("strain") = std::nullopt,
+      py::arg("load") = std::nullopt, "em0: on the shaft; em1: on the port.");
   AddSensor(readings, "wrist", &SensorReadings::wrist, "The wrist.");
   AddSensor(readings, "tip", &SensorReadings::tip, "The tip by vision.");
   AddSensor(readings, "em0", &SensorReadings::em0, "The EM sensor on the shaft.");

@@ -338,17 +338,18 @@ void AddTrack(py::module_& module) {
   AddOptions(module);
   AddTrackTotals(module);
   AddTrackClass(module);
-  const auto track =
-      [](const std::filesystem::path& source, std::optional<std::filesystem::path> camera,
-         std::optional<std::filesystem::path> collar, std::optional<double> rate_hz,
-         const Paths& calibrations, std::optional<std::pair<double, double>> black_white,
-         const TrackerOptions& options, bool with_model, std::optional<std::string> outline,
-         std::optional<double> diameter_m, std::optional<long> max_frames,
-         std::optional<std::filesystem::path> truth) {
-        const TrackRequest what{source,      camera,  collar,     truth,   rate_hz,    calibrations,
-                                black_white, outline, diameter_m, options, with_model, max_frames};
-        return WithoutGil([&] { return TrackWhole(what); });
-      };
+  using Path = std::filesystem::path;
+  const auto track = [](const Path& source, const std::optional<Path>& camera,
+                        const std::optional<Path>& collar, std::optional<double> rate_hz,
+                        const Paths& calibrations,
+                        std::optional<std::pair<double, double>> black_white,
+                        const TrackerOptions& options, bool with_model,
+                        const std::optional<std::string>& outline, std::optional<double> diameter_m,
+                        std::optional<long> max_frames, const std::optional<Path>& truth) {
+    const TrackRequest what{source,      camera,  collar,     truth,   rate_hz,    calibrations,
+                            black_white, outline, diameter_m, options, with_model, max_frames};
+    return WithoutGil([&] { return TrackWhole(what); });
+  };
   module.def("track", track, py::arg("source"), py::kw_only(), py::arg("camera") = std::nullopt,
              py::arg("collar") = std::nullopt, py::arg("rate_hz") = std::nullopt,
              py::arg("calibrations") = Paths(), py::arg("black_white") = std::nullopt,

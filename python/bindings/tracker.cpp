@@ -21,6 +21,7 @@ InstrumentTrackerSetup TrackerSetupFor(const Recording& recording, const Tracker
 
 std::vector<Image> PicturesFrom(const std::vector<std::optional<py::array>>& pictures) {
   std::vector<Image> images;
+  images.reserve(pictures.size());
   for (const auto& picture : pictures) {
     images.push_back(picture ? ImageFrom(*picture) : Image());
   }
@@ -29,6 +30,7 @@ std::vector<Image> PicturesFrom(const std::vector<std::optional<py::array>>& pic
 
 std::vector<const Image*> PointersTo(const std::vector<Image>& images) {
   std::vector<const Image*> pointers;
+  pointers.reserve(images.size());
   for (const Image& image : images) pointers.push_back(image.Empty() ? nullptr : &image);
   return pointers;
 }
