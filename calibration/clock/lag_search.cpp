@@ -17,7 +17,7 @@ constexpr double kRidge = 1e-6;  // of a feature's variance
 
 std::vector<double> Speeds(const SmoothMotion& motion, int rows) {
   std::vector<double> speeds;
-  for (double t = motion.Begin_s(); t <= motion.End_s(); t += kSpeedStep_s) {
+  for (double t = motion.BeginSeconds(); t <= motion.EndSeconds(); t += kSpeedStep_s) {
     speeds.push_back(motion.SpeedAt(t, rows));
   }
   return speeds;
@@ -85,7 +85,7 @@ std::vector<double> LikelyOffsets(const SmoothMotion& target, int target_rows,
                                   const SmoothMotion& reference, int reference_rows,
                                   double most_offset_s, double least_overlap_s, std::size_t count) {
   const auto a = Speeds(target, target_rows), b = Speeds(reference, reference_rows);
-  const double begins_s = target.Begin_s() - reference.Begin_s();
+  const double begins_s = target.BeginSeconds() - reference.BeginSeconds();
   const auto most = static_cast<long>(most_offset_s / kSpeedStep_s);
   std::vector<std::pair<double, double>> peaks;  // correlation, offset
   double before = kNone, at = kNone;

@@ -72,7 +72,7 @@ Motion Plain(const std::string& stream, const std::string& quantity,
 
 }  // namespace
 
-double Motion::Period_s() const {
+double Motion::PeriodSeconds() const {
   std::vector<double> steps;
   for (std::size_t i = 1; i < t_s.size(); ++i) steps.push_back(t_s[i] - t_s[i - 1]);
   return steps.empty() ? 0.0 : Median(steps);

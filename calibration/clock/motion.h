@@ -22,7 +22,7 @@ struct Motion {
 
   std::size_t Count() const { return t_s.size(); }
   /// Returns the median time between samples; 0 with less than two.
-  double Period_s() const;
+  double PeriodSeconds() const;
 };
 
 struct Motions {

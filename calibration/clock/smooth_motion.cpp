@@ -17,7 +17,7 @@ constexpr double kShortest_s = 0.03;  // hands and arms move below 3 Hz
 }  // namespace
 
 double UsualBandwidth(const Motion& motion) {
-  return std::max(kShortest_s, 2.5 * motion.Period_s());
+  return std::max(kShortest_s, 2.5 * motion.PeriodSeconds());
 }
 
 SmoothMotion::SmoothMotion(const Motion& motion, double bandwidth_s)
@@ -63,7 +63,7 @@ bool SmoothMotion::Fit(const Motion& motion, double bandwidth_s, double t_s, std
   return true;
 }
 
-double SmoothMotion::End_s() const {
+double SmoothMotion::EndSeconds() const {
   return first_s_ + step_s_ * static_cast<double>(std::max<Eigen::Index>(values_.cols(), 1) - 1);
 }
 

@@ -20,8 +20,8 @@ class SmoothMotion {
   bool At(double t_s, Eigen::VectorXd& value, Eigen::VectorXd& velocity) const;
   /// Returns the length of the velocity of the first `rows` rows; NaN where it is not known.
   double SpeedAt(double t_s, int rows) const;
-  double Begin_s() const { return first_s_; }
-  double End_s() const;
+  double BeginSeconds() const { return first_s_; }
+  double EndSeconds() const;
 
  private:
   bool Fit(const Motion& motion, double bandwidth_s, double t_s, std::size_t& from,

@@ -74,7 +74,7 @@ def unmarked(text):
     blocks, prose = parse(text)
     found = []
     for block in blocks:
-        if block.language == "sh" or "not run" in block.marks:
+        if block.language not in ("", "text") or "not run" in block.marks:  # Python, YAML, ...
             continue
         lines = enumerate(block.text.splitlines(), block.line)
         found += [number for number, line in lines if COMMAND.match(line)]
