@@ -74,7 +74,8 @@ def unmarked(text):
     blocks, prose = parse(text)
     found = []
     for block in blocks:
-        if block.language not in ("", "text") or "not run" in block.marks:  # Python, YAML, ...
+        # Lines of other languages only look like commands.
+        if block.language in ("sh", "python", "yaml", "toml") or "not run" in block.marks:
             continue
         lines = enumerate(block.text.splitlines(), block.line)
         found += [number for number, line in lines if COMMAND.match(line)]

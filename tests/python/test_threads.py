@@ -27,12 +27,12 @@ class Counter(threading.Thread):
 
 
 PRESS = TESTDATA / "scenarios/press.yaml"
+# Reading takes a few milliseconds: too short to be seen by a counter.
 CALLS = {
     "estimate": lambda: flextip.estimate(RECORDING),
     "track": lambda: flextip.track(RECORDINGS / "rendered"),
     "diagnose": lambda: flextip.diagnose(RECORDING, closed_loop=False),
     "simulate": lambda: flextip.simulate(PRESS, controllers=["rod-track"]),
-    "read_recording": lambda: flextip.read_recording(RECORDINGS / "sample_2"),
 }
 
 
@@ -64,7 +64,8 @@ class Stop(Exception):
     pass
 
 
-LONG_CALLS = {
+LONG_# Reading takes a few milliseconds: too short to be seen by a counter.
+CALLS = {
     "estimate": lambda: flextip.estimate(RECORDING, window_samples=10),
     "simulate": lambda: flextip.simulate(PRESS),
 }
