@@ -64,8 +64,7 @@ class Stop(Exception):
     pass
 
 
-LONG_# Reading takes a few milliseconds: too short to be seen by a counter.
-CALLS = {
+LONG_CALLS = {
     "estimate": lambda: flextip.estimate(RECORDING, window_samples=10),
     "simulate": lambda: flextip.simulate(PRESS),
 }
