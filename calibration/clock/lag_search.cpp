@@ -103,7 +103,8 @@ std::vector<double> LikelyOffsets(const SmoothMotion& target, int target_rows,
   }
   std::sort(peaks.begin(), peaks.end());
   std::vector<double> offsets;
-  for (const auto& [negative, offset_s] : peaks) {
+  for (const auto& peak : peaks) {
+    const double offset_s = peak.second;
     const bool is_new = std::none_of(offsets.begin(), offsets.end(), [&](double other) {
       return std::abs(other - offset_s) < kApart_s;
     });
