@@ -17,14 +17,13 @@
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "core/error.h"
-#include "diagnosis/model/extended_instrument.h"
+#include "diagnosis/model/extended_model.h"
 #include "recording/recording_writer.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "recording/truth.h"
 #include "report/pages.h"
-#include "simulation/closed_loop/scenario.h"
-#include "simulation/sensors/camera_view.h"
+#include "simulation/closed_loop/scenario_run.h"
 
 namespace flextip {
 namespace {
@@ -124,31 +123,17 @@ simulation::LoopResult RunOne(const simulation::Scenario& scenario, ControllerKi
                               const simulation::Laparoscope* laparoscope, bool keep_frames,
                               const fs::path& folder,
                               const std::function<void(int, int)>& progress) {
-  simulation::LoopSetup setup = scenario.loop;
-  setup.controller.kind = kind;
   fs::create_directories(folder);
   std::optional<FrameFiles> frames;
-  std::optional<simulation::LoopCamera> camera;
-  if (laparoscope != nullptr) {
-    frames.emplace(folder, keep_frames);
-    camera.emplace(simulation::LoopCamera{
-        *laparoscope, scenario.tracker,
-        [&frames](TimeNs t_ns, const Image& image) { frames->Add(t_ns, image); }});
-  }
-  simulation::LoopResult result =
-      simulation::RunClosedLoop(setup, camera ? &*camera : nullptr, progress);
+  if (laparoscope != nullptr) frames.emplace(folder, keep_frames);
+  simulation::LoopResult result = simulation::RunController(
+      scenario, kind, laparoscope,
+      [&frames](TimeNs t_ns, const Image& image) { frames->Add(t_ns, image); }, progress);
   if (frames) frames->Finish(result.recording);
   WriteRecording(folder, result.recording);
   WriteTruth(folder, result.truth);
   WriteDeviation(folder / "deviation.csv", result);
   return result;
-}
-
-void RefuseWhatIsNotRendered(const std::string& file, const simulation::LoopSetup& loop) {
-  const bool late = loop.sensor_effects.camera_latency_s != 0.0;
-  if (!late && loop.plant.effects.tip_compliance_m_N == 0.0) return;
-  throw InputError(fmt::format("{}: effects: {} is not rendered: run it without --render", file,
-                               late ? "camera_latency" : "tip_compliance"));
 }
 
 /// Throws InputError where --frames-of names a controller that does not run.
@@ -170,33 +155,17 @@ bool KeepsFrames(const SimulateOptions& options, ControllerKind kind) {
 
 void RunSimulate(const SimulateOptions& options, bool quiet) {
   simulation::Scenario scenario = simulation::ReadScenario(options.scenario);
-  const std::string file = options.scenario.string();
-  if (options.render && !scenario.has_camera) {
-    throw InputError(file + ": --render needs a section camera");
-  }
-  if (!options.render && !scenario.loop.sensors.tip) {
-    throw InputError(file + ": without --render the sensors need a section tip");
-  }
-  if (options.render) RefuseWhatIsNotRendered(file, scenario.loop);
+  simulation::RequireRunnable(scenario, options.scenario, options.render);
   CheckFramesOf(options, scenario);
   std::vector<fs::path> inputs = {options.scenario};
   if (!options.model.empty()) {
     inputs.push_back(options.model);
-    const diagnosis::ExtendedModel model = diagnosis::ReadModel(options.model);
-    const Recording& base = scenario.loop.base;
-    scenario.loop.model = [model, &base] {
-      return std::make_unique<diagnosis::ExtendedInstrument>(model, base);
-    };
+    simulation::UseModel(diagnosis::ReadModel(options.model), scenario);
   }
   OutputFolder output(options.out, "simulate", {.force = options.force, .inputs = inputs});
   output.Warn(scenario.warnings);
   std::optional<simulation::Laparoscope> laparoscope;
-  if (options.render) {
-    const simulation::LoopSetup& loop = scenario.loop;
-    laparoscope.emplace(simulation::TrueCamera(loop.base.cam0->calibration, loop.sensor_effects),
-                        simulation::TrueCollar(*loop.base.tags0, loop.sensor_effects),
-                        scenario.laparoscope);
-  }
+  if (options.render) laparoscope.emplace(simulation::LaparoscopeOf(scenario));
   const std::size_t runs = scenario.controllers.size();
   std::vector<simulation::LoopResult> results(runs);
   {

@@ -97,7 +97,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   pipeline/instrument_estimator.h
   pipeline/instrument_tracker.h
   pipeline/judge_estimates.h
-  pipeline/judge_track.h
+  pipeline/judge_track.h pipeline/track_totals.h
   pipeline/sensor_readings.h
   pipeline/tip_predictor.h
   recording/calibrations/em_field.h

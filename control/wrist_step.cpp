@@ -11,20 +11,6 @@ constexpr double kNearest = 0.02, kFarthest = 0.98;  // of the wrist from the po
 
 }  // namespace
 
-ShaftProblem RodOf(const ShaftModel& model, const Eigen::Vector3d& p_RW) {
-  ShaftProblem problem;
-  problem.rod.rod = {model.instrument.length_m,
-                     model.instrument.bending_stiffness_Nm2,
-                     p_RW + model.wrist_shift_m,
-                     model.p_RP,
-                     model.f_tip_N,
-                     model.weight_N_m,
-                     model.instrument.stiffness_taper};
-  problem.rod.effects = model.effects;
-  problem.tip_compliance_m_N = model.tip_compliance_m_N;
-  return problem;
-}
-
 Eigen::Matrix3d TrustedStiffness(const Eigen::Matrix3d& K, const Eigen::Matrix3d& compliance,
                                  double limit) {
   const SymmetricEigen push(-0.5 * (K + K.transpose()));

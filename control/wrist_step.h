@@ -4,12 +4,8 @@
 #include <Eigen/Dense>
 
 #include "estimation/shaft_model.h"
-#include "estimation/shaft_rod.h"
 
 namespace flextip {
-
-/// The rod of `model` with the wrist measured at `p_RW`.
-ShaftProblem RodOf(const ShaftModel& model, const Eigen::Vector3d& p_RW);
 
 /// The tissue's stiffness as far as it may be relied on. The loop's gain along a direction is what
 /// the Jacobian assumes over what is there, (1 - c k) / (1 - c k_true) with c the shaft's

@@ -164,6 +164,14 @@ void DescribeRecording(const Work& work, const Selection& selection, const Recor
         sd.segment(kChannels[c].first_row, kChannels[c].rows).squaredNorm() / kChannels[c].rows);
 }
 
+void RequireKnown(const DiagnoseOptions& options) {
+  for (const std::string& effect : options.without) {
+    if (MakeEffect(effect, options.own_effects)) continue;
+    throw InputError(
+        fmt::format("{}, to be left out: no effect of that name is in the catalogue", effect));
+  }
+}
+
 }  // namespace
 
 std::string Joined(const Verdict& verdict) {
@@ -172,8 +180,13 @@ std::string Joined(const Verdict& verdict) {
   return joined;
 }
 
+bool NamesEffects(const Verdict& verdict) {
+  return verdict != Verdict{"none"} && verdict != Verdict{"unknown"};
+}
+
 DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                          const DiagnoseOptions& options) {
+  RequireKnown(options);
   DiagnosisResult result;
   Work work(recording, name, options);
   ReplayBase(work, name);
@@ -199,8 +212,7 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
   result.verdict = probabilities.hypotheses.front().verdict;
   const WeighedHypothesis& known = selection.BestKnown();
   DescribeParameters(work, selection, known, result);
-  if (result.verdict != Verdict{"none"} && result.verdict != Verdict{"unknown"})
-    DescribeAmbiguity(work, selection, known, result);
+  if (NamesEffects(result.verdict)) DescribeAmbiguity(work, selection, known, result);
   work.base.TakeSettings(work.extended);
   if (options.measure_gain) {
     const HeldOut heldout = MeasureHeldOut(work.base, work.extended, selection, known);

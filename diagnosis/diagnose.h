@@ -24,6 +24,8 @@ struct DiagnoseOptions {
 using Verdict = std::vector<std::string>;
 /// Returns "a" or "a+b".
 std::string Joined(const Verdict& verdict);
+/// Returns whether the verdict names effects: it is neither {"none"} nor {"unknown"}.
+bool NamesEffects(const Verdict& verdict);
 
 struct HypothesisProbability {
   Verdict verdict;
@@ -104,8 +106,8 @@ struct DiagnosisResult {
   std::vector<std::string> warnings;
 };
 
-/// Throws InputError where nothing can be judged (sample_set.h); `name` is the recording's in
-/// messages.
+/// Throws InputError where nothing can be judged (sample_set.h) and for names in `without` that
+/// no effect has; `name` is the recording's in messages.
 DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                          const DiagnoseOptions& options = {});
 

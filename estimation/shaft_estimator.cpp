@@ -98,13 +98,7 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
   estimate.model = StraightModel(options_, change);
   if (!AllFinite(z)) return estimate;
 
-  ShaftProblem shaft;
-  shaft.rod.rod.length_m = estimate.model.instrument.length_m;
-  shaft.rod.rod.bending_stiffness_Nm2 = estimate.model.instrument.bending_stiffness_Nm2;
-  shaft.rod.rod.stiffness_taper = estimate.model.instrument.stiffness_taper;
-  shaft.rod.rod.q_weight = estimate.model.weight_N_m;
-  shaft.rod.effects = change.effects;
-  shaft.tip_compliance_m_N = change.tip_compliance_m_N;
+  const ShaftProblem shaft = RodOf(estimate.model, z.p_RW);
   RodPrior prior = Prior(options_, z, estimate.model);
   prior.mean.segment<3>(3) += port_shift_m_;
   prior.port_whitening = port_whitening_;

@@ -36,6 +36,20 @@ double FromWrist(const RodStation& station, double length_m) {
 
 }  // namespace
 
+ShaftProblem RodOf(const ShaftModel& model, const Eigen::Vector3d& p_RW) {
+  ShaftProblem problem;
+  problem.rod.rod = {model.instrument.length_m,
+                     model.instrument.bending_stiffness_Nm2,
+                     p_RW + model.wrist_shift_m,
+                     model.p_RP,
+                     model.f_tip_N,
+                     model.weight_N_m,
+                     model.instrument.stiffness_taper};
+  problem.rod.effects = model.effects;
+  problem.tip_compliance_m_N = model.tip_compliance_m_N;
+  return problem;
+}
+
 bool IsPlain(const RodEffects& e) {
   return e.curvature_1_m.isZero(0.0) && e.port_compliance_m_N == 0.0 &&
          e.wrist_compliance_m_N == 0.0 && e.port_couple_Nm.isZero(0.0) && e.port_friction == 0.0 &&

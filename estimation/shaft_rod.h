@@ -6,6 +6,7 @@
 #include <array>
 #include <span>
 
+#include "estimation/shaft_model.h"
 #include "kinematics/effect_rod.h"
 #include "kinematics/rod.h"
 
@@ -18,6 +19,9 @@ struct ShaftProblem {
   EffectRodProblem rod;
   double tip_compliance_m_N = 0.0;
 };
+
+/// Returns the rod of `model` with the wrist measured at `p_RW` (R, m).
+ShaftProblem RodOf(const ShaftModel& model, const Eigen::Vector3d& p_RW);
 
 /// A place on the shaft: the instrument's y axis there and its derivative beside the rest.
 struct ShaftSection : RodSection {

@@ -71,12 +71,7 @@ void WindowEstimator::Add(const Measurements& z, const ShaftChange& change,
   WindowSample sample;
   sample.number = updates_;
   sample.measurements = z;
-  sample.shaft.rod.rod.length_m = model.instrument.length_m;
-  sample.shaft.rod.rod.bending_stiffness_Nm2 = model.instrument.bending_stiffness_Nm2;
-  sample.shaft.rod.rod.stiffness_taper = model.instrument.stiffness_taper;
-  sample.shaft.rod.rod.q_weight = model.weight_N_m;
-  sample.shaft.rod.effects = change.effects;
-  sample.shaft.tip_compliance_m_N = change.tip_compliance_m_N;
+  sample.shaft = RodOf(model, z.p_RW);
   const Eigen::Vector3d p_wrist = z.p_RW + model.wrist_shift_m;
   sample.prior.mean << p_wrist, options_.estimator.p_RP + change.port_shift_m,
       Eigen::Vector3d::Zero();

@@ -67,16 +67,12 @@ TipPredictor::TipPredictor(const Instrument& instrument, const Eigen::Vector3d& 
 std::optional<TipPredictor::RodTip> TipPredictor::SolveRod(const Measurements& z,
                                                            const Eigen::Vector3d& p_RP,
                                                            const Eigen::Vector3d& f_tip_N) {
-  const Instrument& instrument = estimator_options_.instrument;
-  ShaftProblem problem;
-  problem.rod.rod.length_m = instrument.length_m;
-  problem.rod.rod.bending_stiffness_Nm2 = instrument.bending_stiffness_Nm2;
-  problem.rod.rod.stiffness_taper = instrument.stiffness_taper;
-  problem.rod.rod.p_wrist = z.p_RW;
-  problem.rod.rod.p_port = p_RP;
-  problem.rod.rod.f_tip = f_tip_N;
-  problem.rod.rod.q_weight = instrument.mass_per_length_kg_m * estimator_options_.gravity_m_s2;
-  const ShaftRodState rod = rod_.Solve(problem);
+  ShaftModel model;
+  model.instrument = estimator_options_.instrument;
+  model.p_RP = p_RP;
+  model.weight_N_m = model.instrument.mass_per_length_kg_m * estimator_options_.gravity_m_s2;
+  model.f_tip_N = f_tip_N;
+  const ShaftRodState rod = rod_.Solve(RodOf(model, z.p_RW));
   if (!rod.IsUsable()) return {};
   RodTip tip;
   tip.has_roll = z.R_RW.has_value();

@@ -15,10 +15,8 @@
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/diagnose/result_files.h"
-#include "core/error.h"
 #include "diagnosis/diagnose.h"
 #include "diagnosis/judge_diagnosis.h"
-#include "diagnosis/model/catalogue.h"
 #include "diagnosis/model/extended_model.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
@@ -48,20 +46,7 @@ simulation::ClosedLoopGain MeasureGain(const Recording& recording,
   return gain;
 }
 
-bool IsKnown(const diagnosis::DiagnosisResult& result) {
-  return result.verdict != diagnosis::Verdict{"none"} &&
-         result.verdict != diagnosis::Verdict{"unknown"};
-}
-
-void CheckNames(const std::vector<std::string>& effects) {
-  for (const std::string& name : effects)
-    if (!diagnosis::MakeEffect(name))
-      throw InputError(
-          fmt::format("--without {}: no effect of that name is in the catalogue", name));
-}
-
 void Run(const Options& options, bool quiet) {
-  CheckNames(options.without);
   const InputRead read = ReadInput(options.input, UseOfDiagnose(), quiet);
   const Recording& recording = read.recording;
   OutputFolder output(options.input.out, "diagnose",
@@ -73,7 +58,8 @@ void Run(const Options& options, bool quiet) {
   output.Warn(result.warnings);
   const diagnosis::ExtendedModel model = diagnosis::FromResult(result);
   std::optional<simulation::ClosedLoopGain> gain;
-  if (!options.no_closed_loop && IsKnown(result)) gain = MeasureGain(recording, model, output);
+  if (!options.no_closed_loop && diagnosis::NamesEffects(result.verdict))
+    gain = MeasureGain(recording, model, output);
   WriteTextFile(output.folder() / "diagnosis.json", DiagnosisJson(result, gain ? &*gain : nullptr));
   WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result.residuals));
   diagnosis::WriteModel(output.folder() / "model.yaml", model);

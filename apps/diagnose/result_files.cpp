@@ -87,7 +87,7 @@ nlohmann::json Compared(const simulation::ControllerGain& gain) {
 }  // namespace
 
 std::string DiagnosisJson(const DiagnosisResult& result, const simulation::ClosedLoopGain* gain) {
-  const bool known = result.verdict != Verdict{"none"} && result.verdict != Verdict{"unknown"};
+  const bool known = NamesEffects(result.verdict);
   Json json;
   json["verdict"] = result.verdict.front();
   json["verdicts"] = result.verdict;

@@ -37,7 +37,7 @@ std::vector<plausibility::Finding> CheckTrackInput(const TrackOptions& options, 
                                                    bool quiet) {
   plausibility::CommandUse use = UseOfTrack(!options.no_model && input.recording.wrist0);
   if (!options.IsRecording()) use.unknown = {"port", "length", "stiffness", "cam0.T_RC"};
-  const InputCheck check{options.InputName(), options.no_check, quiet};
+  const InputCheck check{options.no_check, quiet};
   const auto frames = options.no_check ? nullptr : PicturesOf(options, input);
   if (!input.recording.cam0->has_T_RC) use.unknown.insert("cam0.T_RC");
   return CheckInput(check, use, input.recording, {frames.get(), ShareOf(options, input)});

@@ -7,8 +7,6 @@
 namespace flextip {
 namespace {
 
-double Rms(double squares, long count) { return std::sqrt(squares / static_cast<double>(count)); }
-
 void AddScores(const TrackSums& sums, nlohmann::json& summary) {
   const TipScore& ok = sums.score;
   const TipScore& predicted = sums.score_predicted;
@@ -44,23 +42,11 @@ nlohmann::json TrackSummary(const TrackSums& sums, int cameras, bool scored) {
                             {"frames_per_second", frames / std::max(sums.seconds, 1e-9)},
                             {"tags_per_frame", static_cast<double>(sums.tags) / frames}};
   if (sums.by_corners > 0) {
-    summary["rms_reprojection_error_px"] = Rms(sums.squared_rms_px, sums.by_corners);
+    summary["rms_reprojection_error_px"] = sums.Corners_px();
   }
-  if (sums.by_pixels > 0) summary["noise_grey"] = Rms(sums.squared_noise_grey, sums.by_pixels);
+  if (sums.by_pixels > 0) summary["noise_grey"] = sums.Noise_grey();
   if (scored) AddScores(sums, summary);
   return summary;
-}
-
-TrackTotals TrackTotalsOf(const TrackSums& sums, const TrackInput& input) {
-  return {.frames = sums.frames,
-          .ok = sums.ok,
-          .predicted = sums.predicted,
-          .lost = sums.lost,
-          .tags = sums.tags,
-          .rms_px = sums.by_corners > 0 ? Rms(sums.squared_rms_px, sums.by_corners) : 0.0,
-          .family = input.recording.tags0->family,
-          .camera_has_pose = input.recording.cam0->has_T_RC,
-          .score = sums.score};
 }
 
 }  // namespace flextip

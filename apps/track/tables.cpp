@@ -137,11 +137,8 @@ void TrackTables::Add(TimeNs t_ns, const TipTrack& track,
   AddVisionRow(vision_.rows, {t_ns, track.tip});
   AddTags(tags_.rows, t_ns, track.tags);
   AddFrame(t_ns, track, p_RE);
-  Count(track);
-  if (p_RE && track.tip.status == TipStatus::kOk) sums.score.Add(track.tip, *p_RE, T_RC);
-  if (p_RE && track.tip.status == TipStatus::kPredicted) {
-    sums.score_predicted.Add(track.tip, *p_RE, T_RC);
-  }
+  sums.Add(track);
+  if (p_RE) sums.Score(track, *p_RE, T_RC);
 }
 
 void TrackTables::AddFrame(TimeNs t_ns, const TipTrack& track,
@@ -168,23 +165,6 @@ void TrackTables::AddFrame(TimeNs t_ns, const TipTrack& track,
   row.EndRow();
 }
 
-void TrackTables::Count(const TipTrack& track) {
-  ++sums.frames;
-  sums.tags += static_cast<long>(track.tags.size());
-  sums.predicted += track.tip.status == TipStatus::kPredicted;
-  sums.lost += track.tip.status == TipStatus::kLost;
-  if (track.tip.status != TipStatus::kOk) return;
-  ++sums.ok;
-  sums.squared_direction_noise += track.direction_noise_rad * track.direction_noise_rad;
-  if (track.source == TrackSource::kCorners) {
-    ++sums.by_corners;
-    sums.squared_rms_px += track.rms_px * track.rms_px;
-  } else if (track.source == TrackSource::kPixels) {
-    ++sums.by_pixels;
-    sums.squared_noise_grey += track.noise_grey * track.noise_grey;
-  }
-}
-
 bool TrackTables::IsSaveDue() const { return sums.frames % kSaveEvery == 0; }
 
 void TrackTables::Save(const std::string& state) {
@@ -209,8 +189,7 @@ void TrackTables::Finish(const TagCollar& collar, double rate_hz, bool camera_ha
   VisionStream stream;
   stream.rate_hz = rate_hz;
   stream.comment = camera_has_pose ? "tip by tags" : "tip by tags, in the camera's frame";
-  stream.direction_noise_rad =
-      std::sqrt(sums.squared_direction_noise / static_cast<double>(std::max(1L, sums.ok)));
+  stream.direction_noise_rad = sums.DirectionNoise_rad();
   WriteVisionSettings(folder_ / "vision0", stream);
   WriteTags(folder_ / "tags0", collar);
   std::error_code ignored;

@@ -8,23 +8,11 @@
 #include <string>
 
 #include "core/tag_collar.h"
+#include "pipeline/track_totals.h"
 #include "recording/recording.h"
 #include "recording/text/csv.h"
-#include "recording/tip_score.h"
-#include "vision/tracking/tip_tracker.h"
 
 namespace flextip {
-
-/// What the summary needs of all frames so far.
-struct TrackSums {
-  long frames = 0, ok = 0, predicted = 0, lost = 0, tags = 0;
-  long by_pixels = 0, by_corners = 0;    ///< ok frames by the way the tip was found
-  double squared_direction_noise = 0.0;  ///< over ok
-  double squared_rms_px = 0.0;           ///< over by_corners
-  double squared_noise_grey = 0.0;       ///< over by_pixels
-  double seconds = 0.0;                  ///< reading and tracking
-  TipScore score, score_predicted;       ///< scores of ok frames, of predicted frames
-};
 
 /// FOLDER/vision0, FOLDER/tags0 and FOLDER/frames.csv. Rows reach the disk every ten frames, and
 /// with them FOLDER/unfinished.json: how far the tables are whole, the sums and the state up to
@@ -53,7 +41,6 @@ class TrackTables {
  private:
   void Resume();
   void AddFrame(TimeNs t_ns, const TipTrack& track, const std::optional<Eigen::Vector3d>& p_RE);
-  void Count(const TipTrack& track);
 
   std::filesystem::path folder_, mark_;
   std::string input_, state_;

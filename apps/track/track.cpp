@@ -23,6 +23,7 @@
 #include "apps/track/tables.h"
 #include "core/error.h"
 #include "pipeline/instrument_tracker.h"
+#include "pipeline/judge_track.h"
 #include "recording/frames/track_input.h"
 #include "recording/tip_score.h"
 #include "report/pages.h"
@@ -145,7 +146,8 @@ void RunTrack(TrackOptions options, bool quiet) {
   }
   tables.Finish(*input.recording.tags0, input.recording.cam0->calibration.rate_hz,
                 input.recording.cam0->has_T_RC);
-  Judgement judged = JudgeTrack(TrackTotalsOf(sums, input));
+  Judgement judged =
+      JudgeTrack(sums.Totals(input.recording.tags0->family, input.recording.cam0->has_T_RC));
   MentionFindings(findings, judged);
   summary["verdict"] = JudgementJson(judged);
   output.WriteSummary(summary);

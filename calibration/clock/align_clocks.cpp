@@ -69,11 +69,11 @@ OffsetMisfit Rival(const Motion& target, const SmoothMotion& reference,
 }
 
 /// What evidence differs by because two offsets compare parts of the streams that are not the same:
-/// two standard deviations of the sum of squares over these parts.
+/// four standard deviations of the sum of squares over these parts.
 double Chance(const Motion& target, const ClockFit& fit, double other_s) {
   const double span_s = std::max(1e-9, target.t_s.back() - target.t_s.front());
   const double apart = std::min(1.0, 2.0 * std::abs(other_s - fit.offset_s) / span_s);
-  return 2.0 * std::sqrt(2.0 * apart * fit.independent);
+  return 4.0 * std::sqrt(2.0 * apart * fit.independent);
 }
 
 StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_ns,

@@ -114,7 +114,7 @@ Probabilities MakeProbabilities(const Selection& selection, const ParameterLayou
   Probabilities result;
   for (const auto& [verdict, p] : all) {
     result.hypotheses.push_back({verdict, p, evidence[verdict]});
-    if (verdict != Verdict{"none"} && verdict != Verdict{"unknown"})
+    if (NamesEffects(verdict))
       for (const auto& name : verdict) result.presence[name] += p;
   }
   std::stable_sort(result.hypotheses.begin(), result.hypotheses.end(),

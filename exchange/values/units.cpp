@@ -35,6 +35,7 @@ const std::vector<KnownUnit>& KnownUnits() {
       {{"force", "kN", 1e3, 1}, {"kn"}},
       {{"moment", "Nm"}, {"nm", "n m", "n.m", "n*m", "n·m"}},
       {{"moment", "mNm", 1, 1e3}, {"mnm"}},
+      {{"moment", "Ncm", 1, 1e2}, {"ncm", "n cm", "n.cm", "n*cm", "n·cm"}},
       {{"moment", "Nmm", 1, 1e3}, {"nmm", "n mm", "n.mm", "n*mm", "n·mm"}},
   };
   return known;

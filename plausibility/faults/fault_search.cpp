@@ -125,7 +125,7 @@ class FaultSearch {
         faults.push_back({std::string(stream) + ".clock", stream,
                           fmt::format("{}: its clock looks {:.1f} s {} that of the other streams",
                                       stream, std::abs(shift), shift < 0.0 ? "ahead of" : "behind"),
-                          fmt::format("import with --clock {}={:.1f}", stream, shift),
+                          fmt::format("import with --offset {}={:.1f}", stream, shift),
                           [this, with](Scene& s) {
                             s.instants = TakeScene(recording_, with).instants;
                             if (!s.Has("vision0"))

@@ -119,7 +119,7 @@ class ClockCheck {
                         Finding{Severity::kDoubtful, rows.name + ".clock",
                                 fmt::format("{}: {:.0f} % of its time is wrist0's time as well",
                                             rows.name, 100.0 * overlap),
-                                fmt::format("import with --clock {}=SECONDS where its clock is "
+                                fmt::format("import with --offset {}=SECONDS where its clock is "
                                             "another one",
                                             rows.name)});
     }
@@ -192,7 +192,7 @@ Finding ClockFinding(const std::string& stream, double ahead_s, const std::strin
       Severity::kWrong, stream + ".clock",
       fmt::format("{}: its clock is {} {} that of the other streams ({})", stream, amount,
                   ahead_s > 0.0 ? "ahead of" : "behind", evidence),
-      fmt::format("import with --clock {}={:.9g}, or {} {} its time stamps", stream, -ahead_s,
+      fmt::format("import with --offset {}={:.9g}, or {} {} its time stamps", stream, -ahead_s,
                   ahead_s > 0.0 ? "subtract" : "add", amount + (ahead_s > 0.0 ? " from" : " to"))};
 }
 

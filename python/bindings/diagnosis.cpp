@@ -45,21 +45,13 @@ ParametersByEffect ByEffect(const std::vector<EffectFit>& fits) {
   return effects;
 }
 
-bool IsKnown(const diagnosis::Verdict& verdict) {
-  return verdict != diagnosis::Verdict{"none"} && verdict != diagnosis::Verdict{"unknown"};
-}
-
 /// The stages of the command diagnose, in its order.
 Diagnosis DiagnoseWhole(const Recording& recording, const std::string& name,
                         const std::vector<std::string>& without, bool closed_loop) {
-  for (const std::string& effect : without) {
-    if (diagnosis::MakeEffect(effect)) continue;
-    throw InputError(fmt::format("without: no effect of the name {} is in the catalogue", effect));
-  }
   Diagnosis d;
   d.result = diagnosis::Diagnose(recording, name, {.without = without});
   d.model = diagnosis::FromResult(d.result);
-  if (closed_loop && IsKnown(d.result.verdict)) {
+  if (closed_loop && diagnosis::NamesEffects(d.result.verdict)) {
     d.closed_loop = simulation::MeasureClosedLoopGain(recording, d.model);
   }
   d.judgement = diagnosis::JudgeDiagnosis(d.result);

@@ -9,36 +9,20 @@
 #include "python/bindings/errors.h"
 #include "python/bindings/long_call.h"
 #include "python/bindings/truth.h"
-#include "recording/calibrations/apply.h"
-#include "recording/recording_reader.h"
+#include "recording/calibrations/calibrated_recording.h"
 #include "recording/recording_writer.h"
-#include "recording/streams/sensor_streams.h"
 
 namespace flextip::python {
 namespace {
 
-/// As the commands that work on a whole recording read it (apps/common/recording_input).
-ReadResult ReadWhole(const std::filesystem::path& folder,
-                     const std::optional<std::filesystem::path>& tracked, const Paths& calibrations,
-                     bool check_frames) {
-  ReadResult read = ReadRecording(folder, {.check_frames = check_frames});
-  if (tracked) read.recording.vision0.reset();
-  const auto used = ApplyCalibrations(calibrations, read.recording, read.warnings);
-  if (!tracked) return read;
-  ReadLog log;
-  read.recording.vision0 = ReadVision(*tracked / "vision0", log);
-  read.warnings.insert(read.warnings.end(), log.warnings.begin(), log.warnings.end());
-  for (const UsedCalibration& one : used) {
-    StateRegistrationNoise(one.calibration, *read.recording.vision0);
-  }
-  return read;
-}
-
 Recording ReadAndWarn(const std::filesystem::path& folder,
                       const std::optional<std::filesystem::path>& tracked,
                       const Paths& calibrations, bool check_frames) {
-  ReadResult read =
-      WithoutGil([&] { return ReadWhole(folder, tracked, calibrations, check_frames); });
+  CalibratedRecording read = WithoutGil([&] {
+    return ReadCalibrated(folder, {.calibrations = calibrations,
+                                   .tracked = tracked.value_or(std::filesystem::path()),
+                                   .check_frames = check_frames});
+  });
   Warn(read.warnings);
   return std::move(read.recording);
 }

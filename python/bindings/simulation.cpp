@@ -1,18 +1,17 @@
 // Closed loops of plant, sensors, vision and controllers.
-#include <fmt/format.h>
-
 #include <filesystem>
+#include <functional>
 #include <map>
-#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
-#include "diagnosis/model/extended_instrument.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/long_call.h"
 #include "python/bindings/truth.h"
-#include "simulation/closed_loop/scenario.h"
-#include "simulation/sensors/camera_view.h"
+#include "simulation/closed_loop/scenario_run.h"
 
 namespace flextip::python {
 namespace {
@@ -28,22 +27,6 @@ struct Simulation {
   std::vector<std::string> warnings;
 };
 using SaveFrame = std::function<void(const std::string&, TimeNs, const Image&)>;
-
-/// Refuses what the command simulate refuses (apps/simulate).
-void CheckRendering(const std::string& file, const Scenario& scenario, bool render) {
-  const simulation::LoopSetup& loop = scenario.loop;
-  if (render && !scenario.has_camera) {
-    throw InputError(file + ": render needs a section camera");
-  }
-  if (!render && !loop.sensors.tip) {
-    throw InputError(file + ": without render the sensors need a section tip");
-  }
-  const bool late = loop.sensor_effects.camera_latency_s != 0.0;
-  if (render && (late || loop.plant.effects.tip_compliance_m_N != 0.0)) {
-    throw InputError(fmt::format("{}: effects: {} is not rendered: run it without render", file,
-                                 late ? "camera_latency" : "tip_compliance"));
-  }
-}
 
 /// Sets `scenario.controllers` to those that are asked for.
 void ChooseControllers(const std::vector<std::string>& names, Scenario& scenario) {
@@ -61,34 +44,18 @@ Simulation SimulateWhole(const std::filesystem::path& file,
                          const std::optional<std::vector<std::string>>& controllers,
                          const SaveFrame& save) {
   Scenario scenario = simulation::ReadScenario(file);
-  CheckRendering(file.string(), scenario, render);
+  simulation::RequireRunnable(scenario, file, render);
   if (controllers) ChooseControllers(*controllers, scenario);
-  if (model) {
-    const Recording& base = scenario.loop.base;
-    scenario.loop.model = [&model, &base] {
-      return std::make_unique<diagnosis::ExtendedInstrument>(*model, base);
-    };
-  }
+  if (model) simulation::UseModel(*model, scenario);
   std::optional<simulation::Laparoscope> laparoscope;
-  if (render) {
-    const simulation::LoopSetup& loop = scenario.loop;
-    laparoscope.emplace(simulation::TrueCamera(loop.base.cam0->calibration, loop.sensor_effects),
-                        simulation::TrueCollar(*loop.base.tags0, loop.sensor_effects),
-                        scenario.laparoscope);
-  }
+  if (render) laparoscope.emplace(simulation::LaparoscopeOf(scenario));
   Interruption interruption;
   Simulation result{{}, scenario.warnings};
   for (const ControllerKind kind : scenario.controllers) {
-    simulation::LoopSetup setup = scenario.loop;
-    setup.controller.kind = kind;
-    std::optional<simulation::LoopCamera> camera;
-    if (laparoscope) {
-      camera.emplace(simulation::LoopCamera{
-          *laparoscope, scenario.tracker,
-          [&](TimeNs t_ns, const Image& image) { save(Name(kind), t_ns, image); }});
-    }
-    result.runs[Name(kind)] = simulation::RunClosedLoop(setup, camera ? &*camera : nullptr,
-                                                        [&](int, int) { interruption.Check(); });
+    const auto save_frame = [&](TimeNs t_ns, const Image& image) { save(Name(kind), t_ns, image); };
+    result.runs[Name(kind)] =
+        simulation::RunController(scenario, kind, laparoscope ? &*laparoscope : nullptr, save_frame,
+                                  [&](int, int) { interruption.Check(); });
   }
   return result;
 }

@@ -75,36 +75,13 @@ std::optional<TubeShape> ShaftSeenIn(const TrackRequest& what, const TrackInput&
                 *what.outline == "round");
 }
 
-/// Counts a frame as flextip track does (apps/track/tables).
-void CountFrame(const TipTrack& track, TrackTotals& totals) {
-  ++totals.frames;
-  totals.tags += static_cast<long>(track.tags.size());
-  totals.ok += track.tip.status == TipStatus::kOk;
-  totals.predicted += track.tip.status == TipStatus::kPredicted;
-  totals.lost += track.tip.status == TipStatus::kLost;
-}
-
-/// The root of the mean square of get(frame) over the ok frames that count.
-template <class Counts, class Get>
-double RmsOfFrames(const Series<TipTrack>& frames, Counts counts, Get get) {
-  double squares = 0.0;
-  long count = 0;
-  for (const auto& frame : frames) {
-    if (frame.value.tip.status != TipStatus::kOk || !counts(frame.value)) continue;
-    squares += get(frame.value) * get(frame.value);
-    ++count;
-  }
-  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
-}
-
-VisionStream VisionOf(const Series<TipTrack>& frames, const TrackInput& input) {
+VisionStream VisionOf(const Series<TipTrack>& frames, const TrackInput& input,
+                      double direction_noise_rad) {
   VisionStream stream;
   stream.rate_hz = input.recording.cam0->calibration.rate_hz;
   stream.comment =
       input.recording.cam0->has_T_RC ? "tip by tags" : "tip by tags, in the camera's frame";
-  stream.direction_noise_rad = RmsOfFrames(
-      frames, [](const TipTrack&) { return true; },
-      [](const TipTrack& t) { return t.direction_noise_rad; });
+  stream.direction_noise_rad = direction_noise_rad;
   for (const auto& frame : frames) stream.tips.push_back({frame.t_ns, frame.value.tip});
   return stream;
 }
@@ -123,27 +100,24 @@ Track TrackWhole(const TrackRequest& what) {
   InstrumentTracker tracker(TrackerSetupOf(input.recording, options, what.with_model));
   Interruption interruption;
   Track track;
-  while (!what.max_frames || track.totals.frames < *what.max_frames) {
+  TrackSums sums;
+  while (!what.max_frames || sums.frames < *what.max_frames) {
     interruption.Check();
     const std::optional<FrameSet> set = input.frames->Next();
     if (!set) break;
     const TipTrack frame =
         tracker.Follow(set->Pointers(), set->t_ns, ReadingsAt(input.recording, set->t_ns));
-    CountFrame(frame, track.totals);
+    sums.Add(frame);
     const auto p_RE = truth ? ValueAt(*truth, set->t_ns) : std::nullopt;
-    if (p_RE && frame.tip.status == TipStatus::kOk) track.totals.score.Add(frame.tip, *p_RE, T_RC);
+    if (p_RE) sums.Score(frame, *p_RE, T_RC);
     track.frames.push_back({set->t_ns, frame});
   }
   if (track.frames.empty()) {
     throw InputError::At(what.source.string(), 0, "no frame can be read");
   }
-  track.totals.rms_px = RmsOfFrames(
-      track.frames, [](const TipTrack& t) { return t.source == TrackSource::kCorners; },
-      [](const TipTrack& t) { return t.rms_px; });
-  track.totals.family = input.recording.tags0->family;
-  track.totals.camera_has_pose = input.recording.cam0->has_T_RC;
+  track.totals = sums.Totals(input.recording.tags0->family, input.recording.cam0->has_T_RC);
   track.judgement = JudgeTrack(track.totals);
-  track.vision0 = VisionOf(track.frames, input);
+  track.vision0 = VisionOf(track.frames, input, sums.DirectionNoise_rad());
   track.warnings = std::move(input.warnings);
   return track;
 }

@@ -112,6 +112,7 @@ class CalibrateHandEyeCommand : public testing::Test {
     Recording r;
     r.instrument = {0.6, 0.005, 0.3, 0.0};
     r.cam0.emplace().calibration = camera_;
+    r.cam0->calibration.rate_hz = 1;
     r.wrist0.emplace();
     r.wrist0->rate_hz = 1;
     r.wrist0->position_noise_m = 1e-4;
@@ -205,7 +206,7 @@ TEST_F(CalibrateHandEyeCommand, FramesMayBeOfAVideo) {
   RecordChessboard(false, true);
   const auto run = Run({"--board", "chessboard:7x5:0.01"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err, testing::Not(HasSubstr("wrong:")));  // frames a second apart are said
+  EXPECT_EQ(run.err, "");
   ExpectFound("cam0.T_RC", "board.T_WB", T_KB_);
   const auto summary = Summary();
   EXPECT_EQ(summary["views_used"], kViews);

@@ -85,6 +85,7 @@ TEST(TimeUnit, IsGuessedByEpochAndSteps) {
 TEST(Units, AreOfAKind) {
   EXPECT_EQ(ParseUnit("mm")->ToSi(1234.5), 1.2345);
   EXPECT_EQ(ParseUnit("Nm", "moment")->ToSi(2.0), 2.0);
+  EXPECT_EQ(ParseUnit("Ncm", "moment")->ToSi(200.0), 2.0);
   EXPECT_EQ(ParseUnit("mN")->ToSi(3.0), 0.003);
   EXPECT_NEAR(ParseUnit("deg")->ToSi(180.0), 3.14159265358979, 1e-14);
   EXPECT_FALSE(ParseUnit("mm", "angle"));

@@ -111,8 +111,8 @@ void RunHandEye(const HandEyeCommand& options, bool quiet) {
   ReadResult read = ReadRecording(options.recording);
   const Recording& recording = read.recording;
   const std::string target = CheckStreams(options, recording);
-  const auto findings = CheckInput({options.recording, options.no_check, quiet},
-                                   UseOfHandEye(target == "tags0"), read.recording);
+  const auto findings =
+      CheckInput({options.no_check, quiet}, UseOfHandEye(target == "tags0"), read.recording);
   OutputFolder output(options.out, "calibrate hand-eye",
                       {.force = options.force, .inputs = {options.recording}});
   output.Warn(read.warnings);

@@ -83,7 +83,7 @@ TipBody CollarBody(const CalibrateTipOptions& options, OutputFolder& output, boo
 TipBody BodyOf(const CalibrateTipOptions& options, OutputFolder& output, bool quiet) {
   InputRead read = ReadInput(options.input);
   const std::string sensor = ChooseSensor(options, read.recording);
-  const InputCheck check{options.input.recording, options.input.no_check, quiet};
+  const InputCheck check{options.input.no_check, quiet};
   output.Beware(FindingsJson(CheckInput(check, UseOfTip(sensor), read.recording)));
   if (sensor == "tags0") return CollarBody(options, output, quiet);
   output.Warn(read.warnings);

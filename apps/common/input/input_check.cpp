@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "apps/common/input/findings.h"
-#include "core/error.h"
 #include "plausibility/check_recording.h"
 #include "plausibility/pictures/check_pictures.h"
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <vector>
 
 #include "plausibility/command_use.h"
@@ -13,9 +12,8 @@ namespace flextip {
 
 /// How a command has its recording checked.
 struct InputCheck {
-  std::filesystem::path recording;  ///< its name in messages
-  bool skip = false;                ///< --no-check
-  bool quiet = false;               ///< doubts are not printed
+  bool skip = false;   ///< --no-check
+  bool quiet = false;  ///< doubts are not printed
 };
 
 /// Adds --no-check. `skip` must outlive the parsing.

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include "apps/common/input/input_check.h"
-#include "recording/streams/sensor_streams.h"
 
 namespace flextip {
 
@@ -42,17 +41,10 @@ std::string InputRead::NotUsed() const {
 }
 
 InputRead ReadInput(const RecordingInput& input) {
-  InputRead read{ReadRecording(input.recording, {.check_frames = false}), {}, {}};
-  Recording& recording = read.recording;
-  if (!input.tracked.empty()) recording.vision0.reset();
-  read.calibrations = ApplyCalibrations(input.calibrations, recording, read.warnings);
+  InputRead read{ReadCalibrated(input.recording,
+                                {.calibrations = input.calibrations, .tracked = input.tracked}),
+                 {}};
   if (input.tracked.empty()) return read;
-  ReadLog log;
-  recording.vision0 = ReadVision(input.tracked / "vision0", log);
-  read.warnings.insert(read.warnings.end(), log.warnings.begin(), log.warnings.end());
-  for (const auto& used : read.calibrations) {
-    StateRegistrationNoise(used.calibration, *recording.vision0);
-  }
   for (const std::string& name : NotTrackedWith(input.tracked, read.calibrations)) {
     read.warnings.push_back(
         fmt::format("{}: the tips were tracked without {}", input.tracked.string(), name));
@@ -62,7 +54,7 @@ InputRead ReadInput(const RecordingInput& input) {
 
 InputRead ReadInput(const RecordingInput& input, const plausibility::CommandUse& use, bool quiet) {
   InputRead read = ReadInput(input);
-  read.findings = CheckInput({input.recording, input.no_check, quiet}, use, read.recording);
+  read.findings = CheckInput({input.no_check, quiet}, use, read.recording);
   return read;
 }
 

@@ -7,7 +7,7 @@
 
 #include "apps/common/input/calibration_input.h"
 #include "plausibility/command_use.h"
-#include "recording/recording_reader.h"
+#include "recording/calibrations/calibrated_recording.h"
 
 namespace flextip {
 
@@ -21,9 +21,7 @@ struct RecordingInput {
   std::vector<std::filesystem::path> Files() const;
 };
 
-struct InputRead : ReadResult {
-  std::vector<UsedCalibration> calibrations;
-
+struct InputRead : CalibratedRecording {
   /// Returns the streams of which estimation and diagnosis use nothing: "cam0, command0".
   std::string NotUsed() const;
   std::vector<plausibility::Finding> findings;  ///< that do not stop the command

@@ -1,0 +1,53 @@
+#include "simulation/closed_loop/scenario_run.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "core/error.h"
+#include "diagnosis/model/extended_instrument.h"
+#include "simulation/sensors/camera_view.h"
+
+namespace flextip::simulation {
+
+void RequireRunnable(const Scenario& scenario, const std::filesystem::path& file, bool rendered) {
+  const LoopSetup& loop = scenario.loop;
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(fmt::format("{}: {}", file.string(), why));
+  };
+  if (!rendered) {
+    if (!loop.sensors.tip) refuse("not rendered, the sensors need a section tip");
+    return;
+  }
+  if (!scenario.has_camera) refuse("rendered, the scenario needs a section camera");
+  const bool late = loop.sensor_effects.camera_latency_s != 0.0;
+  if (late || loop.plant.effects.tip_compliance_m_N != 0.0) {
+    refuse(fmt::format("effects: {} does not show in rendered frames: run it not rendered",
+                       late ? "camera_latency" : "tip_compliance"));
+  }
+}
+
+void UseModel(const diagnosis::ExtendedModel& model, Scenario& scenario) {
+  scenario.loop.model = [model, base = scenario.loop.base] {
+    return std::make_unique<diagnosis::ExtendedInstrument>(model, base);
+  };
+}
+
+Laparoscope LaparoscopeOf(const Scenario& scenario) {
+  const LoopSetup& loop = scenario.loop;
+  return Laparoscope(TrueCamera(loop.base.cam0->calibration, loop.sensor_effects),
+                     TrueCollar(*loop.base.tags0, loop.sensor_effects), scenario.laparoscope);
+}
+
+LoopResult RunController(const Scenario& scenario, ControllerKind kind,
+                         const Laparoscope* laparoscope,
+                         const std::function<void(TimeNs, const Image&)>& save,
+                         const std::function<void(int, int)>& progress) {
+  LoopSetup setup = scenario.loop;
+  setup.controller.kind = kind;
+  if (laparoscope == nullptr) return RunClosedLoop(setup, nullptr, progress);
+  const LoopCamera camera{*laparoscope, scenario.tracker, save};
+  return RunClosedLoop(setup, &camera, progress);
+}
+
+}  // namespace flextip::simulation
