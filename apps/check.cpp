@@ -11,11 +11,9 @@
 #include "apps/common/commands.h"
 #include "apps/common/input/calibration_input.h"
 #include "apps/common/input/findings.h"
+#include "apps/common/input/whole_check.h"
 #include "apps/common/output.h"
 #include "core/error.h"
-#include "plausibility/check_recording.h"
-#include "plausibility/pictures/check_pictures.h"
-#include "recording/frames/frame_source.h"
 #include "recording/recording_reader.h"
 #include "report/pages.h"
 
@@ -70,25 +68,10 @@ void Print(const CheckResult& result) {
   for (const Finding& f : result.findings) fmt::print("{}", FindingText(Name(f.severity), f));
 }
 
-/// A picture that cannot be read, or of another size than stated, is a finding here.
-void AddPictures(const CheckOptions& options, const Recording& recording, CheckResult& result) {
-  if (options.no_pictures || !recording.cam0) return;
-  if (recording.cam0->filenames.empty() && recording.cam0->frame_numbers.empty()) return;
-  try {
-    const auto frames = OpenRecordedFrames(options.recording, "cam0", *recording.cam0);
-    plausibility::CheckPictures(recording, *frames, {}, {}, result);
-  } catch (const InputError& error) {
-    result.findings.push_back(
-        {Severity::kWrong, "cam0.frames", fmt::format("cam0: {}", error.what()), ""});
-    plausibility::SortFindings(result.findings);
-  }
-}
-
 void RunCheck(const CheckOptions& options, bool quiet) {
   ReadResult read = ReadRecording(options.recording, {.check_frames = false});
   const auto used = ApplyCalibrations(options.calibrations, read.recording, read.warnings);
-  CheckResult result = plausibility::CheckRecording(read.recording);
-  AddPictures(options, read.recording, result);
+  const CheckResult result = CheckWhole(options.recording, read.recording, !options.no_pictures);
   nlohmann::json json = ToJson(result);
   if (!used.empty()) json["calibrations"] = CalibrationsJson(used);
   if (!options.out.empty()) {

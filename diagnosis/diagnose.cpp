@@ -15,6 +15,14 @@ namespace {
 
 constexpr double kLongMemory = 0.5;  // a correlation that stands beside the answer
 
+/// "the orientation of wrist0" for the channel wrist0_orientation_rad.
+std::string SpokenName(const std::string& channel) {
+  const auto first = channel.find('_'), last = channel.rfind('_');
+  if (first == std::string::npos || first == last) return channel;
+  return fmt::format("the {} of {}", channel.substr(first + 1, last - first - 1),
+                     channel.substr(0, first));
+}
+
 /// What the stages work on. The layout refers to the samples, the replays to both.
 struct Work {
   SampleSet samples;
@@ -199,11 +207,12 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                     selection.far_samples, work.samples.samples.size()));
   }
   result.memory = selection.memory;
-  if (selection.memory.correlation > kLongMemory) {
+  if (selection.memory.correlation > kLongMemory && selection.memory.SamplesAsOne() > 1.0) {
     result.warnings.push_back(fmt::format(
         "what is left of {} remembers itself ({:.2f} from sample to sample): the probabilities "
         "take the noise for slow, and {:.1f} samples for one",
-        selection.memory.channel, selection.memory.correlation, selection.memory.SamplesAsOne()));
+        SpokenName(selection.memory.channel), selection.memory.correlation,
+        selection.memory.SamplesAsOne()));
   }
   const Probabilities probabilities = MakeProbabilities(selection, work.layout, selection_options);
   result.probabilities = probabilities.hypotheses;

@@ -151,8 +151,12 @@ Lead ImportLead(const Json& summary) {
   }
   if (names.empty()) return {};
   const std::size_t assumed = summary.value("assumed", Json::array()).size();
-  return {.says = fmt::format("{} {} imported: {}.", streams.size(),
-                              streams.size() == 1 ? "stream was" : "streams were", names),
+  const std::size_t found = summary.value("findings", Json::array()).size();
+  std::string says = fmt::format("{} {} imported: {}", streams.size(),
+                                 streams.size() == 1 ? "stream was" : "streams were", names);
+  if (found > 0)
+    says += fmt::format("; {} {} not fit", found, found == 1 ? "thing does" : "things do");
+  return {.says = says + ".",
           .more = assumed == 0
                       ? "Nothing was assumed."
                       : fmt::format("{} {} assumed (below): read them before you trust a result.",

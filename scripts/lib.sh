@@ -19,7 +19,7 @@ PYTHON_PACKAGES=(
 # ROS 1, opencv-doc holds real chessboard pictures, poppler-utils turns printed pages into pictures.
 TEST_PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev librosbag-storage-dev
-  clang clang-format clang-tidy groff-base opencv-doc poppler-utils
+  clang clang-format clang-tidy groff-base opencv-doc poppler-utils chromium
   "${SITE_PACKAGES[@]}" "${PYTHON_PACKAGES[@]}"
 )
 NODE_PACKAGES=(nodejs npm)

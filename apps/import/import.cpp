@@ -4,9 +4,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/common/commands.h"
+#include "apps/common/input/findings.h"
+#include "apps/common/input/whole_check.h"
 #include "apps/common/output.h"
 #include "apps/import/options.h"
 #include "core/error.h"
@@ -41,7 +44,7 @@ Imported ImportOrName(const exchange::ImportPlan& plan) {
 }
 
 // Every stream must come back as it was written.
-std::vector<StreamLine> ReadBack(const std::filesystem::path& folder, const Imported& imported) {
+Recording ReadBack(const std::filesystem::path& folder, const Imported& imported) {
   ReadResult read;
   try {
     read = ReadRecording(folder);
@@ -57,7 +60,7 @@ std::vector<StreamLine> ReadBack(const std::filesystem::path& folder, const Impo
            lines[i].last_ns == written[i].last_ns;
   }
   if (!same) throw WorkError("what was read back differs from what was imported");
-  return lines;
+  return std::move(read.recording);
 }
 
 // "length mm, time s": as the stream's columns were read.
@@ -96,7 +99,7 @@ nlohmann::json AssumedJson(const Imported& imported) {
 }
 
 void Print(const Imported& imported, const std::vector<StreamLine>& lines,
-           const std::filesystem::path& out) {
+           const plausibility::CheckResult& check, const std::filesystem::path& out) {
   for (const auto& [key, what] : imported.log.assumed) fmt::print("assumed {}: {}\n", key, what);
   for (const auto& warning : imported.log.warnings) fmt::print("warning: {}\n", warning);
   for (const auto& line : lines) {
@@ -106,6 +109,9 @@ void Print(const Imported& imported, const std::vector<StreamLine>& lines,
                line.first_value, units.empty() ? "" : " (read as " + units + ")");
   }
   fmt::print("{}: read back as it was written\n", out.string());
+  for (const auto& finding : check.findings) {
+    fmt::print("{}", FindingText(Name(finding.severity), finding));
+  }
 }
 
 void RunImport(const ImportOptions& options, bool quiet) {
@@ -121,14 +127,18 @@ void RunImport(const ImportOptions& options, bool quiet) {
                       {.force = options.force, .inputs = inputs});
   const Imported imported = ImportOrName(plan);
   exchange::WriteImported(output.folder(), imported);
-  auto lines = ReadBack(output.folder(), imported);
+  const Recording recording = ReadBack(output.folder(), imported);
+  plausibility::CheckResult check;
+  if (!options.no_check) check = CheckWhole(output.folder(), recording, true);
+  auto lines = exchange::DescribeStreams(recording);
   lines.insert(lines.end(), imported.others.begin(), imported.others.end());
   output.Warn(imported.log.warnings);
+  output.Beware(FindingsJson(check.findings));
   output.WriteSummary(
       {{"streams", StreamsJson(imported, lines)}, {"assumed", AssumedJson(imported)}});
   report::WriteImportReport(output.folder());
   output.Commit();
-  if (!quiet) Print(imported, lines, options.out);
+  if (!quiet) Print(imported, lines, check, options.out);
 }
 
 struct FormatHelp {

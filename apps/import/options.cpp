@@ -59,6 +59,10 @@ void AddFileOptions(CLI::App& command, ImportOptions& options) {
       ->group("Files");
   command.add_flag("--force", options.force, "Replace the folder of an earlier run")
       ->group("Files");
+  command
+      .add_flag("--no-check", options.no_check,
+                "Do not check whether the recording can be what it says")
+      ->group("Files");
 }
 
 void AddInstrumentOptions(CLI::App& command, ImportOptions& options) {

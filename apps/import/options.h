@@ -16,7 +16,7 @@ struct ImportOptions {
   std::string format;                         ///< csv, video, rosbag, mcap, dvrk
   std::vector<std::filesystem::path> inputs;  ///< tables, videos, bags, a session's folder
   std::filesystem::path out, map, settings, collar;
-  bool force = false, link = false;
+  bool force = false, link = false, no_check = false;
   std::vector<std::string> streams, units, quaternions, orientations, axes, offsets, columns, sets;
   std::vector<std::string> cameras, poses, times, starts;  ///< FILE, or cam1=FILE
   std::optional<double> length_m, diameter_m, stiffness_Nm2, mass_per_length_kg_m, rate_hz;

@@ -13,12 +13,12 @@ namespace flextip::python {
 /// GIL.
 class Interruption {
  public:
-  /// Throws Python's exception where a signal has come. Looks five times a second at most: taking
+  /// Throws Python's exception where a signal has come. Looks twenty times a second at most: taking
   /// the GIL waits for the caller's other threads.
   void Check() {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return;
-    next_ = now + std::chrono::milliseconds(200);
+    next_ = now + std::chrono::milliseconds(50);
     const pybind11::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
   }

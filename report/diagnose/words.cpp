@@ -112,7 +112,8 @@ std::string Hedged(double probability, const std::string& sentence) {
 }
 
 void SayNone(double probability, Headline& headline) {
-  headline.title = "nothing beyond tolerance";
+  headline.title =
+      probability >= kSure ? "nothing beyond tolerance" : "probably nothing beyond tolerance";
   headline.verdict = fmt::format(
       "{} ({}).",
       probability >= kSure

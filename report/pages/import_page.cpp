@@ -110,6 +110,7 @@ void WriteImportReport(const fs::path& folder) {
   report.AddLead(lead.says, lead.more);
   std::vector<std::string> warnings;
   for (const Json& warning : summary.value("warnings", Json::array())) warnings.push_back(warning);
+  AddFindings(report, folder);
   report.AddWarnings(warnings);
   AddStreamTable(report, summary);
   AddAssumed(report, summary);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -61,6 +62,23 @@ TEST(ImportCommand, MakesARecordingInOneCommandAndAgain) {
   for (const char* file : {"import.yaml", "wrist0/data.csv", "wrist0/sensor.yaml"}) {
     EXPECT_EQ(ReadText(folder / "first" / file), ReadText(folder / "second" / file)) << file;
   }
+}
+
+TEST(ImportCommand, ChecksTheRecording) {
+  const TestFolder folder;
+  const auto log = folder.Write("robot.csv", RobotLog());
+  const auto out = (folder / "out").string();
+  auto arguments = With({log, "-o", out}, kInstrument);
+  *std::find(arguments.begin(), arguments.end(), "0.6") = "0.06";  // the port is out of reach
+  const auto done = ImportCsv(arguments);
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("wrong: "));
+  const auto findings = nlohmann::json::parse(ReadText(folder / "out/summary.json"))["findings"];
+  ASSERT_FALSE(findings.empty());
+  EXPECT_EQ(findings[0]["severity"], "wrong");
+  EXPECT_THAT(ReadText(folder / "out/report.html"), HasSubstr(findings[0]["mend"]));
+  arguments.insert(arguments.end(), {"--no-check", "--force"});
+  EXPECT_THAT(ImportCsv(arguments).out, testing::Not(HasSubstr("wrong: ")));
 }
 
 TEST(ImportCommand, OptionsReplaceWhatTheMappingSays) {
