@@ -81,6 +81,7 @@ std::vector<Figure> FiguresOf(const fs::path& folder) {
   const fs::path file = folder / "data.csv";
   const std::vector<std::string> names = ValueColumns(file);
   std::vector<ThinnedColumn> columns;
+  columns.reserve(names.size());
   for (const auto& name : names) {
     columns.push_back({{name}, [](const std::vector<double>& v) { return v[0]; }});
   }
