@@ -79,7 +79,9 @@ void RunCompare(const CompareOptions& options, bool quiet) {
   judged.says = comparison.says;
   nlohmann::ordered_json runs = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < comparison.names.size(); ++i) {
-    runs.push_back({{"run", comparison.names[i]}, {"folder", comparison.folders[i].string()}});
+    runs.push_back({{"run", comparison.names[i]},
+                    {"answer", comparison.answers[i]},
+                    {"folder", comparison.folders[i].string()}});
   }
   output.WriteSummary(
       {{"verdict", JudgementJson(judged)}, {"runs", runs}, {"numbers", NumbersJson(comparison)}});

@@ -183,9 +183,11 @@ void Report::AddFigures(const std::vector<Figure>& figures) {
   if (figures.size() > 1) body_ += "</div>\n";
 }
 
-void Report::AddFigureFile(const std::filesystem::path& file) {
+void Report::AddFigureFile(const std::filesystem::path& file, const std::string& heading) {
   const auto figures = nlohmann::json::parse(ReadBytes(file), nullptr, false);
   if (!figures.is_array()) throw InputError::At(file.string(), 0, "is not a list of figures");
+  if (figures.empty()) return;
+  if (!heading.empty()) AddHeading(heading);
   body_ += "<div class=\"drawings\">\n";
   for (const auto& figure : figures) {
     if (!figure.is_object()) throw InputError::At(file.string(), 0, "holds what is no figure");

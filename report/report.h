@@ -43,8 +43,9 @@ class Report {
   /// all in space or all flat with fields or bars: lines alone go with both.
   void AddFigures(const std::vector<Figure>& figures);
   void AddFigure(const Figure& figure) { AddFigures({figure}); }
-  /// Adds a figures.json. Throws InputError where the file is no list of figures.
-  void AddFigureFile(const std::filesystem::path& file);
+  /// Adds a figures.json, under `heading` where there is a figure. Throws InputError where the file
+  /// is no list of figures.
+  void AddFigureFile(const std::filesystem::path& file, const std::string& heading = "");
   /// Adds pictures side by side, each a PNG or JPEG file's bytes with a caption.
   void AddPictures(const std::vector<std::pair<std::string, std::string>>& bytes_and_captions);
 

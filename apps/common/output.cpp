@@ -39,7 +39,7 @@ bool HoldsSomething(const fs::path& folder) {
   return !fs::is_empty(folder, error) || error;
 }
 
-bool HasNoNumber(const nlohmann::json& json) {
+bool HasNoNumber(const nlohmann::ordered_json& json) {
   if (json.is_number_float()) return !std::isfinite(json.get<double>());
   if (!json.is_structured()) return false;
   return std::any_of(json.begin(), json.end(), HasNoNumber);
@@ -143,8 +143,8 @@ void OutputFolder::RefuseToReplace(const std::vector<fs::path>& inputs) const {
   }
 }
 
-void OutputFolder::WriteSummary(nlohmann::json results) const {
-  if (results.is_null()) results = nlohmann::json::object();
+void OutputFolder::WriteSummary(nlohmann::ordered_json results) const {
+  if (results.is_null()) results = nlohmann::ordered_json::object();
   FLEXTIP_CHECK(results.is_object(), "results by name");
   if (HasNoNumber(results)) throw WorkError("summary.json would hold a NaN or infinite value");
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
@@ -153,10 +153,10 @@ void OutputFolder::WriteSummary(nlohmann::json results) const {
   results["seconds"] = seconds.count();
   results["date"] = Date();
   if (!Typed().empty()) results["typed"] = Typed();
-  results["inputs"] = nlohmann::json::array();
+  results["inputs"] = nlohmann::ordered_json::array();
   for (const fs::path& input : inputs_) results["inputs"].push_back(input.string());
   auto& warnings = results["warnings"];
-  if (!warnings.is_array()) warnings = nlohmann::json::array();
+  if (!warnings.is_array()) warnings = nlohmann::ordered_json::array();
   for (const auto& warning : warnings_) warnings.push_back(warning);
   if (!findings_.empty()) results["findings"] = findings_;
   std::ofstream out(folder_ / "summary.json");

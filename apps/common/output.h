@@ -70,7 +70,7 @@ class OutputFolder {
   /// line), `date` (UTC), `inputs`, `seconds` since the constructor, `warnings` (those in `results`
   /// first) and `findings`, where there are any. Throws WorkError where the disk refuses, and where
   /// a number in `results` is NaN or infinite, which JSON cannot hold.
-  void WriteSummary(nlohmann::json results) const;
+  void WriteSummary(nlohmann::ordered_json results) const;
 
   /// Makes the folder NAME. Throws WorkError where the disk refuses or another program has put
   /// something there in the meantime.

@@ -63,11 +63,11 @@ void Run(const Options& options, bool quiet) {
   WriteTextFile(output.folder() / "diagnosis.json", DiagnosisJson(result, gain ? &*gain : nullptr));
   WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result.residuals));
   diagnosis::WriteModel(output.folder() / "model.yaml", model);
-  nlohmann::json summary = {{"verdicts", result.verdict},
-                            {"samples", result.samples},
-                            {"fits", result.fits},
-                            {"converged", result.converged},
-                            {"streams_not_used", read.NotUsed()}};
+  nlohmann::json summary = {
+      {"verdicts", result.verdict},    {"samples", result.samples},
+      {"fits", result.fits},           {"probability", result.probabilities.front().probability},
+      {"converged", result.converged}, {"streams_not_used", read.NotUsed()}};
+  if (result.gain.measured) summary["heldout_error_ratio"] = result.gain.heldout_error_ratio;
   if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
   Judgement judged = diagnosis::JudgeDiagnosis(result);
   MentionFindings(read.findings, judged);

@@ -10,12 +10,13 @@
 namespace flextip {
 namespace {
 
-constexpr double kManyRejected = 0.2;   // of the views
-constexpr double kManyOutliers = 0.05;  // of the corners
-constexpr double kMuchWorse = 1.3;      // held-out error over the one in sample
-constexpr double kUncovered = 20.0;     // uncertainty at a border over that in the middle
-constexpr double kUnsure = 10.0;        // uncertainty over the picture, of the corners' noise
-constexpr double kOverconfident = 3.0;  // halves of the views differ by so many times the claim
+constexpr double kManyRejected = 0.2;      // of the views
+constexpr double kManyOutliers = 0.05;     // of the corners
+constexpr double kMuchWorse = 1.3;         // held-out error over the one in sample
+constexpr double kUncovered = 20.0;        // uncertainty at a border over that in the middle
+constexpr double kBordersUnsure_px = 1.0;  // a whole pixel somewhere in the picture
+constexpr double kUnsure = 10.0;           // uncertainty over the picture, of the corners' noise
+constexpr double kOverconfident = 3.0;     // halves of the views differ by so many times the claim
 
 void MentionNotFitting(std::size_t count, double all, double many, const std::string& noun,
                        CalibrationVerdict& verdict) {
@@ -43,7 +44,7 @@ void AddUncertainty(const CameraUncertainty& u, const std::string& name, double 
         fmt::format("{}the borders of the picture were hardly covered: {:.2g} px there, {:.2g} px "
                     "in the middle",
                     name, most_px, centre_px),
-        mean_px > kUnsure * noise_px);
+        mean_px > kUnsure * noise_px || most_px > kBordersUnsure_px);
   }
   if (verdict.next.empty() && !u.next.empty()) {
     verdict.next = fmt::format("{} (the mean would fall from {:.3f} to {:.3f} px)", u.next[0].words,

@@ -32,6 +32,7 @@ constexpr std::array kSmaller = {"error", "deviation", "rms",  "lost",  "chi2", 
                                  "noise", "predicted", "norm", "angle", "seconds", "rejected"};
 constexpr std::array kLarger = {"ok", "frames_per_second", "share_inside", "views_used"};
 constexpr std::size_t kMostBars = 6;
+constexpr std::size_t kMostSpoken = 4;  // answers in the sentence
 
 Better BetterOf(const std::string& key) {
   const auto holds = [&](const char* part) { return key.find(part) != std::string::npos; };
@@ -124,12 +125,28 @@ std::string SpokenName(const ComparedNumber& number, const std::string& command)
   return number.group.empty() ? label : number.group + ", " + label;
 }
 
-std::string SentenceOf(const Comparison& comparison) {
-  const auto main = MainNumbers(comparison.numbers);
-  if (main.empty()) {
+/// What was answered, where no figure says which run is best.
+std::string AnswersOf(const Comparison& comparison) {
+  const auto& answers = comparison.answers;
+  if (std::all_of(answers.begin(), answers.end(), [](const auto& a) { return a.empty(); })) {
     return fmt::format("{} results of {}: no figure that all of them have says which is best.",
                        comparison.names.size(), comparison.command);
   }
+  if (answers.size() > kMostSpoken) {
+    return fmt::format("{} results of {}: the answers are in the table.", answers.size(),
+                       comparison.command);
+  }
+  std::string text;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    text += fmt::format("{}{}: {}", i == 0 ? "" : " ", comparison.names[i],
+                        answers[i].empty() ? "no answer." : answers[i]);
+  }
+  return text;
+}
+
+std::string SentenceOf(const Comparison& comparison) {
+  const auto main = MainNumbers(comparison.numbers);
+  if (comparison.command == "diagnose" || main.empty()) return AnswersOf(comparison);
   const ComparedNumber& number = *main.front();
   const auto best = number.Best();
   const std::string name = SpokenName(number, comparison.command);
@@ -190,6 +207,8 @@ Comparison CompareResults(const std::vector<fs::path>& folders) {
                                        comparison.command, folders[0].string()));
     }
     table.Add(i, summary);
+    const Json verdict = summary.value("verdict", Json::object());
+    comparison.answers.push_back(verdict.is_object() ? verdict.value("says", "") : "");
   }
   comparison.numbers = table.Take();
   comparison.says = SentenceOf(comparison);

@@ -30,8 +30,11 @@ struct Comparison {
   /// Of the runs: their folders', with as much of the path as tells them apart.
   std::vector<std::string> names = {};
   std::vector<std::filesystem::path> folders = {};
+  std::vector<std::string> answers = {};  ///< of the runs, each in a sentence; empty where none is
   std::vector<ComparedNumber> numbers = {};
-  std::string says = {};             ///< the best run by the command's main figure, in a sentence
+  /// The best run by the command's main figure, in a sentence; the answers where they differ in
+  /// words.
+  std::string says = {};
   std::vector<Figure> figures = {};  ///< the main figures as bars, the runs' curves over time
 };
 

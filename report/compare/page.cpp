@@ -7,8 +7,7 @@ namespace flextip::report {
 
 void WriteCompareReport(const std::filesystem::path& folder) {
   Report report = BeginPage(folder, "Results side by side");
-  report.AddHeading("Figures");
-  report.AddFigureFile(folder / "figures.json");
+  report.AddFigureFile(folder / "figures.json", "Figures");
   report.Write(folder / "report.html");
 }
 

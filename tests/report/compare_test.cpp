@@ -76,6 +76,16 @@ TEST_F(Compared, ControllersAreComparedOneByOne) {
   EXPECT_THAT(comparison.says, HasSubstr("a is best by rod-track, largest deviation: 1 mm"));
 }
 
+TEST_F(Compared, DiagnosesSayTheirAnswers) {
+  const auto a = Run("a", R"({"command": "diagnose", "verdict": {"says": "none (95 %)."},
+                              "heldout_error_ratio": 1.0})");
+  const auto b = Run("b", R"({"command": "diagnose", "heldout_error_ratio": 0.1})");
+  const Comparison comparison = CompareResults({a, b});
+  EXPECT_THAT(comparison.answers, ElementsAre("none (95 %).", ""));
+  EXPECT_EQ(comparison.says, "a: none (95 %). b: no answer.");
+  EXPECT_EQ(Find(comparison, "heldout_error_ratio", "").Best(), 1U);
+}
+
 TEST_F(Compared, NamesOfOneFolderNameTakeMoreOfThePath) {
   const auto x = Run("x/track", R"({"command": "track", "ok": 1})");
   const auto y = Run("y/track", R"({"command": "track", "ok": 1})");
