@@ -32,6 +32,7 @@ void RunReproduce(std::vector<std::string> arguments, bool quiet) {
   arguments.insert(arguments.begin(), beside.empty() ? kProgram : beside.string());
   if (quiet) arguments.emplace_back("--quiet");
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   execvp(argv[0], argv.data());  // returns only where it fails

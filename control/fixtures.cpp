@@ -8,30 +8,23 @@ namespace {
 constexpr int kRounds = 30;
 constexpr double kLeft_m = 1e-7;  // a region that moves the tip by less leaves it alone
 
-/// Where one region puts `p`; a guiding path is none.
-struct OutOf {
-  const Eigen::Vector3d& p;
-  double margin_m;
-
-  FixtureOutput operator()(const PathGuidance&) const noexcept {
-    return {FixtureStatus::kFree, p, 0.0, Eigen::Vector3d::Zero()};
+/// Where one region puts `p`; a guiding path leaves it alone.
+FixtureOutput OutOf(const Fixture& fixture, const Eigen::Vector3d& p, double margin_m) noexcept {
+  if (const auto* half_space = std::get_if<ForbiddenHalfSpace>(&fixture)) {
+    return Constrain(*half_space, p, margin_m);
   }
-  FixtureOutput operator()(const ForbiddenHalfSpace& region) const noexcept {
-    return Constrain(region, p, margin_m);
+  if (const auto* sphere = std::get_if<ForbiddenSphere>(&fixture)) {
+    return Constrain(*sphere, p, margin_m);
   }
-  FixtureOutput operator()(const ForbiddenSphere& region) const noexcept {
-    return Constrain(region, p, margin_m);
-  }
-  FixtureOutput operator()(const ForbiddenMesh& region) const noexcept {
-    return region.Constrain(p, margin_m);
-  }
-};
+  if (const auto* mesh = std::get_if<ForbiddenMesh>(&fixture)) return mesh->Constrain(p, margin_m);
+  return {FixtureStatus::kFree, p, 0.0, Eigen::Vector3d::Zero()};
+}
 
 /// Goes once through the regions. Returns whether all of them left the tip of `output` alone.
 bool AllLeave(const Fixtures& fixtures, double margin_m, FixturesOutput& output) noexcept {
   bool left = true;
   for (const Fixture& fixture : fixtures.list) {
-    const FixtureOutput moved = std::visit(OutOf{output.p_RE_desired, margin_m}, fixture);
+    const FixtureOutput moved = OutOf(fixture, output.p_RE_desired, margin_m);
     if (moved.status == FixtureStatus::kFree) continue;
     left &= (moved.p_RE_desired - output.p_RE_desired).norm() < kLeft_m;
     output.p_RE_desired = moved.p_RE_desired;

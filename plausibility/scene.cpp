@@ -109,31 +109,31 @@ Scene TakeScene(const Recording& r, const Shifts& shifts_s, int count) {
   scene.p_RP = r.p_RP;
   scene.gravity_m_s2 = r.gravity_m_s2;
   const double reach = r.instrument.length_m;
-  if (r.wrist0) scene.streams.push_back("wrist0");
-  if (r.command0) scene.streams.push_back("command0");
+  if (r.wrist0) scene.streams.emplace_back("wrist0");
+  if (r.command0) scene.streams.emplace_back("command0");
   if (r.em0) {
-    scene.streams.push_back("em0");
+    scene.streams.emplace_back("em0");
     scene.em0_from_tip_m = r.em0->distance_from_tip_m;
     scene.em0_registration_m =
         r.em0->registration_noise_m + std::min(0.5, r.em0->registration_noise_rad) * reach;
   }
-  if (r.em1) scene.streams.push_back("em1");
+  if (r.em1) scene.streams.emplace_back("em1");
   if (r.strain0) {
-    scene.streams.push_back("strain0");
+    scene.streams.emplace_back("strain0");
     for (int i = 0; i < 2; ++i) scene.station_m[i] = r.strain0->station_from_wrist_m[i];
     scene.strain_noise_Nm = r.strain0->moment_noise_Nm;
   }
   if (r.load0) {
-    scene.streams.push_back("load0");
+    scene.streams.emplace_back("load0");
     scene.load_noise_N = r.load0->force_noise_N;
   }
   if (r.vision0) {
-    scene.streams.push_back("vision0");
+    scene.streams.emplace_back("vision0");
     scene.tip_registration_m =
         r.vision0->registration_noise_m + std::min(0.5, r.vision0->registration_noise_rad) * reach;
   }
   if (r.cam0) {
-    scene.streams.push_back("cam0");
+    scene.streams.emplace_back("cam0");
     if (r.cam0->has_T_RC) scene.camera = r.cam0->calibration;
   }
   if (!r.wrist0 || r.wrist0->samples.empty() || count < 1) return scene;

@@ -102,7 +102,7 @@ const std::vector<Labelled>& Labels() {
 /// Returns the place of a key in the table, its length where the key is not there.
 std::size_t PlaceOf(const std::string& key, const std::string& command) {
   const auto& labels = Labels();
-  for (const std::string& wanted : {command + " " + key, key}) {
+  for (const std::string& wanted : {fmt::format("{} {}", command, key), key}) {
     const auto found = std::find_if(labels.begin(), labels.end(),
                                     [&](const Labelled& l) { return l.first == wanted; });
     if (found != labels.end()) return static_cast<std::size_t>(found - labels.begin());

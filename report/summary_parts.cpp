@@ -155,6 +155,7 @@ void AddSummaryNumbers(Report& report, const std::filesystem::path& folder) {
     return IsBefore(a, b, command);
   });
   std::vector<std::pair<std::string, std::string>> numbers;
+  numbers.reserve(keys.size());
   for (const std::string& key : keys)
     numbers.emplace_back(Label(key, command), Shown(key, summary[key]));
   report.AddNumbers(numbers);

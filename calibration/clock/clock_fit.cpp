@@ -48,7 +48,7 @@ class Problem {
       without << velocity, 0.0;
       rows.x.push_back(with_constant);
       rows.velocity.push_back(without);
-      rows.y.push_back(target_.values.col(static_cast<Eigen::Index>(i)).head(rows_));
+      rows.y.emplace_back(target_.values.col(static_cast<Eigen::Index>(i)).head(rows_));
       rows.since_origin_s.push_back(since_s);
       rows.sample.push_back(i);
     }

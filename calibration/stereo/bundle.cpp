@@ -240,6 +240,7 @@ bool AddEye(std::size_t v, int eye, bool by_place, StereoSolution& s, Sums& sums
   }
   Eigen::Matrix<double, 2, kPlace, Eigen::RowMajor> J_place;
   std::vector<double*> jacobians;
+  jacobians.reserve(J.size() + 1);
   for (Rows& block : J) jacobians.push_back(block.data());
   jacobians.push_back(J_place.data());
   for (std::size_t i = 0; i < seen.px.size(); ++i) {

@@ -38,6 +38,7 @@ PivotAdvice AdvisePivot(const std::vector<PivotPose>& poses, const Matrix6d& H,
   const Eigen::Matrix3d R_mean = MeanRotation(poses), W = S.inverse();
   const int count = std::max(4, static_cast<int>(poses.size()) / 4);
   std::vector<Eigen::Vector3d> axes;
+  axes.reserve(6);
   for (int i = 0; i < 3; ++i) axes.emplace_back(Eigen::Vector3d::Unit(i));
   for (int i = 0; i < 3; ++i) axes.emplace_back(turn_axes_B.col(i));
   PivotAdvice best;

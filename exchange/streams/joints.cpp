@@ -24,8 +24,8 @@ bool Slides(const std::string& joint) {
   return false;
 }
 
-std::vector<double> NoiseOf(const JointSeries& series, const std::string& key, Settings settings,
-                            ImportLog& log) {
+std::vector<double> NoiseOf(const JointSeries& series, const std::string& key,
+                            const Settings& settings, ImportLog& log) {
   std::vector<double> noise = settings.List(key);
   if (noise.size() == series.names.size()) return noise;
   if (!noise.empty()) {
@@ -35,7 +35,7 @@ std::vector<double> NoiseOf(const JointSeries& series, const std::string& key, S
   for (std::size_t joint = 0; joint < series.names.size(); ++joint) {
     std::vector<Eigen::VectorXd> values;
     for (const auto& row : series.values)
-      values.push_back(Eigen::VectorXd::Constant(1, row[joint]));
+      values.emplace_back(Eigen::VectorXd::Constant(1, row[joint]));
     const auto measured = MeasureNoise(values);
     noise.push_back(measured ? measured->sd : 0.0);  // of a joint that never moved
   }

@@ -71,7 +71,7 @@ std::optional<Found> AsMatrix(const Words& words) {
   std::size_t i = words.size();
   while (i > 0 && digits.size() < 2 &&
          std::all_of(words[i - 1].begin(), words[i - 1].end(), IsDigit))
-    digits = words[--i] + digits;
+    digits.insert(0, words[--i]);
   std::string name;
   if (digits.empty() && i > 0) {
     const std::string& word = words[i - 1];

@@ -27,7 +27,7 @@ class CameraLimits {
   }
 
  private:
-  void Add(Severity severity, const char* kind, std::string text, std::string mend) {
+  void Add(Severity severity, const char* kind, const std::string& text, std::string mend) {
     findings_.push_back({severity, name_ + kind, name_ + ": " + text, std::move(mend)});
   }
   double X() const { return camera_.cu_px / camera_.width_px; }

@@ -129,7 +129,7 @@ class PlaceCheck {
       const auto tip = Expected(view.t_ns + shift);
       if (!tip) continue;
       expected.push_back(*tip);
-      differences.push_back(T_RC * view.value.p - *tip);
+      differences.emplace_back(T_RC * view.value.p - *tip);
     }
     constexpr std::size_t kViews = 4;
     if (expected.size() < kViews || 10 * expected.size() < 7 * poses_.size()) return {};

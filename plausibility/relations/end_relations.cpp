@@ -220,7 +220,7 @@ void AddMotionInAnyFrame(RelationList& list) {
     const auto along = DirectionToPort(scene, now);
     if (!now.em0 || !along) continue;
     places.push_back(now.em0->p);
-    expected.push_back(now.wrist->p + scene.EmAt() * *along);
+    expected.emplace_back(now.wrist->p + scene.EmAt() * *along);
     if (!now.em0->q) continue;
     axes.push_back(ShaftAxis(*now.em0->q));
     to_port.push_back(*along);

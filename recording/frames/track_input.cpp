@@ -76,7 +76,7 @@ TrackInput OpenRecordingToTrack(const std::filesystem::path& recording,
   RefuseUnplacedPair(recording, input.recording);
   if (!input.recording.cam0->has_T_RC && input.recording.wrist0) {
     input.recording.wrist0.reset();  // in R, which the camera does not know
-    input.warnings.push_back("cam0: T_RC is unknown: wrist0 does not help to track");
+    input.warnings.emplace_back("cam0: T_RC is unknown: wrist0 does not help to track");
   }
   input.frames = OpenCameras(recording, options.range, input.recording);
   return input;

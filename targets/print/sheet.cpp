@@ -28,6 +28,7 @@ Paper PaperOf(const std::string& name) {
 std::vector<Eigen::AlignedBox2d> InMm(const std::vector<Eigen::AlignedBox2d>& boxes_m,
                                       const Eigen::Vector2d& corner_mm) {
   std::vector<Eigen::AlignedBox2d> boxes_mm;
+  boxes_mm.reserve(boxes_m.size());
   for (const auto& box : boxes_m) {
     boxes_mm.emplace_back(corner_mm + 1e3 * box.min(), corner_mm + 1e3 * box.max());
   }
@@ -39,6 +40,7 @@ Sheet::Sheet(const std::filesystem::path& file, const Paper& paper)
 
 void Sheet::Black(const std::vector<Eigen::AlignedBox2d>& boxes_mm) {
   std::vector<std::pair<report::Place, report::Place>> rectangles;
+  rectangles.reserve(boxes_mm.size());
   for (const auto& box : boxes_mm) rectangles.emplace_back(At(box.min()), At(box.max()));
   canvas_.FillTogether(rectangles, "#000000");
 }
