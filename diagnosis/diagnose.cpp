@@ -23,6 +23,17 @@ std::string SpokenName(const std::string& channel) {
                      channel.substr(0, first));
 }
 
+std::string MemoryWarning(const ResidualMemory& memory) {
+  return fmt::format(
+      "what is left of {} remembers itself ({:.2f} from sample to sample): an error of the model "
+      "is "
+      "in it, and the probability holds among the known causes alone; {}",
+      SpokenName(memory.channel), memory.correlation,
+      memory.SamplesAsOne() > 1.0
+          ? fmt::format("{:.1f} samples count as one", memory.SamplesAsOne())
+          : std::string("the noise taken covers the memory"));
+}
+
 /// What the stages work on. The layout refers to the samples, the replays to both.
 struct Work {
   SampleSet samples;
@@ -207,13 +218,8 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                     selection.far_samples, work.samples.samples.size()));
   }
   result.memory = selection.memory;
-  if (selection.memory.correlation > kLongMemory && selection.memory.SamplesAsOne() > 1.0) {
-    result.warnings.push_back(fmt::format(
-        "what is left of {} remembers itself ({:.2f} from sample to sample): the probabilities "
-        "take the noise for slow, and {:.1f} samples for one",
-        SpokenName(selection.memory.channel), selection.memory.correlation,
-        selection.memory.SamplesAsOne()));
-  }
+  if (selection.memory.correlation > kLongMemory)
+    result.warnings.push_back(MemoryWarning(selection.memory));
   const Probabilities probabilities = MakeProbabilities(selection, work.layout, selection_options);
   result.probabilities = probabilities.hypotheses;
   result.presence = probabilities.presence;

@@ -3,16 +3,30 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kAbsurd = 1e4;  // chi-squared per degree of freedom of the extended model
+constexpr double kAbsurd = 100.0;  // times the data sheets' noise
+
+/// A probability in per cent. No recording makes an answer certain.
+std::string Percent(double probability) {
+  if (probability > 0.99) return "over 99 %";
+  return fmt::format("{:.0f} %", 100.0 * probability);
+}
+
+/// How many times the noise of the data sheets the extended model misses the sensors by. A misfit
+/// that looks like noise is in the noise taken.
+double TimesStatedNoise(const DiagnosisResult& result) {
+  const double taken = *std::max_element(result.noise_scale.begin(), result.noise_scale.end());
+  return std::sqrt(result.extended.chi2_per_dof) * std::max(1.0, taken);
+}
 
 std::string AnswerOf(const DiagnosisResult& result) {
-  std::string says = fmt::format("{} ({:.0f} %)", Joined(result.verdict),
-                                 100.0 * result.probabilities[0].probability);
+  std::string says =
+      fmt::format("{} ({})", Joined(result.verdict), Percent(result.probabilities[0].probability));
   for (const auto& group : result.indistinguishable) {
     if (group.size() < 2) continue;
     says += fmt::format("; {} could as well be {}", group[0],
@@ -27,12 +41,12 @@ std::string AnswerOf(const DiagnosisResult& result) {
 
 Judgement JudgeDiagnosis(const DiagnosisResult& result) {
   Judgement judged;
-  if (result.extended.chi2_per_dof > kAbsurd) {
+  if (const double times = TimesStatedNoise(result); times > kAbsurd) {
     judged.grade = Grade::kNotFound;
     judged.says = fmt::format(
         "No model of this instrument comes near the recording: the best misses the sensors by "
         "{:.0f} times their noise.",
-        std::sqrt(result.extended.chi2_per_dof));
+        times);
     judged.next = "find the stream that does not fit";
     judged.command = "flextip check RECORDING";
     return judged;

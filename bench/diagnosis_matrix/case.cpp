@@ -44,6 +44,7 @@ class Planner {
       one_.load = load == "known";
       one_.family = plan_.family;
       one_.duration_s = plan_.duration_s;
+      one_.noise_correlation = plan_.noise_correlation;
       PlanSizeless();
       for (const std::string& size : plan_.sizes) PlanSize(size);
     }
@@ -114,10 +115,12 @@ hidden::MotionFamily FamilyOf(const std::string& name) {
 std::string MatrixCase::Key() const {
   const std::string what =
       drawn > 0 ? fmt::format("draw{}", drawn) : fmt::format("{}", fmt::join(effects, "+"));
-  return fmt::format("{}/{}/{}/load_{}/left_out_{}/without_{}/{}/{}s/{}/seed_{}", part,
+  const std::string noise =
+      noise_correlation == 0.0 ? "" : fmt::format("noise_{}/", noise_correlation);
+  return fmt::format("{}/{}/{}/load_{}/left_out_{}/without_{}/{}/{}s/{}{}/seed_{}", part,
                      what.empty() ? "none" : what, size, load ? "known" : "unknown",
                      left_out.empty() ? "nothing" : left_out, without.empty() ? "nothing" : without,
-                     family, duration_s, index, seed);
+                     family, duration_s, noise, index, seed);
 }
 
 const std::vector<std::string>& MatrixParts() {
@@ -137,6 +140,7 @@ hidden::HiddenOptions HiddenOptionsOf(const MatrixCase& one) {
   if (!one.left_out.empty()) options.left_out = {one.left_out};
   options.scene.family = FamilyOf(one.family);
   options.scene.duration_s = one.duration_s;
+  options.noise_correlation = one.noise_correlation;
   return options;
 }
 
@@ -148,6 +152,8 @@ std::string MakeHiddenCall(const MatrixCase& one) {
   if (!one.load) call += " --no-load";
   if (!one.left_out.empty()) call += " --leave-out " + one.left_out;
   call += " --family " + one.family;
+  if (one.noise_correlation != 0.0)
+    call += fmt::format(" --noise-correlation {}", one.noise_correlation);
   if (one.duration_s != 20.0) call += fmt::format(" --duration {}", one.duration_s);
   return call;
 }

@@ -20,8 +20,9 @@ struct MatrixCase {
   std::string without;               ///< an effect the diagnosis does not know
   std::string family = "tuning";     ///< family of motions
   double duration_s = 20.0;
-  int index = 0;           ///< within the cell
-  std::uint64_t seed = 0;  ///< seed of the recording
+  double noise_correlation = 0.0;  ///< AR(1) coefficient of the sensors' noise
+  int index = 0;                   ///< within the cell
+  std::uint64_t seed = 0;          ///< seed of the recording
 
   /// Everything above in one line: what resuming recognises a case by.
   std::string Key() const;
@@ -40,6 +41,7 @@ struct MatrixPlan {
   std::uint64_t first_seed = 1;
   std::string family = "tuning";
   double duration_s = 20.0;
+  double noise_correlation = 0.0;  ///< AR(1) coefficient of the sensors' noise
 };
 
 /// Every case of the plan. A recording's seed follows from the first seed and the case's own key

@@ -50,6 +50,9 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({"tuning", "held_out", "any"}));
   app.add_option("--duration", plan.duration_s, "Seconds of each recording")
       ->check(CLI::Range(1.0, 3600.0));
+  app.add_option("--noise-correlation", plan.noise_correlation,
+                 "AR(1) coefficient of the sensors' noise, from sample to sample")
+      ->check(CLI::Range(0.0, 0.999));
   app.add_option("--jobs", arguments.jobs, "Cases at a time")->check(CLI::PositiveNumber);
   app.add_flag("--summarize", arguments.summarize, "Only read cases.jsonl");
   app.add_option("-o,--out", arguments.out,

@@ -49,5 +49,20 @@ TEST(JudgeDiagnosis, AnAbsurdMisfitIsNoAnswer) {
   EXPECT_EQ(judged.command, "flextip check RECORDING");
 }
 
+// A stream in another unit can pass for noise: then the noise is absurd.
+TEST(JudgeDiagnosis, AnAbsurdNoiseIsNoAnswer) {
+  DiagnosisResult result = Found();
+  result.noise_scale = {1.0, 5000.0};
+  EXPECT_EQ(JudgeDiagnosis(result).grade, Grade::kNotFound);
+  result.noise_scale = {1.0, 5.0};
+  EXPECT_EQ(JudgeDiagnosis(result).grade, Grade::kGood);
+}
+
+TEST(JudgeDiagnosis, NoAnswerIsCertain) {
+  DiagnosisResult result = Found();
+  result.probabilities[0].probability = 0.99962;
+  EXPECT_EQ(JudgeDiagnosis(result).says, "length (over 99 %).");
+}
+
 }  // namespace
 }  // namespace flextip::diagnosis
