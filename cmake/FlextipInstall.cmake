@@ -18,14 +18,16 @@ install(CODE "set(source [[${PROJECT_SOURCE_DIR}]])
   set(include \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/flextip\")
   include([[${CMAKE_CURRENT_LIST_DIR}/InstallHeaders.cmake]])" COMPONENT development)
 
-# flextip_pkg_config(NAME REQUIRES): flextip-NAME.pc. Ceres has no file of its own.
+# flextip_pkg_config(NAME REQUIRES): flextip-NAME.pc. Ceres has no file of its own. The prefix is
+# found from the file's own place: a package is installed elsewhere than where it was configured for.
 function(flextip_pkg_config name requires)
+  file(RELATIVE_PATH to_prefix /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
   list(JOIN requires " " requires)
   set(libs "-L\${libdir} -lflextip_${name}")
   if(name STREQUAL "calibration")
     string(APPEND libs " -lceres -lglog")
   endif()
-  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/flextip-${name}.pc CONTENT "prefix=${CMAKE_INSTALL_PREFIX}
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/flextip-${name}.pc CONTENT "prefix=\${pcfiledir}/${to_prefix}
 libdir=\${prefix}/${CMAKE_INSTALL_LIBDIR}
 includedir=\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}
 
