@@ -59,37 +59,30 @@ class Loop {
   }
 
   LoopResult Run(const std::function<void(int, int)>& progress) {
-    const double tick_rate_hz = TickRate();
-    const int ticks_per_update =
-        static_cast<int>(std::lround(tick_rate_hz / setup_.update_rate_hz));
     const int total = path_->MaxUpdates();
-    for (int tick = 0; !path_->Done(); ++tick) {
-      t_ns_ = kSimulationStart_ns + std::llround(tick * 1e9 / tick_rate_hz);
-      if (tick > 0) MoveWrist(1.0 / tick_rate_hz);
+    TimeNs last_ns = t_ns_;
+    for (int updates = 0; !path_->Done(); last_ns = t_ns_) {
+      const TimeNs update_ns = UpdateTime(updates);
+      t_ns_ = std::min(sensors_.NextDue().value_or(update_ns), update_ns);
+      if (t_ns_ > kSimulationStart_ns) MoveWrist(1e-9 * static_cast<double>(t_ns_ - last_ns));
       Sense();
-      if (tick % ticks_per_update == 0) {
+      const bool at_update = t_ns_ == update_ns;
+      if (at_update) {
         Update();
+        ++updates;
         if (progress) progress(static_cast<int>(result_.updates.size()), total);
       }
-      Score(tick % ticks_per_update == 0);
+      Score(at_update);
     }
     Finish();
     return std::move(result_);
   }
 
  private:
-  /// Sensors faster than the camera are sampled between its frames.
-  double TickRate() const {
-    double fastest = setup_.update_rate_hz;
-    const auto consider = [&](const auto& sensor) {
-      if (sensor) fastest = std::max(fastest, sensor->rate_hz);
-    };
-    consider(setup_.sensors.wrist);
-    consider(setup_.sensors.em0);
-    consider(setup_.sensors.em1);
-    consider(setup_.sensors.strain);
-    consider(setup_.sensors.load);
-    return setup_.update_rate_hz * std::ceil(fastest / setup_.update_rate_hz - 1e-9);
+  /// The controller has its own clock and so has every sensor: the plant is solved where any of them
+  /// is due.
+  TimeNs UpdateTime(int update) const {
+    return kSimulationStart_ns + std::llround(update * 1e9 / setup_.update_rate_hz);
   }
 
   void StartCamera() {

@@ -1,5 +1,6 @@
 #include "simulation/sensors/sensors.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/rotation.h"
@@ -94,6 +95,20 @@ void Sensors::Sample(const PlantShape& shape, TimeNs t_ns, Recording& recording)
   if (setup_.tip && tip_.Due(setup_.tip->rate_hz, t_ns)) {
     SampleTip(tip_history_.At(t_ns - Nanoseconds(effects_.camera_latency_s)), t_ns, recording);
   }
+}
+
+std::optional<TimeNs> Sensors::NextDue() const {
+  std::optional<TimeNs> next;
+  const auto consider = [&](const auto& sensor, const Channel& channel) {
+    if (sensor) next = std::min(next.value_or(channel.next_ns), channel.next_ns);
+  };
+  consider(setup_.wrist, wrist_);
+  consider(setup_.em0, em0_);
+  consider(setup_.em1, em1_);
+  consider(setup_.strain, strain_);
+  consider(setup_.load, load_);
+  consider(setup_.tip, tip_);
+  return next;
 }
 
 void Sensors::Remember(const PlantShape& shape, TimeNs t_ns) {

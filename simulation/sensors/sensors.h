@@ -70,6 +70,9 @@ class Sensors {
   /// Before kSimulationStart_ns nothing is due: such calls only give the latencies their past.
   void Sample(const PlantShape& shape, TimeNs t_ns, Recording& recording);
 
+  /// Returns the time at which the next sample of any sensor is due; empty without sensors.
+  std::optional<TimeNs> NextDue() const;
+
  private:
   /// One sensor's clock and noise.
   struct Channel {

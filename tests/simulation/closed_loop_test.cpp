@@ -82,6 +82,41 @@ TEST(ClosedLoop, SensorsKeepTheirRatesAndTheRecordingIsWhole) {
   EXPECT_EQ(result.truth.size(), r.wrist0->samples.size());
 }
 
+/// Each sample lies at a multiple of its sensor's period, whatever the other rates are.
+template <class T>
+void ExpectTimes(const Series<T>& series, double rate_hz) {
+  ASSERT_GT(series.size(), 20U);
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const double at_s = 1e-9 * static_cast<double>(series[i].t_ns - kSimulationStart_ns);
+    ASSERT_NEAR(at_s, static_cast<double>(i) / rate_hz, 1.1e-6) << i << " at " << rate_hz << " Hz";
+  }
+}
+
+TEST(ClosedLoop, SensorsOfRatesThatAreNoMultiplesKeepThem) {
+  Scenario scenario = ReadScenario(kScenarios + "press.yaml");
+  SensorSetup& sensors = scenario.loop.sensors;
+  sensors.wrist->rate_hz = 120.0;
+  sensors.wrist->position_noise_m = 0.0;
+  sensors.em0->rate_hz = 100.0;
+  sensors.strain->rate_hz = 29.97;
+  sensors.tip->rate_hz = 25.0;
+  const LoopResult result = RunLoop(scenario, ControllerKind::kFlexTrack);
+  const Recording& r = result.recording;
+  ExpectTimes(r.wrist0->samples, 120.0);
+  ExpectTimes(r.em0->samples, 100.0);
+  ExpectTimes(r.strain0->moments_Nm, 29.97);
+  ExpectTimes(r.vision0->tips, 25.0);
+  ExpectTimes(r.command0->p_RW, 30.0);
+  // The stamp is that of the state: without noise the wrist is the truth's at the same time.
+  std::size_t k = 0;
+  for (const auto& sample : r.wrist0->samples) {
+    while (k < result.truth.size() && result.truth[k].t_ns < sample.t_ns) ++k;
+    ASSERT_LT(k, result.truth.size());
+    ASSERT_EQ(result.truth[k].t_ns, sample.t_ns);
+    EXPECT_LT((sample.value.p_RW - result.truth[k].value.p_RW).norm(), 1e-12);
+  }
+}
+
 TEST(ClosedLoop, SensorNoiseIsAsStated) {
   // Against the truth of the same run: mean square of the wrist's and the EM sensor's errors.
   const Scenario scenario = ReadScenario(kScenarios + "press.yaml");
