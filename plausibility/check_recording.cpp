@@ -54,9 +54,10 @@ class RecordingCheck {
     Add(CheckLimits(unknown_, repaired_));
     Shifts shifts;
     const std::set<std::string> unknown = UnknownOfMotion();
-    Add(CheckClocks(repaired_, rows, unknown, shifts));
-    Add(CheckForceClocks(repaired_, unknown, shifts));
-    if (repaired_.wrist0) Faults(shifts);
+    Shifts supposed;
+    Add(CheckClocks(repaired_, rows, unknown, shifts, supposed));
+    Replace(CheckForceClocks(repaired_, unknown, shifts));
+    if (repaired_.wrist0) Faults(shifts, supposed);
     Add(CheckHungMass(repaired_, result_.findings));
     std::vector<std::string> spoilt = SpoiltStreams(result_.findings);
     spoilt.insert(spoilt.end(), unknown_.begin(), unknown_.end());
@@ -68,6 +69,12 @@ class RecordingCheck {
  private:
   void Add(const std::vector<Finding>& more) {
     result_.findings.insert(result_.findings.end(), more.begin(), more.end());
+  }
+
+  /// Puts findings in the place of those of the same id.
+  void Replace(const std::vector<Finding>& more) {
+    std::erase_if(result_.findings, [&](const Finding& f) { return Contains(more, f.id); });
+    Add(more);
   }
 
   /// A wrist that does not fit the port makes no motion to compare clocks by.
@@ -82,8 +89,8 @@ class RecordingCheck {
     return unknown;
   }
 
-  void Faults(const Shifts& shifts) {
-    const std::vector<Finding> faults = SearchFaults(repaired_, shifts, unknown_);
+  void Faults(const Shifts& shifts, const Shifts& supposed) {
+    const std::vector<Finding> faults = SearchFaults(repaired_, shifts, supposed, unknown_);
     // A force that a unit mends is not large.
     if (Contains(faults, "load0.unit"))
       std::erase_if(result_.findings, [](const Finding& f) { return f.id == "load0.large"; });

@@ -26,15 +26,19 @@ struct Attempt {
 
   bool IsBetterThan(const Attempt& other) const {
     if ((violated == 0) != (other.violated == 0)) return violated == 0;
-    return misfit < other.misfit;
+    constexpr double kRounding = 1e-9;
+    return misfit < other.misfit - kRounding;
   }
 };
 
 class FaultSearch {
  public:
-  FaultSearch(const Recording& recording, const Shifts& shifts,
+  FaultSearch(const Recording& recording, const Shifts& shifts, const Shifts& supposed,
               const std::set<std::string>& unknown)
-      : recording_(recording), shifts_(shifts), scene_(TakeScene(recording, shifts)) {
+      : recording_(recording),
+        supposed_(supposed),
+        shifts_(shifts),
+        scene_(TakeScene(recording, shifts)) {
     scene_.unknown = unknown;
     // A camera whose lens was found wrong tells nothing of its view.
     if (scene_.camera && !(scene_.camera->fu_px > 0.0)) scene_.camera.reset();
@@ -105,6 +109,8 @@ class FaultSearch {
       if (attempt.violated >= violated || attempt.misfit > kNeeded * before) return;
       if (!best || attempt.IsBetterThan(*best)) best = std::move(attempt);
     };
+    for (const auto& [stream, shift_s] : supposed_)
+      if (!shifts_.contains(stream)) consider(ClockFault(stream, shift_s), 0.0);
     for (const Fault& fault : FaultsOf(scene_)) consider(fault, 0.0);
     if (best && best->violated == 0) return best;
     for (const Fault& fault : SearchedFaultsOf(scene_)) consider(fault, kHandicap);
@@ -117,25 +123,41 @@ class FaultSearch {
     std::vector<Fault> faults;
     for (const char* stream : {"em0", "vision0", "strain0", "load0", "command0", "wrist0"}) {
       if (!scene_.Has(stream) || shifts_.contains(stream)) continue;
+      if (stream == std::string("wrist0") && !IsWristsFault()) continue;
       for (int tenths = -50; tenths <= 50; ++tenths) {
         if (std::abs(tenths) < 3) continue;
-        const double shift = 0.1 * tenths;
-        Shifts with = shifts_;
-        with[stream] = shift;
-        faults.push_back({std::string(stream) + ".clock", stream,
-                          fmt::format("{}: its clock looks {:.1f} s {} that of the other streams",
-                                      stream, std::abs(shift), shift < 0.0 ? "ahead of" : "behind"),
-                          fmt::format("import with --offset {}={:.1f}", stream, shift),
-                          [this, with](Scene& s) {
-                            s.instants = TakeScene(recording_, with).instants;
-                            if (!s.Has("vision0"))
-                              for (Instant& now : s.instants) now.tip.reset();
-                            for (const Fault& fault : undone_) fault.undo(s);
-                          },
-                          shift});
+        faults.push_back(ClockFault(stream, 0.1 * tenths));
       }
     }
     return faults;
+  }
+
+  Fault ClockFault(const std::string& stream, double shift_s) const {
+    Shifts with = shifts_;
+    with[stream] = shift_s;
+    return {stream + ".clock",
+            stream,
+            fmt::format("{}: its clock looks {:.1f} s {} that of the other streams", stream,
+                        std::abs(shift_s), shift_s < 0.0 ? "ahead of" : "behind"),
+            fmt::format("import with --offset {}={:.1f}", stream, shift_s),
+            [this, with](Scene& s) {
+              s.instants = TakeScene(recording_, with).instants;
+              if (!s.Has("vision0"))
+                for (Instant& now : s.instants) now.tip.reset();
+              for (const Fault& fault : undone_) fault.undo(s);
+            },
+            shift_s};
+  }
+
+  /// A wrist whose clock is off fits none of the others: two of them have to say so.
+  bool IsWristsFault() const {
+    std::set<std::string> against;
+    for (const Relation& r : relations_) {
+      if (!r.Violated()) continue;
+      for (const std::string& stream : scene_.streams)
+        if (stream != "wrist0" && r.IsAbout("wrist0") && r.IsAbout(stream)) against.insert(stream);
+    }
+    return against.size() > 1;
   }
 
   /// Names the stream without which the others fit.
@@ -160,6 +182,7 @@ class FaultSearch {
   }
 
   const Recording& recording_;
+  const Shifts& supposed_;
   Shifts shifts_;
   Scene scene_;
   std::vector<Relation> relations_;
@@ -169,8 +192,8 @@ class FaultSearch {
 }  // namespace
 
 std::vector<Finding> SearchFaults(const Recording& recording, const Shifts& shifts,
-                                  const std::set<std::string>& unknown) {
-  FaultSearch search(recording, shifts, unknown);
+                                  const Shifts& supposed, const std::set<std::string>& unknown) {
+  FaultSearch search(recording, shifts, supposed, unknown);
   search.Run();
   return search.findings;
 }

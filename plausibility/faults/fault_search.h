@@ -14,8 +14,9 @@ namespace flextip::plausibility {
 /// Undoes every known fault in turn where a relation is violated, and returns the one after which
 /// all streams fit best, up to three faults one after the other. Where none helps, the finding is
 /// "unexplained" and names the stream without which the others fit. `shifts` are the clock
-/// corrections found so far, `unknown` the subjects that are not judged.
+/// corrections found so far, `supposed` those that are to be tried, `unknown` the subjects that are
+/// not judged.
 std::vector<Finding> SearchFaults(const Recording& recording, const Shifts& shifts,
-                                  const std::set<std::string>& unknown);
+                                  const Shifts& supposed, const std::set<std::string>& unknown);
 
 }  // namespace flextip::plausibility

@@ -17,8 +17,8 @@ std::vector<Fault> FaultsOf(const Scene& scene) {
   if (scene.Has("em1")) AddOrientationFaults(list, "em1", "q_RS");
   if (scene.Has("vision0")) AddPositionFaults(list, "vision0", "p_RE");
   AddSensorFaults(list);
-  AddSettingFaults(list);
   AddForceFaults(list);
+  AddSettingFaults(list);  // moments in another unit look like a stiffness in another: rarer
   AddCameraFaults(list);
   return list.Take();
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "plausibility/faults/fault_list.h"
+#include "plausibility/limits/limits.h"
 
 namespace flextip::plausibility {
 namespace {
@@ -50,10 +51,11 @@ void AddShaft(FaultList& list) {
     double factor;
     const char* name;
   };
-  const double EI = instrument.bending_stiffness_Nm2;
+  const double EI = instrument.bending_stiffness_Nm2, diameter = instrument.outer_diameter_m;
   for (const StiffnessUnit& of :
        {StiffnessUnit{1e-6, "N mm2"}, StiffnessUnit{1e-4, "N cm2"},
         StiffnessUnit{1e-3, "mN m2 or kN mm2"}, StiffnessUnit{1e3, "kN m2"}}) {
+    if (!IsShaftsStiffness(EI * of.factor, diameter)) continue;
     list.Add("instrument.stiffness", "stiffness",
              fmt::format("bending_stiffness_Nm2: {:.4g} looks like {}", EI, of.name),
              fmt::format("bending_stiffness_Nm2: {:.4g} in recording.yaml", EI * of.factor),

@@ -15,6 +15,10 @@ constexpr double kThinnest_m = 1e-4, kThickest_m = 0.05;
 constexpr double kSoftest_Pa = 1e9, kSoftestTube_Pa = 1e6, kStiffest_Pa = 400e9;
 constexpr double kGravity_m_s2 = 9.81;
 
+double ModulusOf(double EI_Nm2, double diameter_m) {
+  return 64.0 * EI_Nm2 / (std::numbers::pi * std::pow(diameter_m, 4));
+}
+
 struct Unit {
   double factor;
   const char* name;
@@ -62,7 +66,7 @@ class InstrumentLimits {
     const double diameter = recording_.instrument.outer_diameter_m;
     double& EI = recording_.instrument.bending_stiffness_Nm2;
     if (!(diameter > 0.0) || !(EI > 0.0)) return;
-    const double modulus = 64.0 * EI / (std::numbers::pi * std::pow(diameter, 4));
+    const double modulus = ModulusOf(EI, diameter);
     if (modulus >= kSoftest_Pa && modulus <= kStiffest_Pa) return;
     const std::string found = fmt::format("bending_stiffness_Nm2: {:.4g}", EI);
     const std::string of_diameter = fmt::format("with the diameter of {:.3g} mm", 1e3 * diameter);
@@ -133,6 +137,12 @@ class InstrumentLimits {
 };
 
 }  // namespace
+
+bool IsShaftsStiffness(double EI_Nm2, double diameter_m) {
+  if (!(diameter_m > 0.0)) return true;
+  const double modulus = ModulusOf(EI_Nm2, diameter_m);
+  return modulus >= kSoftestTube_Pa && modulus <= kStiffest_Pa;
+}
 
 void CheckInstrument(const std::set<std::string>& unknown, Recording& recording,
                      std::vector<Finding>& findings) {

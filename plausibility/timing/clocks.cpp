@@ -8,13 +8,12 @@
 #include <utility>
 
 #include "plausibility/timing/lag.h"
+#include "plausibility/timing/lag_choice.h"
 
 namespace flextip::plausibility {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kLatency_s = 0.25;  // sensors' latencies stay below
 
 /// Returns the share of the shorter stream that lies within the other.
 double Overlap(const Rows& a, const Rows& b) {
@@ -39,8 +38,12 @@ VectorAt SpeedOf(std::function<std::optional<Vector3d>(TimeNs)> place) {
 class ClockCheck {
  public:
   ClockCheck(const Recording& recording, const std::vector<Rows>& rows,
-             const std::set<std::string>& unknown, Shifts& shifts)
-      : recording_(recording), rows_(rows), unknown_(unknown), shifts_(shifts) {}
+             const std::set<std::string>& unknown, Shifts& shifts, Shifts& supposed)
+      : recording_(recording),
+        rows_(rows),
+        unknown_(unknown),
+        shifts_(shifts),
+        supposed_(supposed) {}
 
   void Run() {
     const Rows* wrist = FindRows(rows_, "wrist0");
@@ -49,7 +52,11 @@ class ClockCheck {
     if (shifts_.contains("wrist0")) return;
     if (IsMotionResolved(*wrist)) CompareMotion();
     for (const auto& [name, finding] : doubtful_) {
-      if (!shifts_.contains(name) && !confirmed_.contains(name)) findings.push_back(finding);
+      if (!shifts_.contains(name) && !confirmed_.contains(name)) {
+        findings.push_back(finding);
+      } else {
+        supposed_.erase(name);
+      }
     }
   }
 
@@ -81,14 +88,24 @@ class ClockCheck {
                          DurationText(std::abs(ahead_s)));
     };
     if (others > 1 && apart.size() == others && AreAlike(apart)) {
-      Wrong("wrist0", -apart.front().second, how(apart.front().first, apart.front().second));
+      Wrong("wrist0", -AheadOfWrist(apart), how(apart.front().first, apart.front().second));
       return;
     }
     for (const auto& [name, ahead_s] : apart) {
-      constexpr double kStart_s = 30.0;  // streams seldom begin at the same instant
       const auto lag = LagOf(name, ahead_s, kStart_s);
-      Wrong(name, lag && lag->correlation > 0.8 ? lag->seconds : ahead_s, how(name, ahead_s));
+      Wrong(name, lag && lag->correlation > kMoveAlike ? lag->seconds : ahead_s,
+            how(name, ahead_s));
     }
+  }
+
+  /// By the stream whose motion shows it best, else by the first sample's.
+  double AheadOfWrist(const std::vector<std::pair<std::string, double>>& apart) const {
+    double ahead_s = apart.front().second, best = kMoveAlike;
+    for (const auto& [name, start_s] : apart) {
+      const auto lag = LagOf(name, start_s, kStart_s);
+      if (lag && lag->correlation > best) best = lag->correlation, ahead_s = lag->seconds;
+    }
+    return ahead_s;
   }
 
   static bool AreAlike(const std::vector<std::pair<std::string, double>>& apart) {
@@ -100,19 +117,23 @@ class ClockCheck {
 
   /// Streams that meet the wrist, but look as if by chance.
   void Doubt(const Rows& rows, const Rows& wrist, double overlap) {
-    constexpr double kLate_s = 1.0, kLeast = 0.5;
+    // Streams of one program begin apart as well: only a later start tells.
+    constexpr double kLate_s = 1.0, kLateShare = 0.2, kLeast = 0.5;
+    const double late_s =
+        std::max(kLate_s, kLateShare * SecondsBetween(wrist.t_ns.front(), wrist.t_ns.back()));
     const double start_s = 1e-9 * static_cast<double>(rows.t_ns.front());
     const double wrist_s = 1e-9 * static_cast<double>(wrist.t_ns.front());
     const auto counts_from_zero = [](const Rows& r, double s) {
       return std::abs(s) < 1.5 * MedianStep_s(r);
     };
-    if (counts_from_zero(rows, start_s) && wrist_s > kLate_s) {
+    if (counts_from_zero(rows, start_s) && wrist_s > late_s) {
       Finding finding = ClockFinding(
           rows.name, start_s - wrist_s,
           fmt::format("its times start at 0, those of wrist0 at {}: they look counted from the "
                       "stream's own start",
                       DurationText(wrist_s)));
       finding.severity = Severity::kDoubtful;
+      supposed_[rows.name] = wrist_s - start_s;
       doubtful_.emplace(rows.name, std::move(finding));
     } else if (overlap < kLeast) {
       doubtful_.emplace(rows.name,
@@ -127,7 +148,7 @@ class ClockCheck {
 
   static bool IsMotionResolved(const Rows& wrist) {
     const double duration = SecondsBetween(wrist.t_ns.front(), wrist.t_ns.back());
-    return wrist.t_ns.size() >= 60 && duration > 3.0 &&
+    return wrist.t_ns.size() >= 40 && duration > 1.0 &&
            static_cast<double>(wrist.t_ns.size()) / duration > 5.0;
   }
 
@@ -161,8 +182,10 @@ class ClockCheck {
     if (!IsMotionResolved(wrist) || FindRows(rows_, name) == nullptr) return {};
     if (name != "command0" && (unknown_.contains("port") || unknown_.contains("length"))) return {};
     const LagSearch search{wrist.t_ns.front(), wrist.t_ns.back(), around_s, reach_s};
-    return FindLag(SpeedOf([&](TimeNs t) { return ExpectedPlace(name, t); }),
-                   SpeedOf([&](TimeNs t) { return PlaceAt(recording_, name, t); }), search);
+    const auto lags = FindLags(SpeedOf([&](TimeNs t) { return ExpectedPlace(name, t); }),
+                               SpeedOf([&](TimeNs t) { return PlaceAt(recording_, name, t); }),
+                               search);
+    return ChooseLag(recording_, name, lags, shifts_, unknown_, around_s);
   }
 
   /// Where the straight shaft has the stream's place.
@@ -175,11 +198,13 @@ class ClockCheck {
   }
 
   static constexpr double kReach_s = 60.0;
+  static constexpr double kStart_s = 30.0;  // streams seldom begin at the same instant
+  static constexpr double kMoveAlike = 0.8;
 
   const Recording& recording_;
   const std::vector<Rows>& rows_;
   const std::set<std::string>& unknown_;
-  Shifts& shifts_;
+  Shifts &shifts_, &supposed_;
   std::map<std::string, Finding> doubtful_;
   std::set<std::string> confirmed_;
 };
@@ -197,8 +222,9 @@ Finding ClockFinding(const std::string& stream, double ahead_s, const std::strin
 }
 
 std::vector<Finding> CheckClocks(const Recording& recording, const std::vector<Rows>& rows,
-                                 const std::set<std::string>& unknown, Shifts& shifts) {
-  ClockCheck check(recording, rows, unknown, shifts);
+                                 const std::set<std::string>& unknown, Shifts& shifts,
+                                 Shifts& supposed) {
+  ClockCheck check(recording, rows, unknown, shifts, supposed);
   check.Run();
   return check.findings;
 }

@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "plausibility/relations/bending.h"
+#include "plausibility/relations/relations.h"
 #include "plausibility/timing/clocks.h"
 #include "plausibility/timing/lag.h"
+#include "plausibility/timing/lag_choice.h"
 
 namespace flextip::plausibility {
 namespace {
@@ -32,50 +34,74 @@ class ForceClockCheck {
     if (shifts_.contains("wrist0") || unknown_.contains("port") || unknown_.contains("length"))
       return;
     const bool strain = recording_.strain0.has_value() && !unknown_.contains("strain0");
-    if (strain && !shifts_.contains("strain0")) Strain();
-    if (recording_.load0 && !shifts_.contains("load0")) Load(strain);
+    if (!StreamsFit()) return;
+    // Streams that do not meet the wrist have the offset of their starts so far.
+    const bool known = !shifts_.contains("strain0");
+    const bool found = strain && Strain();
+    if (recording_.load0) Load(strain && (known || found));
   }
 
   std::vector<Finding> findings;
 
  private:
-  void Strain() {
+  /// What sees the bending has to be right: in another frame it bends at other times.
+  bool StreamsFit() const {
+    Scene scene = TakeScene(recording_, shifts_);
+    scene.unknown = unknown_;
+    scene.unknown.insert({"strain0", "load0"});
+    return CountViolated(RelationsOf(scene)) == 0;
+  }
+
+  bool Strain() {
     const auto lag =
-        LagOf([](const Scene& s, const Instant& i) { return Padded(TurnSeen(s, i)); },
+        LagOf("strain0", [](const Scene& s, const Instant& i) { return Padded(TurnSeen(s, i)); },
               [](const Scene& s, const Instant& i) { return Padded(TurnByMoments(s, i)); });
     if (lag) Add("strain0", "moments and bending", *lag);
+    return lag.has_value();
   }
 
   void Load(bool strain) {
     std::optional<Lag> lag;
     if (strain) {
       lag = LagOf(
+          "load0",
           [](const Scene& s, const Instant& i) -> std::optional<Vector3d> {
             if (!i.strain_Nm || !TurnSeen(s, i)) return {};
             return Padded(Vector2d(i.strain_Nm->tail<2>()));
           },
           [](const Scene& s, const Instant& i) { return Padded(MomentByLoad(s, i)); });
     } else {
-      lag = LagOf(DeflectionSeen, DeflectionByLoad);
+      lag = LagOf("load0", DeflectionSeen, DeflectionByLoad);
     }
     if (lag) Add("load0", "load and bending", *lag);
   }
 
   using OfInstant = std::function<std::optional<Vector3d>(const Scene&, const Instant&)>;
 
-  std::optional<Lag> LagOf(const OfInstant& a, const OfInstant& b) const {
+  /// Of the stream without its shift so far, around that.
+  std::optional<Lag> LagOf(const std::string& stream, const OfInstant& a,
+                           const OfInstant& b) const {
+    const auto shift = shifts_.find(stream);
+    const double around_s = shift == shifts_.end() ? 0.0 : -shift->second;
     const auto at = [&](const OfInstant& of) -> VectorAt {
       return [this, of](TimeNs t) -> std::optional<Vector3d> {
         const Instant now = InstantAt(recording_, t, shifts_);
         return now.wrist ? of(settings_, now) : std::nullopt;
       };
     };
-    constexpr double kReach_s = 10.0, kLatency_s = 0.25;
+    constexpr double kReach_s = 10.0;
     const auto& samples = recording_.wrist0->samples;
-    const auto lag =
-        FindLag(at(a), at(b), {samples.front().t_ns, samples.back().t_ns, 0.0, kReach_s});
-    if (!lag || std::abs(lag->seconds) < kLatency_s || !lag->IsClear()) return {};
+    const auto lags =
+        FindLags(at(a), at(b), {samples.front().t_ns, samples.back().t_ns, 0.0, kReach_s});
+    auto lag = ChooseLag(recording_, stream, Later(lags, around_s), shifts_, unknown_, around_s);
+    if (!lag || !lag->IsClear()) return {};
+    if (around_s == 0.0 && std::abs(lag->seconds) < kLatency_s) return {};
     return lag;
+  }
+
+  static std::vector<Lag> Later(std::vector<Lag> lags, double by_s) {
+    for (Lag& lag : lags) lag.seconds += by_s;
+    return lags;
   }
 
   void Add(const std::string& stream, const std::string& what, const Lag& lag) {

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "core/time_series.h"
 
@@ -25,8 +26,9 @@ struct LagSearch {
   double around_s = 0.0, reach_s = 60.0;
 };
 
-/// Returns the lag with the best correlation, to 0.02 s; empty with fewer than 30 common times, or
-/// fewer than 0.4 of those that are known of `a`.
-std::optional<Lag> FindLag(const VectorAt& a, const VectorAt& b, const LagSearch& search);
+/// Returns the lags at which the correlation is best of those around, to 0.02 s, the best first; up
+/// to twelve, of a correlation of 0.5 and more. A motion that repeats has several. Empty with fewer
+/// than 30 common times, or fewer than 0.4 of those that are known of `a`.
+std::vector<Lag> FindLags(const VectorAt& a, const VectorAt& b, const LagSearch& search);
 
 }  // namespace flextip::plausibility
