@@ -56,7 +56,7 @@ class RecordingCheck {
     const std::set<std::string> unknown = UnknownOfMotion();
     Shifts supposed;
     Add(CheckClocks(repaired_, rows, unknown, shifts, supposed));
-    Replace(CheckForceClocks(repaired_, unknown, shifts));
+    Replace(CheckForceClocks(repaired_, unknown, supposed, shifts));
     if (repaired_.wrist0) Faults(shifts, supposed);
     Add(CheckHungMass(repaired_, result_.findings));
     std::vector<std::string> spoilt = SpoiltStreams(result_.findings);

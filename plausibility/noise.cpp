@@ -16,7 +16,7 @@ constexpr int kOrder = 6;
 constexpr std::array<double, kOrder + 1> kWeights{1, -6, 15, -20, 15, -6, 1};
 constexpr double kGain = 30.3974;  // root of the weights' squares
 constexpr double kMedianToSd = 1.0 / 0.6745;
-constexpr std::size_t kFewest = 60;
+constexpr std::size_t kFewest = 24, kMany = 60;  // samples
 
 /// Standard deviation of what differences of order 6 at `step` samples leave.
 double HighFrequencySd(const std::vector<double>& x, std::size_t step) {
@@ -59,11 +59,42 @@ struct Stated {
   std::string of;  ///< "positions"
   double sd = 0.0;
   const char *unit, *key;  ///< a thousandth of the SI unit; "position_noise_m: {:.2g}"
+  double motion = 0.0;     ///< of the noise, commanded: the instrument moves so
 };
+
+/// A controller that listens to noisy sensors commands noise, and the instrument follows it: what
+/// looks like noise of its sensors is motion. Standard deviations per component.
+struct Jitter {
+  double wrist_m = 0.0, turn_rad = 0.0, tip_m = 0.0;
+};
+
+Jitter CommandedJitter(const Recording& r) {
+  constexpr double kLeast = 0.02;  // of the length: nearer to the port the shaft would turn round
+  Jitter jitter;
+  if (!r.command0 || !r.wrist0 || r.wrist0->samples.empty()) return jitter;
+  Components places;
+  for (const auto& s : r.command0->p_RW) Push(places, s.value);
+  for (const std::size_t step : {1, 2, 4}) {
+    double squares = 0.0;
+    for (const auto& x : places) {
+      const double sd = HighFrequencySd(x, step);
+      squares += sd * sd / static_cast<double>(places.size());
+    }
+    jitter.wrist_m = std::max(jitter.wrist_m, std::sqrt(squares));
+  }
+  std::vector<double> to_port;
+  for (const auto& s : r.wrist0->samples) to_port.push_back((r.p_RP - s.value.p_RW).norm());
+  const double length = r.instrument.length_m;
+  const double before = std::max(Median(std::move(to_port)), kLeast * length);
+  jitter.turn_rad = jitter.wrist_m / before;
+  jitter.tip_m = jitter.wrist_m * std::max(1.0, (length - before) / before);
+  return jitter;
+}
 
 class NoiseCheck {
  public:
-  explicit NoiseCheck(const std::vector<std::string>& but) : but_(but) {}
+  NoiseCheck(const std::vector<std::string>& but, const Jitter& jitter)
+      : but_(but), jitter_(jitter) {}
 
   void Wrist(const WristStream& stream) {
     if (!IsFast(stream.samples)) return;
@@ -73,7 +104,8 @@ class NoiseCheck {
       Push(places, s.value.p_RW);
       if (s.value.q_RW && first) Push(turns, Turn(*first, *s.value.q_RW));
     }
-    Poses("wrist0", places, stream.position_noise_m, turns, stream.orientation_noise_rad);
+    Poses("wrist0", places, stream.position_noise_m, jitter_.wrist_m, turns,
+          stream.orientation_noise_rad);
   }
 
   void Em(const std::string& name, const EmStream& stream) {
@@ -83,7 +115,8 @@ class NoiseCheck {
       Push(places, s.value.p_RS);
       Push(turns, Turn(stream.samples.front().value.q_RS, s.value.q_RS));
     }
-    Poses(name, places, stream.position_noise_m, turns, stream.orientation_noise_rad);
+    Poses(name, places, stream.position_noise_m, jitter_.tip_m, turns,
+          stream.orientation_noise_rad);
   }
 
   void Strain(const StrainStream& stream) {
@@ -115,21 +148,24 @@ class NoiseCheck {
     }
     Compare("vision0", places,
             {"positions", std::sqrt(std::max(0.0, Median(variances))), "mm",
-             "the covariance: a standard deviation of {:.2g} m an axis"});
+             "the covariance: a standard deviation of {:.2g} m an axis", jitter_.tip_m});
     if (directions.empty() || directions.front().size() != places.front().size()) return;
     // Stated across the direction: two of three components.
     Compare("vision0", directions,
             {"directions", stream.direction_noise_rad * std::sqrt(2.0 / 3.0), "mrad",
-             "direction_noise_rad: {:.2g}"});
+             "direction_noise_rad: {:.2g}", jitter_.turn_rad});
   }
 
   std::vector<Finding> findings;
 
  private:
   void Poses(const std::string& name, const Components& places, double place_sd_m,
-             const Components& turns, double turn_sd_rad) {
-    Compare(name, places, {"positions", place_sd_m, "mm", "position_noise_m: {:.2g}"});
-    Compare(name, turns, {"orientations", turn_sd_rad, "mrad", "orientation_noise_rad: {:.2g}"});
+             double place_jitter_m, const Components& turns, double turn_sd_rad) {
+    Compare(name, places,
+            {"positions", place_sd_m, "mm", "position_noise_m: {:.2g}", place_jitter_m});
+    Compare(name, turns,
+            {"orientations", turn_sd_rad, "mrad", "orientation_noise_rad: {:.2g}",
+             jitter_.turn_rad});
   }
 
   void Compare(const std::string& stream, const Components& components, const Stated& stated) {
@@ -140,9 +176,11 @@ class NoiseCheck {
       if (f.id == id) return;
     const auto noise = NoiseOf(components);
     if (!noise) return;
-    const bool more = noise->least > kFactor * stated.sd;
+    const double own = std::sqrt(
+        std::max(0.0, noise->least * noise->least - stated.motion * stated.motion));
+    const bool more = own > kFactor * stated.sd;
     if (!more && !(noise->most < stated.sd / kFactor)) return;
-    const double seen = more ? noise->least : noise->most;
+    const double seen = more ? own : noise->most;
     const double times = more ? seen / stated.sd : stated.sd / std::max(seen, 1e-12 * stated.sd);
     findings.push_back(
         {Severity::kDoubtful, id,
@@ -154,14 +192,19 @@ class NoiseCheck {
   }
 
   const std::vector<std::string>& but_;
+  const Jitter& jitter_;
 };
 
 }  // namespace
 
 std::optional<NoiseRange> NoiseOf(const Components& components) {
   if (components.empty() || components.front().size() < kFewest) return {};
-  NoiseRange range{std::numeric_limits<double>::infinity(), 0.0};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const bool many = components.front().size() >= kMany;
+  // Noise that is correlated shows at large steps alone, and those need many samples.
+  NoiseRange range{kInfinity, many ? 0.0 : kInfinity};
   for (const std::size_t step : {1, 2, 4}) {
+    if (step > 1 && !many) break;
     double squares = 0.0, spread = 0.0;
     for (const auto& x : components) {
       const double sd = HighFrequencySd(x, step);
@@ -181,7 +224,8 @@ std::optional<NoiseRange> NoiseOf(const Components& components) {
 }
 
 std::vector<Finding> CheckNoise(const Recording& r, const std::vector<std::string>& but) {
-  NoiseCheck check(but);
+  const Jitter jitter = CommandedJitter(r);
+  NoiseCheck check(but, jitter);
   if (r.wrist0) check.Wrist(*r.wrist0);
   if (r.em0) check.Em("em0", *r.em0);
   if (r.em1) check.Em("em1", *r.em1);

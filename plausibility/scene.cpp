@@ -65,6 +65,18 @@ std::optional<T> NumbersAt(const Series<T>& series, TimeNs t_ns) {
   return T(a + where->fraction * (series[where->i + 1].value - a));
 }
 
+double WristStepOf(const Recording& r) {
+  double squares = 0.0;
+  std::size_t count = 0;
+  const auto& commands = r.command0->p_RW;
+  for (std::size_t i = 1; i < commands.size(); ++i) {
+    const auto from = PlacedAt(r.wrist0->samples, commands[i - 1].t_ns);
+    const auto to = PlacedAt(r.wrist0->samples, commands[i].t_ns);
+    if (from && to) squares += (to->p - from->p).squaredNorm(), ++count;
+  }
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+}
+
 }  // namespace
 
 bool Scene::Has(const std::string& stream) const {
@@ -111,6 +123,7 @@ Scene TakeScene(const Recording& r, const Shifts& shifts_s, int count) {
   const double reach = r.instrument.length_m;
   if (r.wrist0) scene.streams.emplace_back("wrist0");
   if (r.command0) scene.streams.emplace_back("command0");
+  if (r.command0 && r.wrist0) scene.wrist_step_m = WristStepOf(r);
   if (r.em0) {
     scene.streams.emplace_back("em0");
     scene.em0_from_tip_m = r.em0->distance_from_tip_m;

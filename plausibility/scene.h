@@ -42,6 +42,7 @@ struct Scene {
   double station_m[2] = {0.0, 0.0};  ///< of strain0, from the wrist
   double strain_noise_Nm = 0.0, load_noise_N = 0.0;
   double em0_registration_m = 0.0, tip_registration_m = 0.0;  ///< at the shaft's end
+  double wrist_step_m = 0.0;  ///< root mean square way of the wrist in a step of command0
   std::optional<CameraCalibration> camera;
   std::vector<std::string> streams;  ///< of the recording, in its order
   std::vector<Instant> instants;

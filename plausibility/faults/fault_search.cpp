@@ -171,6 +171,12 @@ class FaultSearch {
       // The wrist is in nearly all of them.
       if (left < least || (left == least && culprit == "wrist0")) least = left, culprit = stream;
     }
+    // A clock that is doubted explains it.
+    for (const auto& [stream, shift_s] : supposed_) {
+      if (std::all_of(relations_.begin(), relations_.end(),
+                      [&](const Relation& r) { return !r.Violated() || r.IsAbout(stream); }))
+        return;
+    }
     const Relation* worst = WorstOf(relations_, culprit);
     if (worst == nullptr) worst = WorstOf(relations_);
     if (culprit.empty()) culprit = worst->about.front();

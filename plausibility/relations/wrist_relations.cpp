@@ -108,7 +108,13 @@ void AddCommand(RelationList& list) {
   constexpr double kHardly_m = 0.005;
   const Motions moved = CompareMotions(commanded, measured);
   if (moved.b < kHardly_m) return;
-  const double share = moved.difference / moved.b;
+  // A wrist is a step behind its command, and where a controller makes it tremble that is as far as
+  // it moves in a step.
+  constexpr double kBehind = 1.5;
+  const double behind = kBehind * scene.wrist_step_m;
+  const double beyond =
+      std::sqrt(std::max(0.0, moved.difference * moved.difference - behind * behind));
+  const double share = beyond / moved.b;
   list.Add("command0.move", {"command0", "wrist0"}, share / kMoveShare,
            fmt::format("command0 and wrist0 move unlike: {:.0f} % of the motion differs",
                        100.0 * share));

@@ -70,13 +70,16 @@ class ClockCheck {
 
   /// Do the streams have common times, and is it the wrist's clock that is off, or their own?
   void Meet(const Rows& wrist) {
-    std::vector<std::pair<std::string, double>> apart;
+    std::vector<std::pair<std::string, double>> apart, hardly;
     std::size_t others = 0;
+    double most_overlap = 0.0;
     for (const Rows& r : rows_) {
       if (r.name == "wrist0") continue;
       ++others;
       const double ahead_s = SecondsBetween(wrist.t_ns.front(), r.t_ns.front());
       const double overlap = Overlap(r, wrist);
+      most_overlap = std::max(most_overlap, overlap);
+      if (overlap < kLeastOverlap) hardly.emplace_back(r.name, ahead_s);
       if (overlap <= 0.0) {
         apart.emplace_back(r.name, ahead_s);
       } else {
@@ -87,8 +90,13 @@ class ClockCheck {
       return fmt::format("{} and wrist0 begin {} apart and do not meet", name,
                          DurationText(std::abs(ahead_s)));
     };
-    if (others > 1 && apart.size() == others && AreAlike(apart)) {
-      Wrong("wrist0", -AheadOfWrist(apart), how(apart.front().first, apart.front().second));
+    if (others > 1 && hardly.size() == others && AreAlike(hardly)) {
+      doubtful_.clear(), supposed_.clear();
+      if (apart.empty()) {
+        doubtful_.emplace("wrist0", HardlyMeets("wrist0", "the other streams'", most_overlap));
+      } else {
+        Wrong("wrist0", -AheadOfWrist(apart), how(apart.front().first, apart.front().second));
+      }
       return;
     }
     for (const auto& [name, ahead_s] : apart) {
@@ -118,7 +126,7 @@ class ClockCheck {
   /// Streams that meet the wrist, but look as if by chance.
   void Doubt(const Rows& rows, const Rows& wrist, double overlap) {
     // Streams of one program begin apart as well: only a later start tells.
-    constexpr double kLate_s = 1.0, kLateShare = 0.2, kLeast = 0.5;
+    constexpr double kLate_s = 1.0, kLateShare = 0.2;
     const double late_s =
         std::max(kLate_s, kLateShare * SecondsBetween(wrist.t_ns.front(), wrist.t_ns.back()));
     const double start_s = 1e-9 * static_cast<double>(rows.t_ns.front());
@@ -135,15 +143,16 @@ class ClockCheck {
       finding.severity = Severity::kDoubtful;
       supposed_[rows.name] = wrist_s - start_s;
       doubtful_.emplace(rows.name, std::move(finding));
-    } else if (overlap < kLeast) {
-      doubtful_.emplace(rows.name,
-                        Finding{Severity::kDoubtful, rows.name + ".clock",
-                                fmt::format("{}: {:.0f} % of its time is wrist0's time as well",
-                                            rows.name, 100.0 * overlap),
-                                fmt::format("import with --offset {}=SECONDS where its clock is "
-                                            "another one",
-                                            rows.name)});
+    } else if (overlap < kLeastOverlap) {
+      doubtful_.emplace(rows.name, HardlyMeets(rows.name, "wrist0's", overlap));
     }
+  }
+
+  static Finding HardlyMeets(const std::string& name, const std::string& whose, double overlap) {
+    return {Severity::kDoubtful, name + ".clock",
+            fmt::format("{}: {:.0f} % of its time is {} time as well", name, 100.0 * overlap,
+                        whose),
+            fmt::format("import with --offset {}=SECONDS where its clock is another one", name)};
   }
 
   static bool IsMotionResolved(const Rows& wrist) {
@@ -199,7 +208,7 @@ class ClockCheck {
 
   static constexpr double kReach_s = 60.0;
   static constexpr double kStart_s = 30.0;  // streams seldom begin at the same instant
-  static constexpr double kMoveAlike = 0.8;
+  static constexpr double kMoveAlike = 0.8, kLeastOverlap = 0.5;
 
   const Recording& recording_;
   const std::vector<Rows>& rows_;

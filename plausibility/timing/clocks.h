@@ -19,10 +19,11 @@ std::vector<Finding> CheckClocks(const Recording& recording, const std::vector<R
                                  Shifts& supposed);
 
 /// Finds strain0 and load0 where they lag behind the bending that they make, where the streams that
-/// see the bending fit one another. A stream in `shifts` is compared again, near its shift, and
-/// gets a finding of the same id.
+/// see the bending fit one another. A stream in `shifts` or `supposed` is compared again, near its
+/// shift, and gets a finding of the same id.
 std::vector<Finding> CheckForceClocks(const Recording& recording,
-                                      const std::set<std::string>& unknown, Shifts& shifts);
+                                      const std::set<std::string>& unknown, const Shifts& supposed,
+                                      Shifts& shifts);
 
 /// Returns the finding that a stream's stamps are `ahead_s` (negative: behind).
 Finding ClockFinding(const std::string& stream, double ahead_s, const std::string& evidence);

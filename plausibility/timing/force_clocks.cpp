@@ -23,9 +23,11 @@ std::optional<Vector3d> Padded(const std::optional<Vector2d>& v) {
 
 class ForceClockCheck {
  public:
-  ForceClockCheck(const Recording& recording, const std::set<std::string>& unknown, Shifts& shifts)
+  ForceClockCheck(const Recording& recording, const std::set<std::string>& unknown,
+                  const Shifts& supposed, Shifts& shifts)
       : recording_(recording),
         unknown_(unknown),
+        supposed_(supposed),
         shifts_(shifts),
         settings_(TakeScene(recording, shifts, 0)) {}
 
@@ -36,7 +38,7 @@ class ForceClockCheck {
     const bool strain = recording_.strain0.has_value() && !unknown_.contains("strain0");
     if (!StreamsFit()) return;
     // Streams that do not meet the wrist have the offset of their starts so far.
-    const bool known = !shifts_.contains("strain0");
+    const bool known = !shifts_.contains("strain0") && !supposed_.contains("strain0");
     const bool found = strain && Strain();
     if (recording_.load0) Load(strain && (known || found));
   }
@@ -81,11 +83,12 @@ class ForceClockCheck {
   /// Of the stream without its shift so far, around that.
   std::optional<Lag> LagOf(const std::string& stream, const OfInstant& a,
                            const OfInstant& b) const {
-    const auto shift = shifts_.find(stream);
-    const double around_s = shift == shifts_.end() ? 0.0 : -shift->second;
+    Shifts shifts = supposed_;
+    for (const auto& [name, shift_s] : shifts_) shifts[name] = shift_s;
+    const double around_s = shifts.contains(stream) ? -shifts[stream] : 0.0;
     const auto at = [&](const OfInstant& of) -> VectorAt {
-      return [this, of](TimeNs t) -> std::optional<Vector3d> {
-        const Instant now = InstantAt(recording_, t, shifts_);
+      return [this, of, &shifts](TimeNs t) -> std::optional<Vector3d> {
+        const Instant now = InstantAt(recording_, t, shifts);
         return now.wrist ? of(settings_, now) : std::nullopt;
       };
     };
@@ -114,6 +117,7 @@ class ForceClockCheck {
 
   const Recording& recording_;
   const std::set<std::string>& unknown_;
+  const Shifts& supposed_;
   Shifts& shifts_;
   Scene settings_;  // without instants
 };
@@ -121,8 +125,9 @@ class ForceClockCheck {
 }  // namespace
 
 std::vector<Finding> CheckForceClocks(const Recording& recording,
-                                      const std::set<std::string>& unknown, Shifts& shifts) {
-  ForceClockCheck check(recording, unknown, shifts);
+                                      const std::set<std::string>& unknown, const Shifts& supposed,
+                                      Shifts& shifts) {
+  ForceClockCheck check(recording, unknown, supposed, shifts);
   check.Run();
   return check.findings;
 }

@@ -12,7 +12,7 @@ namespace {
 
 template <class T, class Values>
 Rows MakeRows(const std::string& name, double rate_hz, const Series<T>& series, Values values_of) {
-  Rows rows{name, rate_hz, {}, {}, false};
+  Rows rows{name, rate_hz, {}, {}, false, 0.0};
   for (const Sample<T>& sample : series) {
     rows.t_ns.push_back(sample.t_ns);
     rows.values.push_back(values_of(sample.value));
@@ -30,8 +30,10 @@ std::vector<double> NumbersOf(const Eigen::Vector3d& p, const Eigen::Quaterniond
 }
 
 Rows EmRows(const std::string& name, const EmStream& stream) {
-  return MakeRows(name, stream.rate_hz, stream.samples,
-                  [](const EmSample& s) { return NumbersOf(s.p_RS, s.q_RS); });
+  Rows rows = MakeRows(name, stream.rate_hz, stream.samples,
+                       [](const EmSample& s) { return NumbersOf(s.p_RS, s.q_RS); });
+  rows.noise = stream.position_noise_m;
+  return rows;
 }
 
 Rows CameraRows(const CameraStream& camera) {
@@ -60,6 +62,7 @@ std::vector<Rows> RowsOf(const Recording& r) {
   if (r.strain0) {
     all.push_back(MakeRows("strain0", r.strain0->rate_hz, r.strain0->moments_Nm,
                            [](const auto& m) { return NumbersOf(m); }));
+    all.back().noise = r.strain0->moment_noise_Nm;
   }
   if (r.load0) {
     all.push_back(MakeRows("load0", r.load0->rate_hz, r.load0->f_tip_N,

@@ -16,6 +16,7 @@ struct Rows {
   std::vector<TimeNs> t_ns;
   std::vector<std::vector<double>> values;  ///< one a sample; empty where lost, and of pictures
   bool may_rest = false;                    ///< constant values are no fault: a load, a command
+  double noise = 0.0;                       ///< stated, of the first number; 0: may be none
 };
 
 /// Returns every stream with samples.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -89,7 +90,7 @@ std::optional<std::size_t> UsualRepeat(const std::vector<Run>& runs, std::size_t
   for (const Run& run : runs) in_runs_of[run.length] += run.length;
   const auto usual = std::max_element(in_runs_of.begin(), in_runs_of.end(),
                                       [](auto& a, auto& b) { return a.second < b.second; });
-  const bool short_runs = usual->first * 8 <= samples, most = 2 * usual->second >= samples;
+  const bool short_runs = usual->first * 4 <= samples, most = 2 * usual->second >= samples;
   if (usual->first < 2 || !short_runs || !most) return {};
   return usual->first;
 }
@@ -102,6 +103,17 @@ bool VariesElsewhere(const std::vector<Run>& runs, const Run& longest) {
     rows += run.length, repeats += run.length - 1;
   }
   return 5 * repeats < rows;
+}
+
+/// Returns whether a sensor has noise that its numbers are fine enough to show: it never reads the
+/// same twice.
+bool ShowsNoise(const Rows& rows) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < rows.values.size(); ++i) {
+    const double step = std::abs(rows.values[i][0] - rows.values[i - 1][0]);
+    if (step > 0.0) least = std::min(least, step);
+  }
+  return least < rows.noise;
 }
 
 /// Returns whether a wrist is stuck, not at rest: it halts once, and from one sample to the next.
@@ -138,7 +150,7 @@ class StuckCheck {
   StuckCheck(const std::vector<Rows>& all, Recording& repaired) : all_(all), repaired_(repaired) {}
 
   void Check(const Rows& rows) {
-    if (rows.values.size() < 20 || rows.name == "cam0") return;
+    if (rows.values.size() < 12 || rows.name == "cam0") return;
     const std::vector<Run> runs = RunsOf(rows);
     const auto times = UsualRepeat(runs, rows.values.size());
     if (times && !rows.may_rest) {
@@ -165,18 +177,26 @@ class StuckCheck {
   }
 
   void Frozen(const Rows& rows, const std::vector<Run>& runs) {
-    constexpr std::size_t kFewest = 15;
-    constexpr double kShortest_s = 0.5, kMoved_m = 0.005;
+    constexpr std::size_t kFewest = 15, kFewestNoisy = 8;
+    constexpr double kShortest_s = 0.5, kWristMoved_m = 0.005, kMoved_m = 0.002;
+    constexpr double kCommanded_m = 0.02;
     const Run longest = *std::max_element(
         runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.length < b.length; });
     if (rows.may_rest && IsZero(rows.values[longest.begin])) return;  // no load is a reading
     if (rows.may_rest && (runs.size() < 3 || !VariesElsewhere(runs, longest))) return;
-    if (rows.name == "wrist0" && !HaltsAtOnce(rows, runs, longest)) return;
     const std::size_t last = longest.begin + longest.length - 1;
     const TimeNs from = rows.t_ns[longest.begin], to = rows.t_ns[last];
-    if (longest.length < kFewest || SecondsBetween(from, to) < kShortest_s) return;
+    const bool noisy = rows.noise > 0.0 && ShowsNoise(rows) && VariesElsewhere(runs, longest);
+    if (longest.length < (noisy ? kFewestNoisy : kFewest)) return;
+    if (SecondsBetween(from, to) < kShortest_s) return;
     const double moved = MovedMeanwhile(all_, rows, from, to);
-    if (moved < kMoved_m) return;
+    if (rows.name == "wrist0") {
+      const Rows* command = FindRows(all_, "command0");
+      const bool commanded = command != nullptr && WayOf(*command, from, to) > kCommanded_m;
+      if (moved < kWristMoved_m || (!commanded && !HaltsAtOnce(rows, runs, longest))) return;
+    } else if (moved < kMoved_m && !noisy) {
+      return;
+    }
     findings.push_back(
         {Severity::kWrong, rows.name + ".frozen",
          fmt::format("{}: stands still from {:.2f} s to {:.2f} s of the recording "
