@@ -16,7 +16,7 @@ constexpr int kOrder = 6;
 constexpr std::array<double, kOrder + 1> kWeights{1, -6, 15, -20, 15, -6, 1};
 constexpr double kGain = 30.3974;  // root of the weights' squares
 constexpr double kMedianToSd = 1.0 / 0.6745;
-constexpr std::size_t kFewest = 24, kMany = 60;  // samples
+constexpr std::size_t kFewest = 30, kMany = 60;  // samples
 
 /// Standard deviation of what differences of order 6 at `step` samples leave.
 double HighFrequencySd(const std::vector<double>& x, std::size_t step) {
@@ -69,25 +69,25 @@ struct Jitter {
 };
 
 Jitter CommandedJitter(const Recording& r) {
-  constexpr double kLeast = 0.02;  // of the length: nearer to the port the shaft would turn round
+  constexpr double kLeast = 0.02;   // of the length: nearer to the port the shaft would turn round
+  constexpr double kFollows = 1.5;  // both are estimates, of other rates
   Jitter jitter;
   if (!r.command0 || !r.wrist0 || r.wrist0->samples.empty()) return jitter;
   Components places;
   for (const auto& s : r.command0->p_RW) Push(places, s.value);
-  for (const std::size_t step : {1, 2, 4}) {
-    double squares = 0.0;
-    for (const auto& x : places) {
-      const double sd = HighFrequencySd(x, step);
-      squares += sd * sd / static_cast<double>(places.size());
-    }
-    jitter.wrist_m = std::max(jitter.wrist_m, std::sqrt(squares));
+  double squares = 0.0;
+  for (const auto& x : places) {
+    const double sd = HighFrequencySd(x, 1);
+    squares += sd * sd / static_cast<double>(places.size());
   }
+  jitter.wrist_m = kFollows * std::sqrt(squares);
   std::vector<double> to_port;
   for (const auto& s : r.wrist0->samples) to_port.push_back((r.p_RP - s.value.p_RW).norm());
   const double length = r.instrument.length_m;
   const double before = std::max(Median(std::move(to_port)), kLeast * length);
   jitter.turn_rad = jitter.wrist_m / before;
-  jitter.tip_m = jitter.wrist_m * std::max(1.0, (length - before) / before);
+  constexpr double kBends = 1.5;  // the tip of a bent shaft moves farther
+  jitter.tip_m = kBends * jitter.wrist_m * std::max(1.0, (length - before) / before);
   return jitter;
 }
 
@@ -163,9 +163,9 @@ class NoiseCheck {
              double place_jitter_m, const Components& turns, double turn_sd_rad) {
     Compare(name, places,
             {"positions", place_sd_m, "mm", "position_noise_m: {:.2g}", place_jitter_m});
-    Compare(name, turns,
-            {"orientations", turn_sd_rad, "mrad", "orientation_noise_rad: {:.2g}",
-             jitter_.turn_rad});
+    Compare(
+        name, turns,
+        {"orientations", turn_sd_rad, "mrad", "orientation_noise_rad: {:.2g}", jitter_.turn_rad});
   }
 
   void Compare(const std::string& stream, const Components& components, const Stated& stated) {
@@ -176,8 +176,8 @@ class NoiseCheck {
       if (f.id == id) return;
     const auto noise = NoiseOf(components);
     if (!noise) return;
-    const double own = std::sqrt(
-        std::max(0.0, noise->least * noise->least - stated.motion * stated.motion));
+    const double own =
+        std::sqrt(std::max(0.0, noise->least * noise->least - stated.motion * stated.motion));
     const bool more = own > kFactor * stated.sd;
     if (!more && !(noise->most < stated.sd / kFactor)) return;
     const double seen = more ? own : noise->most;

@@ -14,8 +14,21 @@ TimeNs Shifted(TimeNs t_ns, const Shifts& shifts_s, const char* stream) {
   return t_ns - static_cast<TimeNs>(std::llround(shift->second * 1e9));
 }
 
+/// As FindBracket, and empty within a gap: a straight line over it is no motion.
+template <class T>
+std::optional<Bracket> BracketAt(const Series<T>& series, TimeNs t_ns) {
+  constexpr double kGap_ns = 4e8, kSteps = 5.0;
+  const auto where = FindBracket(series, t_ns);
+  if (!where || where->fraction == 0.0) return where;
+  const double mean_ns = static_cast<double>(series.back().t_ns - series.front().t_ns) /
+                         static_cast<double>(series.size() - 1);
+  const auto span_ns = static_cast<double>(series[where->i + 1].t_ns - series[where->i].t_ns);
+  if (span_ns > std::max(kGap_ns, kSteps * mean_ns)) return {};
+  return where;
+}
+
 std::optional<Placed> PlacedAt(const Series<WristSample>& samples, TimeNs t_ns) {
-  const auto where = FindBracket(samples, t_ns);
+  const auto where = BracketAt(samples, t_ns);
   if (!where) return {};
   const WristSample& a = samples[where->i].value;
   if (where->fraction == 0.0) return Placed{a.p_RW, a.q_RW};
@@ -26,7 +39,7 @@ std::optional<Placed> PlacedAt(const Series<WristSample>& samples, TimeNs t_ns) 
 }
 
 std::optional<Placed> PlacedAt(const Series<EmSample>& samples, TimeNs t_ns) {
-  const auto where = FindBracket(samples, t_ns);
+  const auto where = BracketAt(samples, t_ns);
   if (!where) return {};
   const EmSample& a = samples[where->i].value;
   if (where->fraction == 0.0) return Placed{a.p_RS, a.q_RS};
@@ -44,7 +57,7 @@ std::optional<Eigen::Vector3d> SightOf(const Eigen::Matrix3d& covariance) {
 }
 
 std::optional<Seen> SeenAt(const Series<TipObservation>& tips, TimeNs t_ns) {
-  const auto where = FindBracket(tips, t_ns);
+  const auto where = BracketAt(tips, t_ns);
   if (!where) return {};
   const TipObservation& a = tips[where->i].value;
   if (a.status == TipStatus::kLost) return {};
@@ -58,7 +71,7 @@ std::optional<Seen> SeenAt(const Series<TipObservation>& tips, TimeNs t_ns) {
 
 template <class T>
 std::optional<T> NumbersAt(const Series<T>& series, TimeNs t_ns) {
-  const auto where = FindBracket(series, t_ns);
+  const auto where = BracketAt(series, t_ns);
   if (!where) return {};
   const T& a = series[where->i].value;
   if (where->fraction == 0.0) return a;
@@ -91,7 +104,7 @@ std::optional<Eigen::Vector3d> PlaceAt(const Recording& r, const std::string& st
   if (stream == "em1" && r.em1) placed = PlacedAt(r.em1->samples, t_ns);
   if (placed) return placed->p;
   if (stream != "vision0" || !r.vision0) return {};
-  const auto where = FindBracket(r.vision0->tips, t_ns);
+  const auto where = BracketAt(r.vision0->tips, t_ns);
   if (!where) return {};
   const TipObservation& a = r.vision0->tips[where->i].value;
   if (a.status == TipStatus::kLost) return {};

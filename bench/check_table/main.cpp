@@ -19,6 +19,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--bases", a.options.bases, "recordings that are broken")->capture_default_str();
   app.add_option("--per-way", a.options.per_way, "recordings broken in each way")
       ->capture_default_str();
+  app.add_option("--ways", a.options.ways, "only those with this text in their name or finding");
   app.add_flag("--remarks", a.remarks, "print the findings of each that was not as it should be");
 }
 

@@ -35,7 +35,8 @@ struct CheckTable {
 struct CheckTableOptions {
   std::uint64_t seed = 1;
   int healthy = 100, per_way = 3;
-  int bases = 24;  ///< recordings that are broken, each in many ways
+  int bases = 24;         ///< recordings that are broken, each in many ways
+  std::string ways = {};  ///< of those with this in their name or finding alone; empty: all
 };
 
 /// `progress` is told the recordings done, and all.

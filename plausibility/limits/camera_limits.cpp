@@ -65,7 +65,7 @@ class CameraLimits {
   }
 
   bool CheckPrincipalPoint() {
-    if (X() >= -0.1 && X() <= 1.1 && Y() >= -0.1 && Y() <= 1.1) return false;
+    if (X() >= 0.0 && X() <= 1.0 && Y() >= 0.0 && Y() <= 1.0) return false;
     Add(Severity::kWrong, ".principal_point",
         fmt::format("the principal point {:.4g}, {:.4g} is outside the picture of {} x {}",
                     camera_.cu_px, camera_.cv_px, camera_.width_px, camera_.height_px),

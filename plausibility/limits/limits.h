@@ -15,8 +15,8 @@ namespace flextip::plausibility {
 /// still be judged. Subjects in `unknown` ("stiffness", "length") are not judged.
 std::vector<Finding> CheckLimits(const std::set<std::string>& unknown, Recording& recording);
 
-/// Returns whether a shaft of `diameter_m` (0: not known) can have the bending stiffness `EI_Nm2`: a
-/// modulus between that of a soft tube and twice that of steel.
+/// Returns whether a shaft of `diameter_m` (0: not known) can have the bending stiffness `EI_Nm2`:
+/// a modulus between that of a soft tube and twice that of steel.
 bool IsShaftsStiffness(double EI_Nm2, double diameter_m);
 
 // The groups, a file each.

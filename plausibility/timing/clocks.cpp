@@ -94,6 +94,7 @@ class ClockCheck {
       doubtful_.clear(), supposed_.clear();
       if (apart.empty()) {
         doubtful_.emplace("wrist0", HardlyMeets("wrist0", "the other streams'", most_overlap));
+        supposed_["wrist0"] = AheadOfWrist(hardly);
       } else {
         Wrong("wrist0", -AheadOfWrist(apart), how(apart.front().first, apart.front().second));
       }
@@ -149,10 +150,10 @@ class ClockCheck {
   }
 
   static Finding HardlyMeets(const std::string& name, const std::string& whose, double overlap) {
-    return {Severity::kDoubtful, name + ".clock",
-            fmt::format("{}: {:.0f} % of its time is {} time as well", name, 100.0 * overlap,
-                        whose),
-            fmt::format("import with --offset {}=SECONDS where its clock is another one", name)};
+    return {
+        Severity::kDoubtful, name + ".clock",
+        fmt::format("{}: {:.0f} % of its time is {} time as well", name, 100.0 * overlap, whose),
+        fmt::format("import with --offset {}=SECONDS where its clock is another one", name)};
   }
 
   static bool IsMotionResolved(const Rows& wrist) {
@@ -162,14 +163,13 @@ class ClockCheck {
   }
 
   void CompareMotion() {
-    std::vector<std::pair<std::string, Lag>> late;
-    std::size_t compared = 0;
+    std::vector<std::pair<std::string, Lag>> late, all;
     for (const std::string name : {"em0", "vision0", "command0"}) {
       if (shifts_.contains(name)) continue;
       const auto lag = LagOf(name, 0.0, kReach_s);
       if (!lag) continue;
-      ++compared;
       constexpr double kAlike = 0.85;
+      all.emplace_back(name, *lag);
       if (lag->correlation_at_zero > kAlike) confirmed_.insert(name);
       if (std::abs(lag->seconds) >= kLatency_s && lag->IsClear()) late.emplace_back(name, *lag);
     }
@@ -177,11 +177,14 @@ class ClockCheck {
       return fmt::format("the speeds agree to {:.0f} % with this offset, to {:.0f} % without",
                          100.0 * lag.correlation, 100.0 * std::max(0.0, lag.correlation_at_zero));
     };
-    const bool of_wrist = late.size() > 1 && late.size() == compared &&
-                          std::all_of(late.begin(), late.end(), [&](const auto& l) {
-                            return std::abs(l.second.seconds - late.front().second.seconds) < 0.2;
-                          });
-    if (of_wrist) return Wrong("wrist0", -late.front().second.seconds, how(late.front().second));
+    if (late.empty()) return;
+    // The wrist is what they have in common. One clear lag is enough where the others agree with
+    // it.
+    const bool alike = std::all_of(all.begin(), all.end(), [&](const auto& l) {
+      return std::abs(l.second.seconds - late.front().second.seconds) < 0.2;
+    });
+    if ((all.size() > 1 && alike) || doubtful_.contains("wrist0"))
+      return Wrong("wrist0", -late.front().second.seconds, how(late.front().second));
     for (const auto& [name, lag] : late) Wrong(name, lag.seconds, how(lag));
   }
 
@@ -191,9 +194,9 @@ class ClockCheck {
     if (!IsMotionResolved(wrist) || FindRows(rows_, name) == nullptr) return {};
     if (name != "command0" && (unknown_.contains("port") || unknown_.contains("length"))) return {};
     const LagSearch search{wrist.t_ns.front(), wrist.t_ns.back(), around_s, reach_s};
-    const auto lags = FindLags(SpeedOf([&](TimeNs t) { return ExpectedPlace(name, t); }),
-                               SpeedOf([&](TimeNs t) { return PlaceAt(recording_, name, t); }),
-                               search);
+    const auto lags =
+        FindLags(SpeedOf([&](TimeNs t) { return ExpectedPlace(name, t); }),
+                 SpeedOf([&](TimeNs t) { return PlaceAt(recording_, name, t); }), search);
     return ChooseLag(recording_, name, lags, shifts_, unknown_, around_s);
   }
 

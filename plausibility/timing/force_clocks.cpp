@@ -33,8 +33,8 @@ class ForceClockCheck {
 
   void Run() {
     if (!recording_.wrist0 || recording_.wrist0->samples.size() < 60) return;
-    if (shifts_.contains("wrist0") || unknown_.contains("port") || unknown_.contains("length"))
-      return;
+    if (shifts_.contains("wrist0") || supposed_.contains("wrist0")) return;
+    if (unknown_.contains("port") || unknown_.contains("length")) return;
     const bool strain = recording_.strain0.has_value() && !unknown_.contains("strain0");
     if (!StreamsFit()) return;
     // Streams that do not meet the wrist have the offset of their starts so far.
@@ -55,9 +55,9 @@ class ForceClockCheck {
   }
 
   bool Strain() {
-    const auto lag =
-        LagOf("strain0", [](const Scene& s, const Instant& i) { return Padded(TurnSeen(s, i)); },
-              [](const Scene& s, const Instant& i) { return Padded(TurnByMoments(s, i)); });
+    const auto lag = LagOf(
+        "strain0", [](const Scene& s, const Instant& i) { return Padded(TurnSeen(s, i)); },
+        [](const Scene& s, const Instant& i) { return Padded(TurnByMoments(s, i)); });
     if (lag) Add("strain0", "moments and bending", *lag);
     return lag.has_value();
   }
@@ -98,6 +98,7 @@ class ForceClockCheck {
         FindLags(at(a), at(b), {samples.front().t_ns, samples.back().t_ns, 0.0, kReach_s});
     auto lag = ChooseLag(recording_, stream, Later(lags, around_s), shifts_, unknown_, around_s);
     if (!lag || !lag->IsClear()) return {};
+    if (-lag->correlation_at_zero >= lag->correlation) return {};  // a sign
     if (around_s == 0.0 && std::abs(lag->seconds) < kLatency_s) return {};
     return lag;
   }

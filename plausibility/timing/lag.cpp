@@ -135,7 +135,7 @@ std::vector<Lag> FindLags(const VectorAt& a, const VectorAt& b, const LagSearch&
   const auto better = [](const Lag& x, const Lag& y) { return x.correlation > y.correlation; };
   std::stable_sort(lags.begin(), lags.end(), better);
   if (lags.size() > kMost) lags.resize(kMost);
-  const double at_zero = finder.At(0).value_or(-1.0);
+  const double at_zero = finder.At(0).value_or(0.0);
   for (Lag& lag : lags) {
     lag.correlation_at_zero = at_zero;
     Refine(finder, lag);

@@ -15,7 +15,7 @@ using VectorAt = std::function<std::optional<Eigen::Vector3d>(TimeNs)>;
 
 struct Lag {
   double seconds = 0.0;  ///< the second quantity at t + seconds goes with the first at t
-  double correlation = 0.0, correlation_at_zero = 0.0;
+  double correlation = 0.0, correlation_at_zero = 0.0;  ///< at zero 0 where too few are common
 
   /// Returns whether the lag explains far more than no lag does.
   bool IsClear() const;

@@ -48,8 +48,8 @@ std::vector<Finding> CheckRates(const std::vector<Rows>& rows) {
     if (r.t_ns.size() < 6 || !(r.stated_rate_hz > 0.0)) continue;
     // A sensor that is read by a loop of another rate has uneven steps of the right mean.
     const double rate = 1.0 / MedianStep_s(r);
-    const double mean = static_cast<double>(r.t_ns.size() - 1) /
-                        SecondsBetween(r.t_ns.front(), r.t_ns.back());
+    const double mean =
+        static_cast<double>(r.t_ns.size() - 1) / SecondsBetween(r.t_ns.front(), r.t_ns.back());
     const auto is_stated = [&](double x) {
       return std::abs(std::log(x / r.stated_rate_hz)) < std::log(kMost);
     };

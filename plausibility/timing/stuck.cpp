@@ -177,8 +177,8 @@ class StuckCheck {
   }
 
   void Frozen(const Rows& rows, const std::vector<Run>& runs) {
-    constexpr std::size_t kFewest = 15, kFewestNoisy = 8;
-    constexpr double kShortest_s = 0.5, kWristMoved_m = 0.005, kMoved_m = 0.002;
+    constexpr std::size_t kFewest = 15, kFewestNoisy = 5;
+    constexpr double kLongEnough_s = 0.5, kShare = 0.2, kWristMoved_m = 0.005, kMoved_m = 0.002;
     constexpr double kCommanded_m = 0.02;
     const Run longest = *std::max_element(
         runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.length < b.length; });
@@ -188,7 +188,10 @@ class StuckCheck {
     const TimeNs from = rows.t_ns[longest.begin], to = rows.t_ns[last];
     const bool noisy = rows.noise > 0.0 && ShowsNoise(rows) && VariesElsewhere(runs, longest);
     if (longest.length < (noisy ? kFewestNoisy : kFewest)) return;
-    if (SecondsBetween(from, to) < kShortest_s) return;
+    const double all_s = SecondsBetween(rows.t_ns.front(), rows.t_ns.back());
+    if (SecondsBetween(from, to) <
+        (noisy ? std::min(kLongEnough_s, kShare * all_s) : kLongEnough_s))
+      return;
     const double moved = MovedMeanwhile(all_, rows, from, to);
     if (rows.name == "wrist0") {
       const Rows* command = FindRows(all_, "command0");

@@ -79,8 +79,8 @@ class Loop {
   }
 
  private:
-  /// The controller has its own clock and so has every sensor: the plant is solved where any of them
-  /// is due.
+  /// The controller has its own clock and so has every sensor: the plant is solved where any of
+  /// them is due.
   TimeNs UpdateTime(int update) const {
     return kSimulationStart_ns + std::llround(update * 1e9 / setup_.update_rate_hz);
   }
