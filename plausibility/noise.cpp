@@ -80,7 +80,10 @@ Jitter CommandedJitter(const Recording& r) {
     const double sd = HighFrequencySd(x, 1);
     squares += sd * sd / static_cast<double>(places.size());
   }
-  jitter.wrist_m = kFollows * std::sqrt(squares);
+  // A command that is made from the measured wrist has its noise, and the wrist does not follow
+  // that.
+  const double measured = r.wrist0->position_noise_m;
+  jitter.wrist_m = kFollows * std::sqrt(std::max(0.0, squares - measured * measured));
   std::vector<double> to_port;
   for (const auto& s : r.wrist0->samples) to_port.push_back((r.p_RP - s.value.p_RW).norm());
   const double length = r.instrument.length_m;

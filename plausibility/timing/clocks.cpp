@@ -163,13 +163,15 @@ class ClockCheck {
   }
 
   void CompareMotion() {
-    std::vector<std::pair<std::string, Lag>> late, all;
+    std::vector<std::pair<std::string, Lag>> late;
+    std::vector<std::vector<Lag>> all;
     for (const std::string name : {"em0", "vision0", "command0"}) {
       if (shifts_.contains(name)) continue;
-      const auto lag = LagOf(name, 0.0, kReach_s);
+      const std::vector<Lag> lags = LagsOf(name, 0.0, kReach_s);
+      const auto lag = ChooseLag(recording_, name, lags, shifts_, unknown_);
       if (!lag) continue;
       constexpr double kAlike = 0.85;
-      all.emplace_back(name, *lag);
+      all.push_back(lags);
       if (lag->correlation_at_zero > kAlike) confirmed_.insert(name);
       if (std::abs(lag->seconds) >= kLatency_s && lag->IsClear()) late.emplace_back(name, *lag);
     }
@@ -178,26 +180,37 @@ class ClockCheck {
                          100.0 * lag.correlation, 100.0 * std::max(0.0, lag.correlation_at_zero));
     };
     if (late.empty()) return;
-    // The wrist is what they have in common. One clear lag is enough where the others agree with
-    // it.
-    const bool alike = std::all_of(all.begin(), all.end(), [&](const auto& l) {
-      return std::abs(l.second.seconds - late.front().second.seconds) < 0.2;
+    // The wrist is what they have in common. One clear lag is enough where the others, too, go
+    // better with it than without.
+    const auto clearest = std::max_element(late.begin(), late.end(), [](auto& x, auto& y) {
+      return x.second.correlation < y.second.correlation;
     });
-    if ((all.size() > 1 && alike) || doubtful_.contains("wrist0"))
-      return Wrong("wrist0", -late.front().second.seconds, how(late.front().second));
+    const Lag& lag_of_wrist = clearest->second;
+    const auto agrees = [&](const std::vector<Lag>& lags) {
+      return std::any_of(lags.begin(), lags.end(), [&](const Lag& lag) {
+        return std::abs(lag.seconds - lag_of_wrist.seconds) < 0.2 &&
+               lag.correlation > lag.correlation_at_zero;
+      });
+    };
+    const bool all_agree = all.size() > 1 && std::all_of(all.begin(), all.end(), agrees);
+    if (all_agree || doubtful_.contains("wrist0"))
+      return Wrong("wrist0", -lag_of_wrist.seconds, how(lag_of_wrist));
     for (const auto& [name, lag] : late) Wrong(name, lag.seconds, how(lag));
   }
 
   std::optional<Lag> LagOf(const std::string& name, double around_s, double reach_s) const {
+    return ChooseLag(recording_, name, LagsOf(name, around_s, reach_s), shifts_, unknown_,
+                     around_s);
+  }
+
+  std::vector<Lag> LagsOf(const std::string& name, double around_s, double reach_s) const {
     const Rows& wrist = *FindRows(rows_, "wrist0");
     if (name != "em0" && name != "vision0" && name != "command0") return {};
     if (!IsMotionResolved(wrist) || FindRows(rows_, name) == nullptr) return {};
     if (name != "command0" && (unknown_.contains("port") || unknown_.contains("length"))) return {};
     const LagSearch search{wrist.t_ns.front(), wrist.t_ns.back(), around_s, reach_s};
-    const auto lags =
-        FindLags(SpeedOf([&](TimeNs t) { return ExpectedPlace(name, t); }),
-                 SpeedOf([&](TimeNs t) { return PlaceAt(recording_, name, t); }), search);
-    return ChooseLag(recording_, name, lags, shifts_, unknown_, around_s);
+    return FindLags(SpeedOf([&](TimeNs t) { return ExpectedPlace(name, t); }),
+                    SpeedOf([&](TimeNs t) { return PlaceAt(recording_, name, t); }), search);
   }
 
   /// Where the straight shaft has the stream's place.
