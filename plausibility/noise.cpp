@@ -15,6 +15,7 @@ namespace {
 constexpr int kOrder = 6;
 constexpr std::array<double, kOrder + 1> kWeights{1, -6, 15, -20, 15, -6, 1};
 constexpr double kGain = 30.3974;  // root of the weights' squares
+constexpr double kFactor = 3.0;    // a noise is as stated, within
 constexpr double kMedianToSd = 1.0 / 0.6745;
 constexpr std::size_t kFewest = 30, kMany = 60;  // samples
 
@@ -82,8 +83,8 @@ Jitter CommandedJitter(const Recording& r) {
   }
   // A command that is made from the measured wrist has its noise, and the wrist does not follow
   // that.
-  const double measured = r.wrist0->position_noise_m;
-  jitter.wrist_m = kFollows * std::sqrt(std::max(0.0, squares - measured * measured));
+  if (std::sqrt(squares) <= kFactor * r.wrist0->position_noise_m) return jitter;
+  jitter.wrist_m = kFollows * std::sqrt(squares);
   std::vector<double> to_port;
   for (const auto& s : r.wrist0->samples) to_port.push_back((r.p_RP - s.value.p_RW).norm());
   const double length = r.instrument.length_m;
@@ -172,7 +173,6 @@ class NoiseCheck {
   }
 
   void Compare(const std::string& stream, const Components& components, const Stated& stated) {
-    constexpr double kFactor = 3.0;
     const std::string id = stream + ".noise";
     if (!(stated.sd > 0.0) || std::count(but_.begin(), but_.end(), stream) > 0) return;
     for (const Finding& f : findings)
