@@ -74,6 +74,10 @@ Jitter CommandedJitter(const Recording& r) {
   constexpr double kFollows = 1.5;  // both are estimates, of other rates
   Jitter jitter;
   if (!r.command0 || !r.wrist0 || r.wrist0->samples.empty()) return jitter;
+  if (r.command0->p_RW.size() < kFewest) {  // too few to tell: any trembling may be commanded
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    return {kAny, kAny, kAny};
+  }
   Components places;
   for (const auto& s : r.command0->p_RW) Push(places, s.value);
   double squares = 0.0;

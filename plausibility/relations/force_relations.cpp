@@ -106,8 +106,12 @@ void AddLoadMoment(RelationList& list) {
     return Vector2d(now.strain_Nm->tail<2>());
   };
   const Pairs moment = Compare<Vector2d>(scene, MomentByLoad, second);
-  const double noise = std::max(4.0 * scene.strain_noise_Nm, 1e-4);
-  if (moment.count < kFewestInstants || moment.Larger() < noise) return;
+  // Moments that hardly bend the shaft can be of its weight or of tissue on it.
+  constexpr double kHardly_rad = 0.01;
+  const double hardly_Nm =
+      kHardly_rad * scene.instrument.bending_stiffness_Nm2 / scene.instrument.length_m;
+  const double least = std::max({4.0 * scene.strain_noise_Nm, 1e-4, hardly_Nm});
+  if (moment.count < kFewestInstants || moment.Larger() < least) return;
   list.Add("strain0.load0",
            {"strain0", "load0", "wrist0", "em0", "em0.q", "em0.frame", "vision0.d", "vision0.frame",
             "wrist0.q", "length"},

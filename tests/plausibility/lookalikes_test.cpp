@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/draw_vector.h"
 #include "plausibility/check_recording.h"
 #include "plausibility/timing/lag.h"
 #include "testdata/broken/broken_recording.h"
@@ -81,7 +82,7 @@ TEST(Lookalikes, ATremblingCommandIsNoNoise) {
   auto& command = recording.command0->p_RW;
   const double sd = 10.0 * recording.wrist0->position_noise_m;
   for (std::size_t i = 0; i + 1 < command.size(); ++i) {
-    const Vector3d tremble(sd * normal(rng), sd * normal(rng), sd * normal(rng));
+    const Vector3d tremble = sd * DrawVector<3>(normal, rng);
     command[i].value += tremble;
     wrist[i + 1].value.p_RW += tremble;
   }
