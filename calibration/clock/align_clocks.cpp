@@ -15,12 +15,8 @@ constexpr double kSpeedBandwidth_s = 0.12;
 constexpr std::size_t kCandidates = 6, kRefined = 2;
 // Twice the log likelihood by which the best offset must surpass all others: hundreds of them.
 constexpr double kTelling = 25.0;
+constexpr double kNeighbours_s = 0.15;
 constexpr double kMostSd_s = 0.1;
-
-/// Twice the log likelihood ratio of two misfits over so many independent residuals.
-double Evidence(double misfit, double other, double independent) {
-  return independent * std::log(std::max(other, 1e-15) / std::max(misfit, 1e-15));
-}
 
 void Fail(StreamClock& clock, ClockStatus status, const std::string& reason) {
   clock.status = status;
@@ -28,8 +24,9 @@ void Fail(StreamClock& clock, ClockStatus status, const std::string& reason) {
 }
 
 /// The best fit from every likely start.
-ClockFit BestFit(const Motion& target, const Motion& reference, const SmoothMotion& smooth,
+ClockFit BestFit(const Motion& target, const Motion& reference, Predictors& predictors,
                  const MisfitProfile& profile, const ClockOptions& options) {
+  const SmoothMotion& smooth = predictors.Smooth();
   std::vector<double> starts = LikelyOffsets(
       SmoothMotion(target, std::max(kSpeedBandwidth_s, UsualBandwidth(target))), target.own_rows,
       SmoothMotion(reference, std::max(kSpeedBandwidth_s, UsualBandwidth(reference))),
@@ -46,26 +43,36 @@ ClockFit BestFit(const Motion& target, const Motion& reference, const SmoothMoti
   };
   std::stable_sort(starts.begin(), starts.end(),
                    [&](double a, double b) { return misfit(a) < misfit(b); });
-  starts.resize(std::min(starts.size(), kRefined));
-  ClockFit best;
+  std::vector<double> apart;  // the best of each neighbourhood
   for (const double start_s : starts) {
-    const ClockFit fit = FitClock(target, smooth, start_s);
-    const bool within = std::abs(fit.offset_s) <= options.most_offset_s + 0.5;
-    if (fit.converged && within && (!best.converged || fit.misfit < best.misfit)) best = fit;
+    const bool is_new = std::none_of(apart.begin(), apart.end(), [&](double other) {
+      return std::abs(other - start_s) < kNeighbours_s;
+    });
+    if (is_new && apart.size() < kRefined) apart.push_back(start_s);
   }
+  ClockFit best;
+  for (const double start_s : apart) {
+    const ClockFit quick = QuickFit(target, predictors, start_s, 0.0);
+    if (quick.converged && (!best.converged || quick.likelihood > best.likelihood)) best = quick;
+  }
+  if (best.converged) best = FitClock(target, predictors, best.offset_s);
+  if (std::abs(best.offset_s) > options.most_offset_s + 0.5) best.converged = false;
   return best;
 }
 
 /// The best offset elsewhere, as well fitted as the best one: the grid alone would make it worse.
-OffsetMisfit Rival(const Motion& target, const SmoothMotion& reference,
-                   const MisfitProfile& profile, const ClockFit& best) {
-  constexpr double kApart_s = 0.1;
-  OffsetMisfit rival = NextBest(profile, best.offset_s);
-  if (rival.misfit >= 1.0) return rival;
-  const ClockFit fit = FitClock(target, reference, rival.offset_s);
-  const bool is_other = std::abs(fit.offset_s - best.offset_s) > kApart_s;
-  if (fit.converged && is_other && fit.misfit < rival.misfit) rival = {fit.offset_s, fit.misfit};
-  return rival;
+ClockFit Rival(const Motion& target, Predictors& predictors, const MisfitProfile& profile,
+               const ClockFit& best) {
+  constexpr double kElsewhere_s = 0.1;
+  const OffsetMisfit rival = NextBest(profile, best.offset_s);
+  if (rival.misfit >= 1.0) return {};
+  ClockFit fit = QuickFit(target, predictors, rival.offset_s, best.play_m);
+  if (std::abs(fit.offset_s - best.offset_s) < kElsewhere_s) fit.converged = false;
+  return fit;
+}
+
+double Residuals(const Motion& target, const ClockFit& fit) {
+  return static_cast<double>(fit.samples) * target.own_rows;
 }
 
 /// What evidence differs by because two offsets compare parts of the streams that are not the same:
@@ -73,14 +80,15 @@ OffsetMisfit Rival(const Motion& target, const SmoothMotion& reference,
 double Chance(const Motion& target, const ClockFit& fit, double other_s) {
   const double span_s = std::max(1e-9, target.t_s.back() - target.t_s.front());
   const double apart = std::min(1.0, 2.0 * std::abs(other_s - fit.offset_s) / span_s);
-  return 4.0 * std::sqrt(2.0 * apart * fit.independent);
+  return 4.0 * std::sqrt(2.0 * apart * Residuals(target, fit));
 }
 
 StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_ns,
                     const ClockOptions& options) {
   StreamClock clock{.stream = target.stream, .reference = reference.stream};
-  const SmoothMotion smooth(reference, UsualBandwidth(reference));
-  clock.profile = MisfitOver(target, smooth, options.most_offset_s, options.least_overlap_s);
+  Predictors predictors(reference);
+  clock.profile =
+      MisfitOver(target, predictors.Smooth(), options.most_offset_s, options.least_overlap_s);
   const bool any = std::any_of(clock.profile.misfit.begin(), clock.profile.misfit.end(),
                                [](double m) { return !std::isnan(m); });
   if (!any) {
@@ -90,7 +98,7 @@ StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_
                      options.most_offset_s));
     return clock;
   }
-  const ClockFit fit = BestFit(target, reference, smooth, clock.profile, options);
+  const ClockFit fit = BestFit(target, reference, predictors, clock.profile, options);
   if (!fit.converged) {
     Fail(clock, ClockStatus::kNotConverged,
          fmt::format("no offset of {} against {} came to rest", target.stream, reference.stream));
@@ -102,14 +110,20 @@ StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_
   clock.covariance = fit.covariance;
   clock.misfit = fit.misfit;
   clock.samples = fit.samples;
-  const OffsetMisfit next = Rival(target, smooth, clock.profile, fit);
+  const ClockFit next = Rival(target, predictors, clock.profile, fit);
   const double sd_s = std::sqrt(fit.covariance(0, 0));
-  if (Evidence(fit.misfit, 1.0, fit.independent) < kTelling || sd_s > kMostSd_s) {
+  const double residuals = Residuals(target, fit);
+  const double chance = fit.parameters + 3.0 * std::sqrt(2.0 * fit.parameters);
+  if (sd_s > kMostSd_s) {
+    Fail(clock, ClockStatus::kNoSharedMotion,
+         fmt::format("{} tells its clock against {} to {:.0f} ms only", target.stream,
+                     reference.stream, 1e3 * sd_s));
+  } else if (residuals * fit.brought < kTelling + chance) {
     Fail(clock, ClockStatus::kNoSharedMotion,
          fmt::format("{} does not move as {} does at any offset within {:g} s", target.stream,
                      reference.stream, options.most_offset_s));
-  } else if (Evidence(fit.misfit, next.misfit, fit.independent) <
-             kTelling + Chance(target, fit, next.offset_s)) {
+  } else if (next.converged && residuals * (fit.likelihood - next.likelihood) <
+                                   kTelling + Chance(target, fit, next.offset_s)) {
     Fail(clock, ClockStatus::kAmbiguous,
          fmt::format("other offsets of {} against {} fit nearly as well: the motion is too slow, "
                      "too small or repeats itself",
@@ -154,8 +168,7 @@ const char* Name(ClockStatus status) {
 
 ClockResult AlignClocks(const Recording& recording, const ClockOptions& options) {
   const Motions motions = MotionsOf(recording);
-  std::string known;
-  for (const Motion& m : motions.streams) known += (known.empty() ? "" : ", ") + m.stream;
+  const std::string known = motions.Names();
   if (motions.streams.size() < 2) {
     throw InputError(fmt::format("the recording has {}: two streams that move are needed",
                                  known.empty() ? "no stream that moves" : known + " alone"));
@@ -163,7 +176,8 @@ ClockResult AlignClocks(const Recording& recording, const ClockOptions& options)
   const Motion* reference =
       options.reference.empty() ? &motions.streams.front() : motions.Find(options.reference);
   if (reference == nullptr) {
-    throw InputError(fmt::format("--reference {}: expected one of {}", options.reference, known));
+    throw InputError(fmt::format("the reference is {}: expected one of the streams that move, {}",
+                                 options.reference, known));
   }
   ClockResult result{.reference = reference->stream};
   for (const Motion& target : motions.streams) {

@@ -43,7 +43,7 @@ double Correlation(const std::vector<double>& a, const std::vector<double>& b, l
 
 /// Sums of a linear prediction of the target by the reference, with a constant.
 struct PredictionSums {
-  static constexpr int kMost = 8;  // features and rows of any stream
+  static constexpr int kMost = 13;  // features and rows of any stream
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
   Matrix xx, xy;
