@@ -12,10 +12,10 @@ namespace flextip {
 namespace {
 
 constexpr double kSpeedBandwidth_s = 0.12;
-constexpr std::size_t kCandidates = 6, kRefined = 2;
+constexpr std::size_t kBySpeed = 6, kByMisfit = 6;
 // Twice the log likelihood by which the best offset must surpass all others: hundreds of them.
 constexpr double kTelling = 25.0;
-constexpr double kNeighbours_s = 0.15;
+constexpr double kNeighbours_s = 0.2;
 constexpr double kMostSd_s = 0.1;
 
 void Fail(StreamClock& clock, ClockStatus status, const std::string& reason) {
@@ -23,52 +23,37 @@ void Fail(StreamClock& clock, ClockStatus status, const std::string& reason) {
   clock.reason = reason;
 }
 
-/// The best fit from every likely start.
-ClockFit BestFit(const Motion& target, const Motion& reference, Predictors& predictors,
-                 const MisfitProfile& profile, const ClockOptions& options) {
-  const SmoothMotion& smooth = predictors.Smooth();
+/// Quick fits from all likely starts, the best first, each at an offset of its own.
+std::vector<ClockFit> Candidates(const Motion& target, const Motion& reference,
+                                 Predictors& predictors, const MisfitProfile& profile,
+                                 const ClockOptions& options) {
   std::vector<double> starts = LikelyOffsets(
       SmoothMotion(target, std::max(kSpeedBandwidth_s, UsualBandwidth(target))), target.own_rows,
       SmoothMotion(reference, std::max(kSpeedBandwidth_s, UsualBandwidth(reference))),
-      reference.own_rows, options.most_offset_s, options.least_overlap_s, kCandidates);
-  const auto least = std::min_element(
-      profile.misfit.begin(), profile.misfit.end(),
-      [](double a, double b) { return !std::isnan(a) && (std::isnan(b) || a < b); });
-  if (!std::isnan(*least)) {
-    starts.push_back(profile.offset_s[static_cast<std::size_t>(least - profile.misfit.begin())]);
-  }
-  const auto misfit = [&](double start_s) {
-    const double m = MisfitAt(target, smooth, start_s, options.least_overlap_s);
-    return std::isnan(m) ? 2.0 : m;
+      reference.own_rows, options.most_offset_s, options.least_overlap_s, kBySpeed);
+  const std::vector<double> by_misfit = BestOffsets(profile, kByMisfit);
+  starts.insert(starts.end(), by_misfit.begin(), by_misfit.end());
+  std::vector<double> apart;
+  const auto is_near = [](double a) {
+    return [a](double b) { return std::abs(a - b) < kNeighbours_s; };
   };
-  std::stable_sort(starts.begin(), starts.end(),
-                   [&](double a, double b) { return misfit(a) < misfit(b); });
-  std::vector<double> apart;  // the best of each neighbourhood
+  std::vector<ClockFit> fits;
   for (const double start_s : starts) {
-    const bool is_new = std::none_of(apart.begin(), apart.end(), [&](double other) {
-      return std::abs(other - start_s) < kNeighbours_s;
-    });
-    if (is_new && apart.size() < kRefined) apart.push_back(start_s);
+    if (std::any_of(apart.begin(), apart.end(), is_near(start_s))) continue;
+    apart.push_back(start_s);
+    const ClockFit fit = QuickFit(target, predictors, start_s, 0.0, true);
+    if (fit.converged && std::abs(fit.offset_s) <= options.most_offset_s + 0.5) fits.push_back(fit);
   }
-  ClockFit best;
-  for (const double start_s : apart) {
-    const ClockFit quick = QuickFit(target, predictors, start_s, 0.0);
-    if (quick.converged && (!best.converged || quick.likelihood > best.likelihood)) best = quick;
+  std::sort(fits.begin(), fits.end(),
+            [](const ClockFit& a, const ClockFit& b) { return a.brought > b.brought; });
+  std::vector<ClockFit> own;
+  for (const ClockFit& fit : fits) {
+    const auto beside = [&](const ClockFit& other) {
+      return std::abs(other.offset_s - fit.offset_s) < kNeighbours_s;
+    };
+    if (std::none_of(own.begin(), own.end(), beside)) own.push_back(fit);
   }
-  if (best.converged) best = FitClock(target, predictors, best.offset_s);
-  if (std::abs(best.offset_s) > options.most_offset_s + 0.5) best.converged = false;
-  return best;
-}
-
-/// The best offset elsewhere, as well fitted as the best one: the grid alone would make it worse.
-ClockFit Rival(const Motion& target, Predictors& predictors, const MisfitProfile& profile,
-               const ClockFit& best) {
-  constexpr double kElsewhere_s = 0.1;
-  const OffsetMisfit rival = NextBest(profile, best.offset_s);
-  if (rival.misfit >= 1.0) return {};
-  ClockFit fit = QuickFit(target, predictors, rival.offset_s, best.play_m);
-  if (std::abs(fit.offset_s - best.offset_s) < kElsewhere_s) fit.converged = false;
-  return fit;
+  return own;
 }
 
 double Residuals(const Motion& target, const ClockFit& fit) {
@@ -98,7 +83,10 @@ StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_
                      options.most_offset_s));
     return clock;
   }
-  const ClockFit fit = BestFit(target, reference, predictors, clock.profile, options);
+  const std::vector<ClockFit> candidates =
+      Candidates(target, reference, predictors, clock.profile, options);
+  const ClockFit fit =
+      candidates.empty() ? ClockFit{} : FitClock(target, predictors, candidates.front().offset_s);
   if (!fit.converged) {
     Fail(clock, ClockStatus::kNotConverged,
          fmt::format("no offset of {} against {} came to rest", target.stream, reference.stream));
@@ -110,7 +98,11 @@ StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_
   clock.covariance = fit.covariance;
   clock.misfit = fit.misfit;
   clock.samples = fit.samples;
-  const ClockFit next = Rival(target, predictors, clock.profile, fit);
+  const auto as_good = [&](const ClockFit& other) {
+    return std::abs(other.offset_s - candidates.front().offset_s) > kNeighbours_s &&
+           Residuals(target, candidates.front()) * (candidates.front().brought - other.brought) <
+               kTelling + Chance(target, fit, other.offset_s);
+  };
   const double sd_s = std::sqrt(fit.covariance(0, 0));
   const double residuals = Residuals(target, fit);
   const double chance = fit.parameters + 3.0 * std::sqrt(2.0 * fit.parameters);
@@ -122,8 +114,8 @@ StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_
     Fail(clock, ClockStatus::kNoSharedMotion,
          fmt::format("{} does not move as {} does at any offset within {:g} s", target.stream,
                      reference.stream, options.most_offset_s));
-  } else if (next.converged && residuals * (fit.likelihood - next.likelihood) <
-                                   kTelling + Chance(target, fit, next.offset_s)) {
+  } else if (std::any_of(candidates.begin(), candidates.end(), as_good) ||
+             std::abs(fit.offset_s - candidates.front().offset_s) > kNeighbours_s) {
     Fail(clock, ClockStatus::kAmbiguous,
          fmt::format("other offsets of {} against {} fit nearly as well: the motion is too slow, "
                      "too small or repeats itself",

@@ -69,7 +69,7 @@ void Learn(const Prediction& p, const Predictors& reference, const std::vector<i
   axis.weight = (kHuber * robust / p.innovations.cwiseAbs().array().max(1e-15)).min(1.0);
   axis.scale = std::max(1e-15, std::sqrt(axis.weight.dot(p.innovations.cwiseAbs2()) /
                                          std::max(1.0, Kept(before, order) - p.Parameters())));
-  for (std::size_t g = 1; g < reference.Kinds().size(); ++g) {
+  for (std::size_t g = 1; !axis.linear && g < reference.Kinds().size(); ++g) {
     const auto& kind = reference.Kinds()[g];
     const double squares = p.beta.segment(kind.first, kind.count).squaredNorm() +
                            p.inverse.diagonal().segment(kind.first, kind.count).sum();

@@ -21,6 +21,7 @@ struct AxisModel {
   Autoregression noise = {};
   double scale = 1.0;            ///< of the innovations
   Eigen::VectorXd kind_sd = {};  ///< of the coefficients of each kind of predictors
+  bool linear = false;           ///< the small predictors stay out
   Eigen::VectorXd weight = {};   ///< of the innovations, Huber's
 };
 

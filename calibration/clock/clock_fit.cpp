@@ -15,13 +15,13 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 constexpr double kRateSd = 3e-4;    // of quartz and of computers that set their clocks
 constexpr double kPlaySd_m = 2e-3;  // of play in a drive
 constexpr int kTurning = 2, kWhitening = 3, kLearning = 9, kMostSteps = 30, kQuickSteps = 5;
-constexpr double kStill_s = 1e-7, kStillRate = 1e-9, kStill_m = 1e-7;
+constexpr double kStill_s = 1e-7, kStillRate = 1e-9, kStill_m = 1e-7, kStillPart = 0.003;
 constexpr double kLongestStep_s = 0.1, kLongestStep_m = 5e-4, kWidest_m = 6e-3;
 constexpr Index kLeastRows = 40;
 constexpr double kBlock_s = 1.0;
 // The model's own error, as parts of how far play and the small predictors move the clock, of the
 // time in which the motion makes the residual where forces are predicted by motion, and at least.
-constexpr double kPlayPart = 0.03, kSmallPart = 0.1, kForcePart = 0.3, kLeast_s = 2e-5;
+constexpr double kPlayPart = 0.03, kSmallPart = 0.2, kForcePart = 0.7, kLeast_s = 2e-5;
 
 /// The features over their sizes, with a constant.
 MatrixXd Scaled(const MatrixXd& x, const VectorXd& size, double constant) {
@@ -50,12 +50,14 @@ MatrixXd ScoreScatter(const ClockRows& rows, const MatrixXd& scores, Index count
 /// Gauss-Newton with all that is learnt on the way.
 class Fit {
  public:
-  Fit(const Motion& target, Predictors& reference, double origin_s)
-      : target_(target), reference_(reference), origin_s_(origin_s) {}
+  Fit(const Motion& target, Predictors& reference, double origin_s, bool linear)
+      : target_(target), reference_(reference), origin_s_(origin_s), linear_(linear) {}
 
   /// Goes at most so many steps and learns in the first of them; tells whether it came to rest.
   bool Go(ClockPoint& point, bool free_play, int steps, int learning);
   ClockFit Result(const ClockPoint& point, bool free_play);
+  std::size_t Samples() const { return rows_.t_s.size(); }
+  double Brought() const { return Likelihood() - LikelihoodAlone(); }
   /// Twice the log likelihood of an innovation.
   double Likelihood() const { return normal_.likelihood / std::max(1.0, normal_.kept); }
 
@@ -69,6 +71,7 @@ class Fit {
   const Motion& target_;
   Predictors& reference_;
   double origin_s_;
+  bool linear_;  // the small predictors stay out
   int learnt_steps_ = 0;
   ClockRows rows_;
   VectorXd middle_, size_;  // of the features
@@ -89,8 +92,9 @@ void Fit::Begin() {
   for (Index a = 0; a < target_.own_rows; ++a) {
     const VectorXd y = rows_.y.col(a).array() - rows_.y.col(a).mean();
     const double sd = std::max(1e-12, y.norm() / root);
-    AxisModel axis{.scale = 0.1 * sd};
-    axis.kind_sd = VectorXd::Constant(static_cast<Index>(reference_.Kinds().size()), 0.02 * sd);
+    AxisModel axis{.scale = 0.1 * sd, .linear = linear_};
+    axis.kind_sd = VectorXd::Constant(static_cast<Index>(reference_.Kinds().size()),
+                                      (linear_ ? 1e-9 : 0.02) * sd);
     axis_.push_back(axis);
   }
 }
@@ -141,8 +145,11 @@ bool Fit::Go(ClockPoint& point, bool free_play, int steps, int learning) {
     if (!Linearise(point, free_play, step < learning, false)) return false;
     Eigen::Vector3d change = Change(point, free_play);
     if (!change.allFinite()) return false;
-    if (step >= learning && std::abs(change[0]) < kStill_s && std::abs(change[1]) < kStillRate &&
-        std::abs(change[2]) < kStill_m) {
+    // Slow motion tells little: then it is enough to be still beside the deviation.
+    const auto still = [&](Index i, double least) {
+      return std::abs(change[i]) < std::max(least, kStillPart / std::sqrt(normal_.normal(i, i)));
+    };
+    if (step >= learning && still(0, kStill_s) && still(1, kStillRate) && still(2, kStill_m)) {
       return true;
     }
     if (step > kMostSteps / 2) change *= 0.5;  // samples that come and go at the ends
@@ -204,7 +211,7 @@ ClockFit Fit::Result(const ClockPoint& point, bool free_play) {
   const MatrixXd y = rows_.y.rowwise() - rows_.y.colwise().mean();
   fit.misfit = std::min(1.0, residual_.squaredNorm() / std::max(1e-300, y.squaredNorm()));
   fit.likelihood = Likelihood();
-  fit.brought = fit.likelihood - LikelihoodAlone();
+  fit.brought = Brought();
   fit.parameters = normal_.parameters;
   fit.converged = fit.covariance.allFinite();
   return fit;
@@ -214,22 +221,26 @@ ClockFit Fit::Result(const ClockPoint& point, bool free_play) {
 double Origin(const Motion& target, Predictors& reference, double offset_s) {
   const ClockRows rows = GatherRows(target, reference, {offset_s, 0.0, 0.0}, 0.0, false);
   return rows.Count() < kLeastRows ? std::numeric_limits<double>::quiet_NaN()
-                                      : 0.5 * (rows.t_s.front() + rows.t_s.back());
+                                   : 0.5 * (rows.t_s.front() + rows.t_s.back());
 }
 
 }  // namespace
 
-ClockFit QuickFit(const Motion& target, Predictors& reference, double offset_s, double play_m) {
+ClockFit QuickFit(const Motion& target, Predictors& reference, double offset_s, double play_m,
+                  bool linear) {
   ClockFit quick{.offset_s = offset_s, .play_m = play_m};
   quick.origin_s = Origin(target, reference, offset_s);
   if (std::isnan(quick.origin_s)) return quick;
   ClockPoint point(offset_s, 0.0, play_m);
-  Fit fit(target, reference, quick.origin_s);
+  Fit fit(target, reference, quick.origin_s, linear);
   fit.Go(point, false, kQuickSteps, kQuickSteps);
   quick.offset_s = point[0];
   quick.rate = point[1];
+  quick.samples = fit.Samples();
+  if (quick.samples == 0) return quick;
   quick.likelihood = fit.Likelihood();
-  quick.converged = std::isfinite(quick.likelihood) && quick.likelihood != 0.0;
+  quick.brought = fit.Brought();
+  quick.converged = std::isfinite(quick.likelihood);
   return quick;
 }
 
@@ -242,13 +253,13 @@ ClockFit FitClock(const Motion& target, Predictors& reference, double start_offs
   if (has_play) {
     double most = -std::numeric_limits<double>::infinity();
     for (const double play_m : {0.0, 5e-4, 1.2e-3, 2.4e-3}) {
-      const ClockFit quick = QuickFit(target, reference, start_offset_s, play_m);
+      const ClockFit quick = QuickFit(target, reference, start_offset_s, play_m, false);
       if (!quick.converged || quick.likelihood <= most) continue;
       most = quick.likelihood;
       best = ClockPoint(quick.offset_s, quick.rate, play_m);
     }
   }
-  Fit fit(target, reference, none.origin_s);
+  Fit fit(target, reference, none.origin_s, false);
   return fit.Go(best, has_play, kMostSteps, kLearning) ? fit.Result(best, has_play) : none;
 }
 

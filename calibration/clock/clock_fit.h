@@ -21,8 +21,10 @@ struct ClockFit {
   std::size_t samples = 0;
 };
 
-/// A few steps with the play held: offset, rate and likelihood, to choose among starts.
-ClockFit QuickFit(const Motion& target, Predictors& reference, double offset_s, double play_m);
+/// A few steps with the play held: offset, rate and likelihood, to choose among starts. `linear`
+/// leaves the small predictors out: all of them explain a short slow motion at any offset.
+ClockFit QuickFit(const Motion& target, Predictors& reference, double offset_s, double play_m,
+                  bool linear);
 
 /// Fits clock, play and prediction of the target's values by Gauss-Newton from `start_offset_s`.
 /// Residuals are whitened by an autoregression for each principal axis, so that what drifts or
