@@ -7,7 +7,7 @@
 namespace flextip {
 namespace {
 
-constexpr double kCoarse_s = 0.005;  // a hand moves a millimetre in that time
+constexpr double kCoarse_s = 0.001;  // with more, slow motion was off by up to 14 deviations
 constexpr double kSurely = 3.0;      // standard deviations
 
 double Sd(const StreamClock& clock) { return std::sqrt(clock.covariance(0, 0)); }
@@ -31,8 +31,10 @@ std::string Sentence(const StreamClock& clock) {
 
 void AddReasons(const StreamClock& clock, CalibrationVerdict& verdict) {
   if (Sd(clock) > kCoarse_s) {
-    verdict.Beware(fmt::format("{}: known to {:.0f} ms only; move faster, or longer", clock.stream,
-                               1e3 * Sd(clock)));
+    verdict.Beware(fmt::format(
+        "{}: known to {:.2g} ms only; in slow motion friction and loads can count as offset beyond "
+        "that; move faster, or longer",
+        clock.stream, 1e3 * Sd(clock)));
   }
   const double rate_sd = std::sqrt(clock.covariance(1, 1));
   if (std::abs(clock.rate) > kSurely * rate_sd) {
