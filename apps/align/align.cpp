@@ -8,6 +8,7 @@
 #include "apps/common/commands.h"
 #include "apps/common/input/recording_input.h"
 #include "apps/common/output.h"
+#include "calibration/clock/motion.h"
 #include "calibration/verdict/clock.h"
 #include "core/error.h"
 #include "report/pages.h"
@@ -28,9 +29,18 @@ void Print(const CalibrationVerdict& verdict, const std::filesystem::path& folde
   fmt::print("{}\n", (folder / "report.html").string());
 }
 
+void CheckReference(const std::string& reference, const Recording& recording) {
+  if (reference.empty()) return;
+  const Motions motions = MotionsOf(recording);
+  if (motions.Find(reference) == nullptr) {
+    throw InputError(fmt::format("--reference {}: expected one of {}", reference, motions.Names()));
+  }
+}
+
 void RunAlign(const AlignOptions& options, bool quiet) {
   InputRead read = ReadInput(options.input);
   const Recording& recording = read.recording;
+  CheckReference(options.clocks.reference, recording);
   const ClockResult result = AlignClocks(recording, options.clocks);
   const CalibrationVerdict verdict = JudgeClocks(result, options.input.recording.string());
   OutputFolder output(options.input.out, "align",

@@ -12,60 +12,52 @@ namespace flextip {
 namespace {
 
 constexpr double kSpeedBandwidth_s = 0.12;
-constexpr std::size_t kCandidates = 6, kRefined = 2;
+constexpr std::size_t kBySpeed = 6, kByMisfit = 6;
 // Twice the log likelihood by which the best offset must surpass all others: hundreds of them.
 constexpr double kTelling = 25.0;
+constexpr double kNeighbours_s = 0.2;
 constexpr double kMostSd_s = 0.1;
-
-/// Twice the log likelihood ratio of two misfits over so many independent residuals.
-double Evidence(double misfit, double other, double independent) {
-  return independent * std::log(std::max(other, 1e-15) / std::max(misfit, 1e-15));
-}
 
 void Fail(StreamClock& clock, ClockStatus status, const std::string& reason) {
   clock.status = status;
   clock.reason = reason;
 }
 
-/// The best fit from every likely start.
-ClockFit BestFit(const Motion& target, const Motion& reference, const SmoothMotion& smooth,
-                 const MisfitProfile& profile, const ClockOptions& options) {
+/// Quick fits from all likely starts, the best first, each at an offset of its own.
+std::vector<ClockFit> Candidates(const Motion& target, const Motion& reference,
+                                 Predictors& predictors, const MisfitProfile& profile,
+                                 const ClockOptions& options) {
   std::vector<double> starts = LikelyOffsets(
       SmoothMotion(target, std::max(kSpeedBandwidth_s, UsualBandwidth(target))), target.own_rows,
       SmoothMotion(reference, std::max(kSpeedBandwidth_s, UsualBandwidth(reference))),
-      reference.own_rows, options.most_offset_s, options.least_overlap_s, kCandidates);
-  const auto least = std::min_element(
-      profile.misfit.begin(), profile.misfit.end(),
-      [](double a, double b) { return !std::isnan(a) && (std::isnan(b) || a < b); });
-  if (!std::isnan(*least)) {
-    starts.push_back(profile.offset_s[static_cast<std::size_t>(least - profile.misfit.begin())]);
-  }
-  const auto misfit = [&](double start_s) {
-    const double m = MisfitAt(target, smooth, start_s, options.least_overlap_s);
-    return std::isnan(m) ? 2.0 : m;
+      reference.own_rows, options.most_offset_s, options.least_overlap_s, kBySpeed);
+  const std::vector<double> by_misfit = BestOffsets(profile, kByMisfit);
+  starts.insert(starts.end(), by_misfit.begin(), by_misfit.end());
+  std::vector<double> apart;
+  const auto is_near = [](double a) {
+    return [a](double b) { return std::abs(a - b) < kNeighbours_s; };
   };
-  std::stable_sort(starts.begin(), starts.end(),
-                   [&](double a, double b) { return misfit(a) < misfit(b); });
-  starts.resize(std::min(starts.size(), kRefined));
-  ClockFit best;
+  std::vector<ClockFit> fits;
   for (const double start_s : starts) {
-    const ClockFit fit = FitClock(target, smooth, start_s);
-    const bool within = std::abs(fit.offset_s) <= options.most_offset_s + 0.5;
-    if (fit.converged && within && (!best.converged || fit.misfit < best.misfit)) best = fit;
+    if (std::any_of(apart.begin(), apart.end(), is_near(start_s))) continue;
+    apart.push_back(start_s);
+    const ClockFit fit = QuickFit(target, predictors, start_s, 0.0, true);
+    if (fit.converged && std::abs(fit.offset_s) <= options.most_offset_s + 0.5) fits.push_back(fit);
   }
-  return best;
+  std::sort(fits.begin(), fits.end(),
+            [](const ClockFit& a, const ClockFit& b) { return a.brought > b.brought; });
+  std::vector<ClockFit> own;
+  for (const ClockFit& fit : fits) {
+    const auto beside = [&](const ClockFit& other) {
+      return std::abs(other.offset_s - fit.offset_s) < kNeighbours_s;
+    };
+    if (std::none_of(own.begin(), own.end(), beside)) own.push_back(fit);
+  }
+  return own;
 }
 
-/// The best offset elsewhere, as well fitted as the best one: the grid alone would make it worse.
-OffsetMisfit Rival(const Motion& target, const SmoothMotion& reference,
-                   const MisfitProfile& profile, const ClockFit& best) {
-  constexpr double kApart_s = 0.1;
-  OffsetMisfit rival = NextBest(profile, best.offset_s);
-  if (rival.misfit >= 1.0) return rival;
-  const ClockFit fit = FitClock(target, reference, rival.offset_s);
-  const bool is_other = std::abs(fit.offset_s - best.offset_s) > kApart_s;
-  if (fit.converged && is_other && fit.misfit < rival.misfit) rival = {fit.offset_s, fit.misfit};
-  return rival;
+double Residuals(const Motion& target, const ClockFit& fit) {
+  return static_cast<double>(fit.samples) * target.own_rows;
 }
 
 /// What evidence differs by because two offsets compare parts of the streams that are not the same:
@@ -73,14 +65,15 @@ OffsetMisfit Rival(const Motion& target, const SmoothMotion& reference,
 double Chance(const Motion& target, const ClockFit& fit, double other_s) {
   const double span_s = std::max(1e-9, target.t_s.back() - target.t_s.front());
   const double apart = std::min(1.0, 2.0 * std::abs(other_s - fit.offset_s) / span_s);
-  return 4.0 * std::sqrt(2.0 * apart * fit.independent);
+  return 4.0 * std::sqrt(2.0 * apart * Residuals(target, fit));
 }
 
 StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_ns,
                     const ClockOptions& options) {
   StreamClock clock{.stream = target.stream, .reference = reference.stream};
-  const SmoothMotion smooth(reference, UsualBandwidth(reference));
-  clock.profile = MisfitOver(target, smooth, options.most_offset_s, options.least_overlap_s);
+  Predictors predictors(reference);
+  clock.profile =
+      MisfitOver(target, predictors.Smooth(), options.most_offset_s, options.least_overlap_s);
   const bool any = std::any_of(clock.profile.misfit.begin(), clock.profile.misfit.end(),
                                [](double m) { return !std::isnan(m); });
   if (!any) {
@@ -90,7 +83,10 @@ StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_
                      options.most_offset_s));
     return clock;
   }
-  const ClockFit fit = BestFit(target, reference, smooth, clock.profile, options);
+  const std::vector<ClockFit> candidates =
+      Candidates(target, reference, predictors, clock.profile, options);
+  const ClockFit fit =
+      candidates.empty() ? ClockFit{} : FitClock(target, predictors, candidates.front().offset_s);
   if (!fit.converged) {
     Fail(clock, ClockStatus::kNotConverged,
          fmt::format("no offset of {} against {} came to rest", target.stream, reference.stream));
@@ -102,14 +98,24 @@ StreamClock Compare(const Motion& target, const Motion& reference, TimeNs epoch_
   clock.covariance = fit.covariance;
   clock.misfit = fit.misfit;
   clock.samples = fit.samples;
-  const OffsetMisfit next = Rival(target, smooth, clock.profile, fit);
+  const auto as_good = [&](const ClockFit& other) {
+    return std::abs(other.offset_s - candidates.front().offset_s) > kNeighbours_s &&
+           Residuals(target, candidates.front()) * (candidates.front().brought - other.brought) <
+               kTelling + Chance(target, fit, other.offset_s);
+  };
   const double sd_s = std::sqrt(fit.covariance(0, 0));
-  if (Evidence(fit.misfit, 1.0, fit.independent) < kTelling || sd_s > kMostSd_s) {
+  const double residuals = Residuals(target, fit);
+  const double chance = fit.parameters + 3.0 * std::sqrt(2.0 * fit.parameters);
+  if (sd_s > kMostSd_s) {
+    Fail(clock, ClockStatus::kNoSharedMotion,
+         fmt::format("{} tells its clock against {} to {:.0f} ms only", target.stream,
+                     reference.stream, 1e3 * sd_s));
+  } else if (residuals * fit.brought < kTelling + chance) {
     Fail(clock, ClockStatus::kNoSharedMotion,
          fmt::format("{} does not move as {} does at any offset within {:g} s", target.stream,
                      reference.stream, options.most_offset_s));
-  } else if (Evidence(fit.misfit, next.misfit, fit.independent) <
-             kTelling + Chance(target, fit, next.offset_s)) {
+  } else if (std::any_of(candidates.begin(), candidates.end(), as_good) ||
+             std::abs(fit.offset_s - candidates.front().offset_s) > kNeighbours_s) {
     Fail(clock, ClockStatus::kAmbiguous,
          fmt::format("other offsets of {} against {} fit nearly as well: the motion is too slow, "
                      "too small or repeats itself",
@@ -154,8 +160,7 @@ const char* Name(ClockStatus status) {
 
 ClockResult AlignClocks(const Recording& recording, const ClockOptions& options) {
   const Motions motions = MotionsOf(recording);
-  std::string known;
-  for (const Motion& m : motions.streams) known += (known.empty() ? "" : ", ") + m.stream;
+  const std::string known = motions.Names();
   if (motions.streams.size() < 2) {
     throw InputError(fmt::format("the recording has {}: two streams that move are needed",
                                  known.empty() ? "no stream that moves" : known + " alone"));
@@ -163,7 +168,8 @@ ClockResult AlignClocks(const Recording& recording, const ClockOptions& options)
   const Motion* reference =
       options.reference.empty() ? &motions.streams.front() : motions.Find(options.reference);
   if (reference == nullptr) {
-    throw InputError(fmt::format("--reference {}: expected one of {}", options.reference, known));
+    throw InputError(fmt::format("the reference is {}: expected one of the streams that move, {}",
+                                 options.reference, known));
   }
   ClockResult result{.reference = reference->stream};
   for (const Motion& target : motions.streams) {

@@ -2,252 +2,265 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "calibration/residual_statistics.h"
+#include "calibration/clock/axis_fit.h"
 #include "core/linear_algebra.h"
-#include "core/median.h"
 
 namespace flextip {
 namespace {
 
-constexpr double kRateSd = 3e-4;  // of quartz and of computers that set their clocks
-constexpr double kHuber = 2.5;    // standard deviations
-constexpr int kMostSteps = 30;
-constexpr double kStill_s = 1e-7, kStillRate = 1e-9;
-constexpr double kLongestStep_s = 0.2;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// A target has at most 4 rows, a reference 6 and a constant.
-constexpr int kRows = 4, kFeatures = 7, kUnknowns = 2 + kRows * kFeatures;
-using Features = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kFeatures, 1>;
-using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kRows, 1>;
-using Mixing = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kRows, kRows>;
-using Predicting = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kRows, kFeatures>;
-using Derivative = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kRows, kUnknowns>;
+constexpr double kRateSd = 3e-4;    // of quartz and of computers that set their clocks
+constexpr double kPlaySd_m = 2e-3;  // of play in a drive
+constexpr int kTurning = 2, kWhitening = 3, kLearning = 9, kMostSteps = 30, kQuickSteps = 5;
+constexpr double kStill_s = 1e-7, kStillRate = 1e-9, kStill_m = 1e-7, kStillPart = 0.003;
+constexpr double kLongestStep_s = 0.1, kLongestStep_m = 5e-4, kWidest_m = 6e-3;
+constexpr Index kLeastRows = 40;
+constexpr double kBlock_s = 1.0;
+// The model's own error, as parts of how far play and the small predictors move the clock, of the
+// time in which the motion makes the residual where forces are predicted by motion, and at least.
+constexpr double kPlayPart = 0.03, kSmallPart = 0.2, kForcePart = 0.7, kLeast_s = 2e-5;
 
-/// The samples that both streams have at the present clock, in rows of the linear problem.
-struct Rows {
-  std::vector<Features> x, velocity;  // predicting values with a constant; their velocity
-  std::vector<Values> y;
-  std::vector<double> since_origin_s;
-  std::vector<std::size_t> sample;
-};
+/// The features over their sizes, with a constant.
+MatrixXd Scaled(const MatrixXd& x, const VectorXd& size, double constant) {
+  MatrixXd z(x.rows(), x.cols() + 1);
+  z.leftCols(x.cols()) = x.array().rowwise() / size.transpose().array();
+  z.col(x.cols()).setConstant(constant);
+  return z;
+}
 
-class Problem {
- public:
-  Problem(const Motion& target, const SmoothMotion& reference)
-      : target_(target), reference_(reference), rows_(target.own_rows) {}
-
-  Rows At(double offset_s, double rate, double origin_s) const {
-    Rows rows;
-    Eigen::VectorXd x, velocity;
-    for (std::size_t i = 0; i < target_.Count(); ++i) {
-      const double since_s = target_.t_s[i] - origin_s;
-      if (!reference_.At(target_.t_s[i] + offset_s + rate * since_s, x, velocity)) continue;
-      Features with_constant(x.size() + 1), without(x.size() + 1);
-      with_constant << x, 1.0;
-      without << velocity, 0.0;
-      rows.x.push_back(with_constant);
-      rows.velocity.push_back(without);
-      rows.y.emplace_back(target_.values.col(static_cast<Eigen::Index>(i)).head(rows_));
-      rows.since_origin_s.push_back(since_s);
-      rows.sample.push_back(i);
+/// The sum over blocks of time of the products of their scores.
+MatrixXd ScoreScatter(const ClockRows& rows, const MatrixXd& scores, Index count) {
+  MatrixXd scatter = MatrixXd::Zero(count, count);
+  VectorXd block = VectorXd::Zero(count);
+  double end_s = rows.t_s.front() + kBlock_s;
+  for (std::size_t i = 0; i < rows.t_s.size(); ++i) {
+    if (rows.t_s[i] >= end_s) {
+      scatter += block * block.transpose();
+      block.setZero();
+      end_s = rows.t_s[i] + kBlock_s;
     }
-    return rows;
+    block += scores.row(static_cast<Index>(i)).head(count).transpose();
   }
+  return scatter + block * block.transpose();
+}
 
-  template <class T>
-  T Whitened(std::size_t sample, const T& v) const {
-    if (target_.whitening.empty()) return v;
-    return target_.whitening[sample] * v;
-  }
-  int OwnRows() const { return rows_; }
+/// Gauss-Newton with all that is learnt on the way.
+class Fit {
+ public:
+  Fit(const Motion& target, Predictors& reference, double origin_s, bool linear)
+      : target_(target), reference_(reference), origin_s_(origin_s), linear_(linear) {}
+
+  /// Goes at most so many steps and learns in the first of them; tells whether it came to rest.
+  bool Go(ClockPoint& point, bool free_play, int steps, int learning);
+  ClockFit Result(const ClockPoint& point, bool free_play);
+  std::size_t Samples() const { return rows_.t_s.size(); }
+  double Brought() const { return Likelihood() - LikelihoodAlone(); }
+  /// Twice the log likelihood of an innovation.
+  double Likelihood() const { return normal_.likelihood / std::max(1.0, normal_.kept); }
 
  private:
+  bool Linearise(const ClockPoint& point, bool free_play, bool learn, bool plain);
+  void Begin();
+  Eigen::Vector3d Change(const ClockPoint& point, bool free_play) const;
+  double ModelSd(const ClockPoint& point, bool free_play, const MatrixXd& inverse) const;
+  double LikelihoodAlone() const;
+
   const Motion& target_;
-  const SmoothMotion& reference_;
-  int rows_;
+  Predictors& reference_;
+  double origin_s_;
+  bool linear_;  // the small predictors stay out
+  int learnt_steps_ = 0;
+  ClockRows rows_;
+  VectorXd middle_, size_;  // of the features
+  MatrixXd axes_;           // orthonormal columns: the principal axes of the residual
+  std::vector<AxisModel> axis_;
+  MatrixXd residual_;
+  double speed_ = 0.0;  // norm of the prediction's derivative by the offset
+  ClockNormal normal_;
 };
 
-/// Features shifted and scaled to mean 0 and size 1, so that one ridge fits all.
-struct Scale {
-  Features mean, size;
-
-  explicit Scale(const Rows& rows) {
-    const Eigen::Index n = rows.x.front().size();
-    const double count = static_cast<double>(rows.x.size());
-    mean = Features::Zero(n);
-    size = Features::Zero(n);
-    for (const auto& x : rows.x) mean += x / count;
-    mean[n - 1] = 0.0;
-    for (const auto& x : rows.x) size += (x - mean).cwiseAbs2() / count;
-    size = size.cwiseSqrt().cwiseMax(1e-12);
+void Fit::Begin() {
+  const double root = std::sqrt(static_cast<double>(rows_.Count()));
+  middle_ = rows_.x.colwise().mean().transpose();
+  size_ = ((rows_.x.rowwise() - middle_.transpose()).colwise().norm() / root)
+              .transpose()
+              .cwiseMax(1e-12);
+  axes_ = MatrixXd::Identity(target_.own_rows, target_.own_rows);
+  for (Index a = 0; a < target_.own_rows; ++a) {
+    const VectorXd y = rows_.y.col(a).array() - rows_.y.col(a).mean();
+    const double sd = std::max(1e-12, y.norm() / root);
+    AxisModel axis{.scale = 0.1 * sd, .linear = linear_};
+    axis.kind_sd = VectorXd::Constant(static_cast<Index>(reference_.Kinds().size()),
+                                      (linear_ ? 1e-9 : 0.02) * sd);
+    axis_.push_back(axis);
   }
-  Features Of(const Features& x) const { return (x - mean).cwiseQuotient(size); }
-};
+}
 
-/// One linearisation: the normal equations of (offset, rate, prediction) and the residuals.
-struct Linear {
-  Eigen::MatrixXd normal;  // J^T W J with priors
-  Eigen::VectorXd right;   // J^T W r
-  std::vector<Derivative> J;
-  std::vector<Values> r;  // whitened
-  std::vector<double> weight;
-  double scale = 1.0;  // standard deviation of a whitened component
-  double misfit = 1.0;
-};
-
-/// The prediction (own rows x features) that fits the present clock best.
-Predicting Prediction(const Problem& problem, const Rows& rows, const Scale& scale,
-                      const std::vector<double>& weight) {
-  const Eigen::Index features = scale.mean.size(), own = problem.OwnRows();
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(own * features, own * features);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(own * features);
-  for (std::size_t i = 0; i < rows.x.size(); ++i) {
-    const Features x = scale.Of(rows.x[i]);
-    const Mixing root = problem.Whitened(rows.sample[i], Mixing(Mixing::Identity(own, own)));
-    const Mixing information = weight[i] * root.transpose() * root;
-    const Values told = information * rows.y[i];
-    for (Eigen::Index a = 0; a < own; ++a) {
-      right.segment(a * features, features) += told[a] * x;
-      for (Eigen::Index b = 0; b < own; ++b) {
-        if (information(a, b) == 0.0) continue;
-        normal.block(a * features, b * features, features, features).noalias() +=
-            information(a, b) * x * x.transpose();
-      }
+bool Fit::Linearise(const ClockPoint& point, bool free_play, bool learn, bool plain) {
+  rows_ = GatherRows(target_, reference_, point, origin_s_, free_play);
+  if (rows_.Count() < kLeastRows) return false;
+  if (axis_.empty()) Begin();
+  const ScaledRows scaled{Scaled(rows_.x.rowwise() - middle_.transpose(), size_, 1.0),
+                          Scaled(rows_.velocity, size_, 0.0),
+                          free_play ? Scaled(rows_.by_play, size_, 0.0) : MatrixXd(), rows_.since_s,
+                          rows_.before};
+  normal_ = {};
+  residual_.resize(rows_.Count(), target_.own_rows);
+  const MatrixXd y = rows_.y * axes_;
+  for (Index a = 0; a < target_.own_rows; ++a) {
+    AxisModel& axis = axis_[static_cast<std::size_t>(a)];
+    residual_.col(a) = AddAxis(scaled, reference_, y.col(a), learn, plain, axis, normal_);
+    if (learn && learnt_steps_ >= kWhitening) {
+      axis.noise = FitAutoregression(residual_.col(a), rows_.before);
     }
   }
-  normal.diagonal() *= 1.0 + 1e-9;
-  const Eigen::VectorXd solution = Ldlt(normal).Solve(right);
-  return Eigen::Map<const Eigen::MatrixXd>(solution.data(), features, own).transpose();
+  if (learn && learnt_steps_++ == kTurning) {  // what disturbs along one axis is whitened there
+    axes_ = axes_ * SymmetricEigen(MatrixXd(residual_.transpose() * residual_)).vectors;
+  }
+  speed_ = std::sqrt(normal_.speed_squares);
+  normal_.normal(1, 1) += 1.0 / (kRateSd * kRateSd);
+  normal_.right[1] -= point[1] / (kRateSd * kRateSd);
+  normal_.normal(2, 2) += 1.0 / (kPlaySd_m * kPlaySd_m);
+  normal_.right[2] -= point[2] / (kPlaySd_m * kPlaySd_m);
+  return true;
 }
 
-Linear Linearise(const Problem& problem, const Rows& rows, double rate) {
-  const Scale scale(rows);
-  const std::size_t n = rows.x.size();
-  const Eigen::Index features = scale.mean.size(), own = problem.OwnRows();
-  Linear linear;
-  linear.weight.assign(n, 1.0);
-  Predicting prediction;
-  for (int pass = 0; pass < 3; ++pass) {  // Huber's weights by the residuals
-    prediction = Prediction(problem, rows, scale, linear.weight);
-    linear.r.clear();
-    std::vector<double> lengths;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Values r = rows.y[i] - prediction * scale.Of(rows.x[i]);
-      linear.r.push_back(problem.Whitened(rows.sample[i], r));
-      lengths.push_back(linear.r.back().norm());
+Eigen::Vector3d Fit::Change(const ClockPoint& point, bool free_play) const {
+  Eigen::Vector3d change = Ldlt<3>(normal_.normal).Solve(normal_.right);
+  if (!free_play || (point[2] <= 0.0 && change[2] < 0.0)) {  // held, or at its end
+    change.head<2>() = Ldlt<2>(Eigen::Matrix2d(normal_.normal.topLeftCorner<2, 2>()))
+                           .Solve(Eigen::Vector2d(normal_.right.head<2>()));
+    change[2] = 0.0;
+  }
+  change[0] = std::clamp(change[0], -kLongestStep_s, kLongestStep_s);
+  change[2] = std::clamp(change[2], -kLongestStep_m, kLongestStep_m);
+  return change;
+}
+
+bool Fit::Go(ClockPoint& point, bool free_play, int steps, int learning) {
+  for (int step = 0; step < steps; ++step) {
+    if (!Linearise(point, free_play, step < learning, false)) return false;
+    Eigen::Vector3d change = Change(point, free_play);
+    if (!change.allFinite()) return false;
+    // Slow motion tells little: then it is enough to be still beside the deviation.
+    const auto still = [&](Index i, double least) {
+      return std::abs(change[i]) < std::max(least, kStillPart / std::sqrt(normal_.normal(i, i)));
+    };
+    if (step >= learning && still(0, kStill_s) && still(1, kStillRate) && still(2, kStill_m)) {
+      return true;
     }
-    linear.scale = std::max(1e-15, RobustScale(lengths));
-    const double limit = kHuber * std::sqrt(static_cast<double>(own)) * linear.scale;
-    for (std::size_t i = 0; i < n; ++i) linear.weight[i] = std::min(1.0, limit / lengths[i]);
+    if (step > kMostSteps / 2) change *= 0.5;  // samples that come and go at the ends
+    point += change;
+    point[1] = std::clamp(point[1], -0.01, 0.01);
+    point[2] = std::clamp(point[2], 0.0, kWidest_m);
   }
-  const Eigen::Index unknowns = 2 + own * features;
-  linear.normal = Eigen::MatrixXd::Zero(unknowns, unknowns);
-  linear.right = Eigen::VectorXd::Zero(unknowns);
-  Values mean = Values::Zero(own);
-  for (const auto& y : rows.y) mean += y / static_cast<double>(n);
-  double left = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    Derivative J = Derivative::Zero(own, unknowns);
-    J.col(0) = prediction * rows.velocity[i].cwiseQuotient(scale.size);
-    J.col(1) = rows.since_origin_s[i] * J.col(0);
-    const Features x = scale.Of(rows.x[i]);
-    for (Eigen::Index a = 0; a < own; ++a)
-      J.block(a, 2 + a * features, 1, features) = x.transpose();
-    J = problem.Whitened(rows.sample[i], J);
-    linear.normal.noalias() += linear.weight[i] * J.transpose() * J;
-    linear.right.noalias() += linear.weight[i] * J.transpose() * linear.r[i];
-    linear.J.push_back(std::move(J));
-    left += linear.weight[i] * linear.r[i].squaredNorm();
-    all +=
-        linear.weight[i] * problem.Whitened(rows.sample[i], Values(rows.y[i] - mean)).squaredNorm();
-  }
-  linear.misfit = all > 0.0 ? std::min(1.0, left / all) : 1.0;
-  const double prior = linear.scale * linear.scale / (kRateSd * kRateSd);
-  linear.normal(1, 1) += prior;
-  linear.right[1] -= prior * rate;
-  linear.normal.diagonal().tail(own * features) *= 1.0 + 1e-9;
-  return linear;
+  return false;
 }
 
-/// The autocorrelation of the residuals from lag 0 to where it is within chance.
-std::vector<double> Autocorrelation(const Linear& linear) {
-  const std::size_t n = linear.r.size();
-  const double chance = 2.0 / std::sqrt(static_cast<double>(n * linear.r.front().size()));
-  std::vector<double> correlation;
-  double power = 0.0;
-  for (std::size_t lag = 0; lag < std::max<std::size_t>(1, n / 4); ++lag) {
-    double sum = 0.0;
-    for (std::size_t i = lag; i < n; ++i) {
-      sum += linear.weight[i] * linear.weight[i - lag] * linear.r[i].dot(linear.r[i - lag]);
-    }
-    if (lag == 0) power = sum;
-    if (lag > 0 && !(sum > chance * power)) break;
-    correlation.push_back(power > 0.0 ? sum / power : 1.0);
+/// What the model may be off by: parts of how far the clock would go without play, or with the
+/// linear predictors alone.
+double Fit::ModelSd(const ClockPoint& point, bool free_play, const MatrixXd& inverse) const {
+  double play_s = 0.0, small_s = 0.0;
+  if (free_play) {
+    play_s = point[2] * inverse(0, 2) / inverse(2, 2);
+    small_s = Ldlt<2>(Eigen::Matrix2d(normal_.plain_normal.topLeftCorner<2, 2>()))
+                  .Solve(Eigen::Vector2d(normal_.plain_right.head<2>()))[0];
   }
-  return correlation;
+  // Friction and soft tissue rule a force, and little of them is known.
+  const bool alike = target_.is_force == reference_.IsForce();
+  const double force_s = alike ? 0.0 : residual_.norm() / std::max(1e-300, speed_);
+  return std::hypot(std::hypot(kPlayPart * play_s, kSmallPart * small_s), kForcePart * force_s,
+                    kLeast_s);
 }
 
-/// The covariance of (offset, rate) under residuals of that autocorrelation.
-Eigen::Matrix2d Covariance(const Linear& linear, const std::vector<double>& correlation) {
-  using Part = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, kRows>;
-  const Eigen::MatrixXd inverse = Ldlt(linear.normal).Inverse();
-  const Eigen::MatrixXd by_score = inverse.topRows(2);
-  const std::size_t n = linear.r.size();
-  std::vector<Part> part;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    part.emplace_back(linear.weight[i] * by_score * linear.J[i].transpose());
-    squares += linear.weight[i] * linear.r[i].squaredNorm();
+/// As Likelihood, of the target alone: each axis by its own past.
+double Fit::LikelihoodAlone() const {
+  const MatrixXd y = (rows_.y.rowwise() - rows_.y.colwise().mean()) * axes_;
+  double sum = 0.0, count = 0.0;
+  for (Index a = 0; a < y.cols(); ++a) {
+    const Autoregression past = FitAutoregression(y.col(a), rows_.before);
+    const double kept = static_cast<double>(std::count_if(
+        rows_.before.begin(), rows_.before.end(), [&](int b) { return b >= past.Order(); }));
+    const double power = past.Innovations(y.col(a), rows_.before).squaredNorm();
+    sum -= kept * std::log(std::max(1e-30, power / std::max(1.0, kept)));
+    count += kept;
   }
-  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (std::size_t k = 0; k < correlation.size(); ++k) {
-    Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
-    for (std::size_t i = k; i < n; ++i) products += part[i] * part[i - k].transpose();
-    sum += correlation[k] * (k == 0 ? products : Eigen::Matrix2d(products + products.transpose()));
-  }
-  const double rows = static_cast<double>(n * linear.r.front().size());
-  const double unknowns = static_cast<double>(linear.normal.rows());
-  sum *= squares / std::max(1.0, rows - unknowns);
-  const double prior = linear.scale * linear.scale / kRateSd;
-  const Eigen::Vector2d by_prior = inverse.block<2, 1>(0, 1);
-  return sum + prior * prior * by_prior * by_prior.transpose();
+  return sum / std::max(1.0, count);
 }
 
-/// How many residuals one independent residual stands for.
-double Memory(const std::vector<double>& correlation) {
-  double memory = -1.0;
-  for (const double c : correlation) memory += 2.0 * c;
-  return memory;
+ClockFit Fit::Result(const ClockPoint& point, bool free_play) {
+  Linearise(point, free_play, false, free_play);
+  ClockFit fit{.offset_s = point[0], .rate = point[1], .origin_s = origin_s_, .play_m = point[2]};
+  const Index free = free_play ? 3 : 2;
+  const MatrixXd inverse = Ldlt(MatrixXd(normal_.normal.topLeftCorner(free, free))).Inverse();
+  MatrixXd scatter = ScoreScatter(rows_, normal_.scores, free);
+  scatter(1, 1) += 1.0 / (kRateSd * kRateSd);
+  if (free_play) scatter(2, 2) += 1.0 / (kPlaySd_m * kPlaySd_m);
+  const MatrixXd by_blocks = inverse * scatter * inverse;
+  Eigen::Vector2d larger;
+  for (Index i = 0; i < 2; ++i) {
+    larger[i] = std::sqrt(std::max(1.0, by_blocks(i, i) / inverse(i, i)));
+  }
+  fit.covariance = larger.asDiagonal() * inverse.topLeftCorner<2, 2>() * larger.asDiagonal();
+  const double model_s = ModelSd(point, free_play, inverse);
+  fit.covariance(0, 0) += model_s * model_s;
+  fit.samples = rows_.t_s.size();
+  const MatrixXd y = rows_.y.rowwise() - rows_.y.colwise().mean();
+  fit.misfit = std::min(1.0, residual_.squaredNorm() / std::max(1e-300, y.squaredNorm()));
+  fit.likelihood = Likelihood();
+  fit.brought = Brought();
+  fit.parameters = normal_.parameters;
+  fit.converged = fit.covariance.allFinite();
+  return fit;
+}
+
+/// The middle of the overlap; NaN where it is too short.
+double Origin(const Motion& target, Predictors& reference, double offset_s) {
+  const ClockRows rows = GatherRows(target, reference, {offset_s, 0.0, 0.0}, 0.0, false);
+  return rows.Count() < kLeastRows ? std::numeric_limits<double>::quiet_NaN()
+                                   : 0.5 * (rows.t_s.front() + rows.t_s.back());
 }
 
 }  // namespace
 
-ClockFit FitClock(const Motion& target, const SmoothMotion& reference, double start_offset_s) {
-  const Problem problem(target, reference);
-  ClockFit fit{.offset_s = start_offset_s};
-  const Rows first = problem.At(start_offset_s, 0.0, 0.0);
-  if (first.sample.size() < 20) return fit;
-  fit.origin_s = 0.5 * (target.t_s[first.sample.front()] + target.t_s[first.sample.back()]);
-  for (int step = 0; step < kMostSteps; ++step) {
-    const Rows rows = problem.At(fit.offset_s, fit.rate, fit.origin_s);
-    if (rows.sample.size() < 20) return fit;
-    const Linear linear = Linearise(problem, rows, fit.rate);
-    const Eigen::VectorXd change = Ldlt(linear.normal).Solve(linear.right);
-    if (!change.allFinite()) return fit;
-    fit.misfit = linear.misfit;
-    if (std::abs(change[0]) < kStill_s && std::abs(change[1]) < kStillRate) {
-      const std::vector<double> correlation = Autocorrelation(linear);
-      fit.covariance = Covariance(linear, correlation);
-      fit.samples = rows.sample.size();
-      fit.independent = static_cast<double>(fit.samples) * target.own_rows / Memory(correlation);
-      fit.converged = fit.covariance.allFinite();
-      return fit;
+ClockFit QuickFit(const Motion& target, Predictors& reference, double offset_s, double play_m,
+                  bool linear) {
+  ClockFit quick{.offset_s = offset_s, .play_m = play_m};
+  quick.origin_s = Origin(target, reference, offset_s);
+  if (std::isnan(quick.origin_s)) return quick;
+  ClockPoint point(offset_s, 0.0, play_m);
+  Fit fit(target, reference, quick.origin_s, linear);
+  fit.Go(point, false, kQuickSteps, kQuickSteps);
+  quick.offset_s = point[0];
+  quick.rate = point[1];
+  quick.samples = fit.Samples();
+  if (quick.samples == 0) return quick;
+  quick.likelihood = fit.Likelihood();
+  quick.brought = fit.Brought();
+  quick.converged = std::isfinite(quick.likelihood);
+  return quick;
+}
+
+ClockFit FitClock(const Motion& target, Predictors& reference, double start_offset_s) {
+  ClockFit none{.offset_s = start_offset_s};
+  none.origin_s = Origin(target, reference, start_offset_s);
+  if (std::isnan(none.origin_s)) return none;
+  ClockPoint best(start_offset_s, 0.0, 0.0);
+  const bool has_play = reference.HasPlay();
+  if (has_play) {
+    double most = -std::numeric_limits<double>::infinity();
+    for (const double play_m : {0.0, 5e-4, 1.2e-3, 2.4e-3}) {
+      const ClockFit quick = QuickFit(target, reference, start_offset_s, play_m, false);
+      if (!quick.converged || quick.likelihood <= most) continue;
+      most = quick.likelihood;
+      best = ClockPoint(quick.offset_s, quick.rate, play_m);
     }
-    fit.offset_s += std::clamp(change[0], -kLongestStep_s, kLongestStep_s);
-    fit.rate = std::clamp(fit.rate + change[1], -0.01, 0.01);
   }
-  return fit;
+  Fit fit(target, reference, none.origin_s, false);
+  return fit.Go(best, has_play, kMostSteps, kLearning) ? fit.Result(best, has_play) : none;
 }
 
 }  // namespace flextip

@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include "calibration/clock/smooth_motion.h"
+#include "calibration/clock/predictors.h"
 
 namespace flextip {
 
@@ -11,16 +11,27 @@ namespace flextip {
 struct ClockFit {
   bool converged = false;
   double offset_s = 0.0, rate = 0.0, origin_s = 0.0;
+  double play_m = 0.0;  ///< between the measured wrist and the shaft's, where it could be told
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of offset (s) and rate
-  double misfit = 1.0;       ///< residual over variance of the target's values
-  double independent = 0.0;  ///< residuals that count, as many as if they were independent
+  double misfit = 1.0;  ///< residual over variance of the target's values
+  /// Twice the log likelihood of the residuals' innovations, a sample, and how much of it the
+  /// reference has brought: without it, each residual would be predicted by its own past alone.
+  double likelihood = 0.0, brought = 0.0;
+  double parameters = 0.0;  ///< that were free, the small ones by their part
   std::size_t samples = 0;
 };
 
-/// Fits the clock and the linear prediction of the target's values by the reference, by
-/// Gauss-Newton from `start_offset_s` with Huber's weights. The origin is the middle of the
-/// overlap. The covariance counts residuals that remember themselves (Newey and West, Econometrica
-/// 55, 1987) and a rate of 0 within 3e-4.
-ClockFit FitClock(const Motion& target, const SmoothMotion& reference, double start_offset_s);
+/// A few steps with the play held: offset, rate and likelihood, to choose among starts. `linear`
+/// leaves the small predictors out: all of them explain a short slow motion at any offset.
+ClockFit QuickFit(const Motion& target, Predictors& reference, double offset_s, double play_m,
+                  bool linear);
+
+/// Fits clock, play and prediction of the target's values by Gauss-Newton from `start_offset_s`.
+/// Residuals are whitened by an autoregression for each principal axis, so that what drifts or
+/// breathes does not count where the motion is faster; Huber's weights on the innovations. The
+/// origin is the middle of the overlap. The covariance is the larger of the formal one and that of
+/// the scores' scatter over blocks of time, with a rate of 0 within 3e-4, plus the model's error: a
+/// part of how far play and the predictors that are not linear move the clock.
+ClockFit FitClock(const Motion& target, Predictors& reference, double start_offset_s);
 
 }  // namespace flextip

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSpeedStep_s = 0.02, kProfileStep_s = 0.05, kApart_s = 0.1;
-constexpr double kValley_s = 0.3;  // half, at least
 constexpr std::size_t kMostSamples = 1500;
 constexpr double kRidge = 1e-6;  // of a feature's variance
 
@@ -43,7 +42,7 @@ double Correlation(const std::vector<double>& a, const std::vector<double>& b, l
 
 /// Sums of a linear prediction of the target by the reference, with a constant.
 struct PredictionSums {
-  static constexpr int kMost = 8;  // features and rows of any stream
+  static constexpr int kMost = 13;  // features and rows of any stream
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
   Matrix xx, xy;
@@ -79,6 +78,23 @@ struct PredictionSums {
   }
 };
 
+/// The misfit at one offset; NaN where the overlap is too short.
+double MisfitAt(const Motion& target, const SmoothMotion& reference, double offset_s,
+                double least_overlap_s) {
+  const std::size_t every = 1 + target.Count() / kMostSamples;
+  std::optional<PredictionSums> sums;
+  Eigen::VectorXd x, velocity;
+  for (std::size_t i = 0; i < target.Count(); i += every) {
+    if (!reference.At(target.t_s[i] + offset_s, x, velocity)) continue;
+    if (!sums) sums.emplace(x.size(), target.own_rows);
+    sums->Add(target.t_s[i], x,
+              target.values.col(static_cast<Eigen::Index>(i)).head(target.own_rows));
+  }
+  const bool enough = sums && sums->last_s - sums->first_s >= least_overlap_s &&
+                      sums->count >= 5.0 * static_cast<double>(sums->xx.rows());
+  return enough ? sums->Misfit() : kNone;
+}
+
 }  // namespace
 
 std::vector<double> LikelyOffsets(const SmoothMotion& target, int target_rows,
@@ -113,22 +129,6 @@ std::vector<double> LikelyOffsets(const SmoothMotion& target, int target_rows,
   return offsets;
 }
 
-double MisfitAt(const Motion& target, const SmoothMotion& reference, double offset_s,
-                double least_overlap_s) {
-  const std::size_t every = 1 + target.Count() / kMostSamples;
-  std::optional<PredictionSums> sums;
-  Eigen::VectorXd x, velocity;
-  for (std::size_t i = 0; i < target.Count(); i += every) {
-    if (!reference.At(target.t_s[i] + offset_s, x, velocity)) continue;
-    if (!sums) sums.emplace(x.size(), target.own_rows);
-    sums->Add(target.t_s[i], x,
-              target.values.col(static_cast<Eigen::Index>(i)).head(target.own_rows));
-  }
-  const bool enough = sums && sums->last_s - sums->first_s >= least_overlap_s &&
-                      sums->count >= 5.0 * static_cast<double>(sums->xx.rows());
-  return enough ? sums->Misfit() : kNone;
-}
-
 MisfitProfile MisfitOver(const Motion& target, const SmoothMotion& reference, double most_offset_s,
                          double least_overlap_s) {
   MisfitProfile profile;
@@ -140,22 +140,20 @@ MisfitProfile MisfitOver(const Motion& target, const SmoothMotion& reference, do
   return profile;
 }
 
-OffsetMisfit NextBest(const MisfitProfile& profile, double offset_s) {
-  const auto& offsets = profile.offset_s;
-  const auto& misfit = profile.misfit;
-  const auto near = static_cast<std::size_t>(
-      std::lower_bound(offsets.begin(), offsets.end(), offset_s) - offsets.begin());
-  const auto at = std::min(near, offsets.size() - 1);
-  const auto least = static_cast<std::size_t>(kValley_s / kProfileStep_s);
-  std::size_t low = at - std::min(at, least);  // the valley: as long as it rises to both sides
-  std::size_t high = std::min(at + least, misfit.size() - 1);
-  while (low > 0 && !(misfit[low - 1] < misfit[low])) --low;
-  while (high + 1 < misfit.size() && !(misfit[high + 1] < misfit[high])) ++high;
-  OffsetMisfit best{offset_s, 1.0};
-  for (std::size_t i = 0; i < misfit.size(); ++i) {
-    if ((i < low || i > high) && misfit[i] < best.misfit) best = {offsets[i], misfit[i]};
+std::vector<double> BestOffsets(const MisfitProfile& profile, std::size_t count) {
+  const auto& m = profile.misfit;
+  std::vector<std::pair<double, double>> minima;  // misfit, offset
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    const bool falls = i == 0 || !(m[i - 1] < m[i]),
+               rises = i + 1 == m.size() || !(m[i + 1] < m[i]);
+    if (!std::isnan(m[i]) && falls && rises) minima.emplace_back(m[i], profile.offset_s[i]);
   }
-  return best;
+  std::sort(minima.begin(), minima.end());
+  std::vector<double> offsets;
+  for (const auto& minimum : minima) {
+    if (offsets.size() < count) offsets.push_back(minimum.second);
+  }
+  return offsets;
 }
 
 }  // namespace flextip

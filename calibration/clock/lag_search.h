@@ -26,16 +26,7 @@ struct MisfitProfile {
 MisfitProfile MisfitOver(const Motion& target, const SmoothMotion& reference, double most_offset_s,
                          double least_overlap_s);
 
-/// Returns the misfit at a single offset; NaN where the overlap is too short.
-double MisfitAt(const Motion& target, const SmoothMotion& reference, double offset_s,
-                double least_overlap_s);
-
-struct OffsetMisfit {
-  double offset_s = 0.0, misfit = 1.0;
-};
-
-/// Returns the least misfit outside the valley around `offset_s`, and where; a misfit of 1 where
-/// there is none.
-OffsetMisfit NextBest(const MisfitProfile& profile, double offset_s);
+/// Returns the offsets where the profile has its least minima, best first, at most `count`.
+std::vector<double> BestOffsets(const MisfitProfile& profile, std::size_t count);
 
 }  // namespace flextip

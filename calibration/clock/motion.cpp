@@ -23,6 +23,7 @@ Motion Begin(const std::string& stream, const std::string& quantity, const Serie
 Motion WristMotion(const Recording& recording, TimeNs epoch_ns) {
   const auto& samples = recording.wrist0->samples;
   Motion motion = Begin("wrist0", "tip of the straight shaft", samples, epoch_ns, 6);
+  motion.port = WristPort{recording.p_RP, recording.instrument.length_m};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Eigen::Vector3d& p_RW = samples[i].value.p_RW;
     const Eigen::Vector3d along = recording.p_RP - p_RW;
@@ -35,10 +36,12 @@ Motion WristMotion(const Recording& recording, TimeNs epoch_ns) {
   return motion;
 }
 
+/// Position and axes: any point fixed to the sensor is linear in both.
 Motion EmMotion(const EmStream& em, TimeNs epoch_ns) {
-  Motion motion = Begin("em0", "sensor position", em.samples, epoch_ns, 3);
+  Motion motion = Begin("em0", "sensor position", em.samples, epoch_ns, 12);
   for (std::size_t i = 0; i < em.samples.size(); ++i) {
-    motion.values.col(static_cast<Eigen::Index>(i)) = em.samples[i].value.p_RS;
+    const Eigen::Matrix3d R_RS = em.samples[i].value.q_RS.toRotationMatrix();
+    motion.values.col(static_cast<Eigen::Index>(i)) << em.samples[i].value.p_RS, R_RS.reshaped();
   }
   return motion;
 }
@@ -64,6 +67,7 @@ Motion Plain(const std::string& stream, const std::string& quantity,
              const Series<Eigen::Matrix<double, N, 1>>& samples, TimeNs epoch_ns) {
   Motion motion = Begin(stream, quantity, samples, epoch_ns, N);
   motion.own_rows = N;
+  motion.is_force = true;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     motion.values.col(static_cast<Eigen::Index>(i)) = samples[i].value;
   }
@@ -82,6 +86,12 @@ const Motion* Motions::Find(const std::string& stream) const {
   const auto it = std::find_if(streams.begin(), streams.end(),
                                [&](const Motion& m) { return m.stream == stream; });
   return it == streams.end() ? nullptr : &*it;
+}
+
+std::string Motions::Names() const {
+  std::string names;
+  for (const Motion& m : streams) names += (names.empty() ? "" : ", ") + m.stream;
+  return names;
 }
 
 Motions MotionsOf(const Recording& r) {

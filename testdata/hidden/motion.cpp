@@ -185,6 +185,8 @@ Course MakeCourse(MotionKind kind, Rng& rng, double until_s) {
       return SinesCourse(rng, 7, 0.09, 0.42);
     case MotionKind::kStar:
       return StarCourse(rng, until_s);
+    case MotionKind::kShake:
+      return SinesCourse(rng, 7, 0.15, 2.2);
   }
   return {};
 }
@@ -192,8 +194,8 @@ Course MakeCourse(MotionKind kind, Rng& rng, double until_s) {
 }  // namespace
 
 const char* Name(MotionKind kind) {
-  constexpr const char* kNames[kMotionKinds] = {"sines",  "raster", "in_out", "circle",
-                                                "spiral", "press",  "wander", "star"};
+  constexpr const char* kNames[kMotionKinds] = {"sines", "raster", "in_out", "circle", "spiral",
+                                                "press", "wander", "star",   "shake"};
   return kNames[static_cast<int>(kind)];
 }
 

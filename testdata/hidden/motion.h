@@ -17,15 +17,16 @@ enum class MotionKind : std::uint8_t {
   kPress,   ///< to one place after the other; there in, hold, out
   kWander,  ///< a smooth random walk
   kStar,    ///< strokes out and back, each in another direction
+  kShake,   ///< fast and never twice the same, up to 3 Hz: sessions that clocks are aligned by
 };
-inline constexpr int kMotionKinds = 8;
+inline constexpr int kMotionKinds = 9;
 const char* Name(MotionKind kind);
 
 /// Tuning never sees the held-out motions.
 enum class MotionFamily : std::uint8_t {
   kTuning,   ///< sines, raster, in-out, circle
   kHeldOut,  ///< spiral, press, wander, star
-  kAny,
+  kAny,      ///< both; kShake is in no family
 };
 /// The kinds of a family.
 std::vector<MotionKind> Kinds(MotionFamily family);
@@ -47,7 +48,7 @@ class WristCourse {
  public:
   /// Draws what the kind leaves open from `seed`; time is stretched to the peak speed over the
   /// first `duration_s`, or the motion made smaller where its frequencies would leave 0.05 to
-  /// 0.6 Hz.
+  /// 0.6 Hz (kShake: 3 Hz).
   WristCourse(const MotionSetup& setup, std::uint64_t seed, double duration_s);
 
   Eigen::Vector3d At(double t_s) const;

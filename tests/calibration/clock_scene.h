@@ -27,6 +27,8 @@ struct ClockScene {
   double remembered = 0.0;    ///< correlation of the EM sensor's noise from sample to sample
   bool periodic = false;      ///< the same two seconds again and again
   bool em_elsewhere = false;  ///< the EM sensor moves on its own
+  double play_m = 0.0;        ///< full width, per axis, between the measured wrist and the shaft's
+  double breath_m = 0.0;      ///< the port goes up and down by so much, every 3.7 s
   TrueClock em = {}, vision = {}, strain = {};
 };
 
@@ -55,6 +57,31 @@ class RandomPath {
   std::vector<std::pair<double, Eigen::Matrix<double, 6, 2>>> waves_;
 };
 
+/// A point that follows another one at a distance of half the play per axis, on a grid of 1 ms.
+class Followed {
+ public:
+  template <class Driver>
+  Followed(const Driver& driver, double play_m, double seconds) {
+    Eigen::Vector3d at = driver(0.0);
+    for (int i = 0; i <= static_cast<int>(1e3 * seconds) + 1; ++i) {
+      const Eigen::Vector3d to = driver(1e-3 * i);
+      for (int k = 0; k < 3; ++k) {
+        if (to[k] - at[k] > 0.5 * play_m) at[k] = to[k] - 0.5 * play_m;
+        if (at[k] - to[k] > 0.5 * play_m) at[k] = to[k] + 0.5 * play_m;
+      }
+      places_.push_back(at);
+    }
+  }
+  Eigen::Vector3d At(double t) const {
+    const auto i = static_cast<std::size_t>(1e3 * t);
+    const double u = 1e3 * t - static_cast<double>(i);
+    return (1.0 - u) * places_[i] + u * places_[i + 1];
+  }
+
+ private:
+  std::vector<Eigen::Vector3d> places_;
+};
+
 /// wrist0 at 100 Hz (the reference), em0 at 40 Hz in a frame of its own, vision0 at 30 Hz, load0 at
 /// 50 Hz by the wrist's clock, strain0 at 80 Hz.
 inline Recording DrawClocks(const ClockScene& scene, std::uint64_t seed) {
@@ -71,9 +98,12 @@ inline Recording DrawClocks(const ClockScene& scene, std::uint64_t seed) {
   const auto force = [&](double t) -> Eigen::Vector3d {
     return 0.5 * scene.speed * path.At(t).tail<3>();
   };
+  const Followed moved(wrist, scene.play_m, scene.seconds);
   const auto on_shaft = [&](double t, double from_wrist_m) -> Eigen::Vector3d {
-    const Eigen::Vector3d p_RW = wrist(t);
-    return p_RW + from_wrist_m * (r.p_RP - p_RW).normalized();
+    const Eigen::Vector3d p_RW = scene.play_m > 0.0 ? moved.At(t) : wrist(t);
+    const double breath_m = scene.breath_m * std::sin(2.0 * std::numbers::pi * t / 3.7);
+    const Eigen::Vector3d p_RP = r.p_RP + Eigen::Vector3d(0.0, 0.6, 0.8) * breath_m;
+    return p_RW + from_wrist_m * (p_RP - p_RW).normalized();
   };
   const auto each = [&](const TrueClock& clock, double rate_hz, const auto& add) {
     double next = 0.05;
