@@ -87,7 +87,7 @@ void RunCompare(const CompareOptions& options, bool quiet) {
       {{"verdict", JudgementJson(judged)}, {"runs", runs}, {"numbers", NumbersJson(comparison)}});
   report::WriteCompareReport(output.folder());
   output.Commit();
-  PrintJudgement(judged, quiet);
+  PrintJudgement(judged, output.paths(), quiet);
   if (!quiet) fmt::print("{}\n", (options.out / "report.html").string());
 }
 

@@ -203,6 +203,8 @@ bool NamesEffects(const Verdict& verdict) {
   return verdict != Verdict{"none"} && verdict != Verdict{"unknown"};
 }
 
+bool DiagnosisResult::IsAdequate() const { return memory.correlation <= kLongMemory; }
+
 DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                          const DiagnoseOptions& options) {
   RequireKnown(options);
@@ -218,8 +220,7 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                     selection.far_samples, work.samples.samples.size()));
   }
   result.memory = selection.memory;
-  if (selection.memory.correlation > kLongMemory)
-    result.warnings.push_back(MemoryWarning(selection.memory));
+  if (!result.IsAdequate()) result.warnings.push_back(MemoryWarning(selection.memory));
   const Probabilities probabilities = MakeProbabilities(selection, work.layout, selection_options);
   result.probabilities = probabilities.hypotheses;
   result.presence = probabilities.presence;

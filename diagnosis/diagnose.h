@@ -104,6 +104,10 @@ struct DiagnosisResult {
   std::vector<std::string> catalogue;            ///< effects that this recording could show
   std::map<std::string, std::string> summaries;  ///< of each of them, a line
   std::vector<std::string> warnings;
+
+  /// Whether the answer's model leaves no more than noise. Else something nobody listed is in the
+  /// data too, and probabilities hold among the known causes alone.
+  bool IsAdequate() const;
 };
 
 /// Throws InputError where nothing can be judged (sample_set.h) and for names in `without` that

@@ -11,8 +11,13 @@ namespace {
 
 constexpr double kAbsurd = 100.0;  // times the data sheets' noise
 
-/// A probability in per cent. No recording makes an answer certain.
-std::string Percent(double probability) {
+/// The probability of the answer. No recording makes an answer certain.
+std::string HowLikely(const DiagnosisResult& result) {
+  const double probability = result.probabilities[0].probability;
+  if (!result.IsAdequate() && NamesEffects(result.verdict)) {
+    return probability > 0.99 ? std::string("the likeliest of the known causes")
+                              : fmt::format("{:.0f} % among the known causes", 100.0 * probability);
+  }
   if (probability > 0.99) return "over 99 %";
   return fmt::format("{:.0f} %", 100.0 * probability);
 }
@@ -25,8 +30,7 @@ double TimesStatedNoise(const DiagnosisResult& result) {
 }
 
 std::string AnswerOf(const DiagnosisResult& result) {
-  std::string says =
-      fmt::format("{} ({})", Joined(result.verdict), Percent(result.probabilities[0].probability));
+  std::string says = fmt::format("{} ({})", Joined(result.verdict), HowLikely(result));
   for (const auto& group : result.indistinguishable) {
     if (group.size() < 2) continue;
     says += fmt::format("; {} could as well be {}", group[0],
@@ -35,6 +39,30 @@ std::string AnswerOf(const DiagnosisResult& result) {
   if (result.gain.measured)
     says += fmt::format("; held-out error {:.2f} of the base's", result.gain.heldout_error_ratio);
   return says + ".";
+}
+
+/// A model that predicts no better than the base simulation is not worth its use.
+bool IsGain(const DiagnosisResult& result) {
+  return NamesEffects(result.verdict) &&
+         (!result.gain.measured || result.gain.heldout_error_ratio < 0.98);
+}
+
+void SayNext(const DiagnosisResult& result, Judgement& judged) {
+  if (result.verdict == Verdict{"unknown"}) {
+    judged.next =
+        "look at the residual patterns, which channel depends on which quantity, and check the "
+        "recording";
+    judged.command = "flextip check RECORDING -o RESULT-check";
+    return;
+  }
+  const bool gain = IsGain(result);
+  judged.next = gain ? "let the estimator use the model" : "keep the base simulation";
+  judged.command = gain ? "flextip estimate RECORDING --model RESULT/model.yaml -o RESULT-estimate"
+                        : "flextip estimate RECORDING -o RESULT-estimate";
+  if (!result.separating_motion.empty()) {
+    judged.next = fmt::format("to tell the alternatives apart, record {}; until then {}",
+                              result.separating_motion, judged.next);
+  }
 }
 
 }  // namespace
@@ -48,15 +76,14 @@ Judgement JudgeDiagnosis(const DiagnosisResult& result) {
         "{:.0f} times their noise.",
         times);
     judged.next = "find the stream that does not fit";
-    judged.command = "flextip check RECORDING";
+    judged.command = "flextip check RECORDING -o RESULT-check";
     return judged;
   }
   judged.says = AnswerOf(result);
   for (const std::string& warning : result.warnings) judged.Beware(warning);
   if (!result.converged)
     judged.Beware("the search did not come to rest: more data may change the answer");
-  if (!result.separating_motion.empty())
-    judged.next = "to tell the alternatives apart, record " + result.separating_motion;
+  SayNext(result, judged);
   return judged;
 }
 

@@ -37,8 +37,11 @@ void Count(EstimateStatus status, EstimateTotals& totals) {
 std::string Millimetres(double m) { return fmt::format("{:.2g} mm", 1e3 * m); }
 
 Judgement NotFound(const std::string& says) {
-  return {
-      Grade::kNotFound, says, {}, "find the stream that does not fit", "flextip check RECORDING"};
+  return {Grade::kNotFound,
+          says,
+          {},
+          "find the stream that does not fit",
+          "flextip check RECORDING -o RESULT-check"};
 }
 
 }  // namespace
@@ -89,14 +92,21 @@ Judgement JudgeEstimates(const EstimateTotals& t) {
                                "The sensors do not tell the load at any of {} samples: the "
                                "shaft is taken as unloaded.",
                                t.samples);
-  if (t.ok == 0) judged.Beware("no sensor shows the bending of the shaft");
+  judged.next = "take the states into other programs";
+  judged.command = "flextip export csv RESULT -o RESULT-tables";
+  if (t.ok == 0) {
+    judged.Beware("no sensor shows the bending of the shaft");
+    judged.next =
+        "add a sensor of the bending to the recording: the tip as seen, EM, strain or load";
+    judged.command.clear();
+  }
   if (t.chi2_per_measurement > kDoubtful) {
     judged.Beware(fmt::format(
         "the fit misses the sensors by {:.1f} times their stated noise: the instrument or a sensor "
         "is not as the recording says",
         misfit));
     judged.next = "find the cause";
-    judged.command = "flextip diagnose RECORDING -o DIAGNOSIS";
+    judged.command = "flextip diagnose RECORDING -o RESULT-cause";
   }
   const int failed = t.not_converged + t.bad_input;
   if (failed > 0) {

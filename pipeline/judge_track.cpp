@@ -14,15 +14,25 @@ Judgement NoTip(const TrackTotals& t) {
   if (t.tags == 0) {
     judged.says =
         fmt::format("No tag of the family {} was found in {} frames.", t.family, t.frames);
-    judged.next = "look which tags a picture shows";
-    judged.command = "flextip detect PICTURE --family FAMILY";
+    judged.next = "look which tags a picture shows, by another family";
+    judged.command = fmt::format("flextip detect PICTURE --family {} -o RESULT-tags",
+                                 t.family == "tag36h11" ? "tag25h9" : "tag36h11");
   } else {
     judged.says = fmt::format(
         "{} tags of the family {} were found in {} frames, but no pose of the collar fits them.",
         t.tags, t.family, t.frames);
     judged.next = "compare ids, sizes and places of the tags with the collar that was printed";
+    judged.command = fmt::format("flextip detect PICTURE --family {} -o RESULT-tags", t.family);
   }
   return judged;
+}
+
+void SayNext(const TrackTotals& t, Judgement& judged) {
+  judged.next = "take the tips into other programs";
+  judged.command = "flextip export csv RESULT -o RESULT-tables";
+  if (!t.has_wrist) return;
+  judged.next = "estimate load, port and shape with these tips";
+  judged.command = "flextip estimate RECORDING --tracked RESULT -o RESULT-estimate";
 }
 
 }  // namespace
@@ -34,6 +44,7 @@ Judgement JudgeTrack(const TrackTotals& t) {
   if (t.predicted > 0) judged.says += fmt::format(", predicted in {}", t.predicted);
   if (t.lost > 0) judged.says += fmt::format(", lost in {}", t.lost);
   judged.says += ".";
+  SayNext(t, judged);
   if (static_cast<double>(t.ok) < kFewSeen * static_cast<double>(t.frames)) {
     judged.Beware("the tip was seen in less than half of the frames");
   }
@@ -43,14 +54,21 @@ Judgement JudgeTrack(const TrackTotals& t) {
                     "sizes and places, are not as the files say",
                     t.rms_px));
     judged.next = "measure the printed collar, and calibrate the camera";
-    judged.command = "flextip calibrate camera IMAGE... --board SPEC -o CAMERA";
+    judged.command =
+        "flextip calibrate camera board*.jpg --board chessboard:9x6:0.025 -o RESULT-camera";
   }
   if (!t.camera_has_pose) {
     judged.Beware(
         "the camera file states no pose T_RC: the tips are in the camera's frame, not in the "
         "robot's");
-    judged.next = "find the camera's pose, and pass it with --calibration";
-    judged.command = "flextip calibrate hand-eye RECORDING -o HAND_EYE";
+    if (t.has_wrist) {
+      judged.next = "find the camera's pose, and track again with its calibration";
+      judged.command = "flextip calibrate hand-eye RECORDING -o RESULT-hand-eye";
+    } else {
+      judged.next =
+          "state T_RC in the camera file; the tip's movement is right without it, too, for other "
+          "programs";
+    }
   }
   if (t.score.frames > 0) {
     judged.Mention(fmt::format("against the truth the tip was {:.3g} mm off (RMS), {:.3g} mm at "

@@ -37,7 +37,8 @@ double TrackSums::DirectionNoise_rad() const { return RootMean(squared_direction
 double TrackSums::Corners_px() const { return RootMean(squared_rms_px, by_corners); }
 double TrackSums::Noise_grey() const { return RootMean(squared_noise_grey, by_pixels); }
 
-TrackTotals TrackSums::Totals(const std::string& family, bool camera_has_pose) const {
+TrackTotals TrackSums::Totals(const std::string& family, bool camera_has_pose,
+                              bool has_wrist) const {
   return {.frames = frames,
           .ok = ok,
           .predicted = predicted,
@@ -46,6 +47,7 @@ TrackTotals TrackSums::Totals(const std::string& family, bool camera_has_pose) c
           .rms_px = Corners_px(),
           .family = family,
           .camera_has_pose = camera_has_pose,
+          .has_wrist = has_wrist,
           .score = score};
 }
 

@@ -13,6 +13,7 @@ struct TrackTotals {
   double rms_px = 0.0;          ///< of the corners about the fit; 0 where pixels were fitted
   std::string family = {};      ///< of the collar's tags
   bool camera_has_pose = true;  ///< else the tips are in the camera's frame
+  bool has_wrist = true;        ///< the frames are of a recording with wrist0
   TipScore score = {};          ///< of the ok frames, where there is a truth
 };
 
@@ -35,7 +36,7 @@ struct TrackSums {
   double Noise_grey() const;          ///< RMS; 0 where no frame was by pixels
 
   /// Returns the totals for a collar of `family`.
-  TrackTotals Totals(const std::string& family, bool camera_has_pose) const;
+  TrackTotals Totals(const std::string& family, bool camera_has_pose, bool has_wrist) const;
 };
 
 }  // namespace flextip

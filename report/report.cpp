@@ -110,13 +110,6 @@ std::string Base64(const std::string& bytes) {
 Report::Report(std::string title, std::string subtitle)
     : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
 
-void Report::AddLead(const std::string& says, const std::string& more) {
-  if (says.empty()) return;
-  body_ += fmt::format("<section class=\"verdict\">\n<p class=\"says\">{}</p>\n", EscapeHtml(says));
-  if (!more.empty()) body_ += fmt::format("<p class=\"gains\">{}</p>\n", EscapeHtml(more));
-  body_ += "</section>\n";
-}
-
 void Report::AddNumbers(const std::vector<std::pair<std::string, std::string>>& numbers) {
   if (numbers.empty()) return;
   body_ += "<dl class=\"figures\">\n";

@@ -24,8 +24,6 @@ class Report {
   /// Takes a `subtitle` for below the title: the command as typed, the version.
   explicit Report(std::string title, std::string subtitle = "");
 
-  /// Adds the result in a sentence, large and at the head of the page, and more of it below.
-  void AddLead(const std::string& says, const std::string& more = "");
   /// Adds doubts of the input, each with the line that mends it, in a box that cannot be
   /// overlooked; adds nothing for an empty list.
   void AddBeware(const std::vector<std::pair<std::string, std::string>>& doubts_and_mends);

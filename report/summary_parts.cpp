@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "report/diagnose/parts.h"
 #include "report/labels.h"
-#include "report/leads.h"
+#include "report/leads/leads.h"
 #include "report/page_end.h"
 #include "report/result_files.h"
 #include "report/verdict.h"
@@ -133,6 +133,28 @@ void AddFindings(Report& report, const std::filesystem::path& folder) {
   report.AddBeware(findings);
 }
 
+Head HeadOf(const std::filesystem::path& folder) {
+  const Head verdict = VerdictOf(folder);
+  return verdict.says.empty() ? leads::LeadOf(folder) : verdict;
+}
+
+std::vector<std::string> WarningsNotSaid(const std::filesystem::path& folder) {
+  const Json summary = ReadSummary(folder);
+  const auto reasons = VerdictOf(folder).reasons;
+  const Json verdict = summary.value("verdict", Json::object());
+  const Json not_found = verdict.value("not_found", Json::array());
+  std::vector<std::string> warnings;
+  for (const auto& w : summary.value("warnings", Json::array())) {
+    const std::string text = Shown("", w);
+    bool said = std::find(reasons.begin(), reasons.end(), text) != reasons.end();
+    for (const auto& one : not_found) {
+      said = said || text.find(TextOf(one, "reason")) != std::string::npos;
+    }
+    if (!said) warnings.push_back(text);
+  }
+  return warnings;
+}
+
 std::string CommandOf(const std::filesystem::path& folder) {
   const std::string command = TextOf(ReadSummary(folder), "command");
   if (command.empty()) {
@@ -171,17 +193,10 @@ void AddSummaryTables(Report& report, const std::filesystem::path& folder) {
 Report BeginPage(const std::filesystem::path& folder, const std::string& title) {
   Report report = TitledPage(folder, title);
   const Json summary = ReadSummary(folder);
-  const std::string verdict = VerdictHtml(folder);
-  report.AddHtml(verdict);
-  if (verdict.empty()) {
-    const Lead lead = LeadOf(folder);
-    report.AddLead(lead.says, lead.more);
-  }
+  report.AddHtml(HeadHtml(HeadOf(folder)));
   AddFindings(report, folder);
   AddSummaryNumbers(report, folder);
-  std::vector<std::string> warnings;
-  for (const auto& w : summary.value("warnings", Json::array())) warnings.push_back(Shown("", w));
-  report.AddWarnings(warnings);
+  report.AddWarnings(WarningsNotSaid(folder));
   const bool has_tables =
       std::any_of(summary.items().begin(), summary.items().end(),
                   [&](const auto& item) { return IsShownAsTable(summary, item.key()); });

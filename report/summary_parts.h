@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "report/report.h"
+#include "report/verdict.h"
 
 namespace flextip::report {
 
@@ -14,6 +16,11 @@ Report TitledPage(const std::filesystem::path& folder, const std::string& title)
 /// Begins a page as most commands have it: the result in a sentence, numbers, warnings, and a table
 /// for each list or map of alike things (controllers, views, ...).
 Report BeginPage(const std::filesystem::path& folder, const std::string& title);
+
+/// Returns the head of a page: the summary's verdict, or the lead of a command that has none.
+Head HeadOf(const std::filesystem::path& folder);
+/// Returns the summary's warnings but for those that its verdict says.
+std::vector<std::string> WarningsNotSaid(const std::filesystem::path& folder);
 
 /// Adds what the check of the input found (the summary's `findings`), each with the line that mends
 /// it; nothing where it found nothing, and for a check itself.

@@ -42,9 +42,10 @@ void RunAlign(const AlignOptions& options, bool quiet) {
   const Recording& recording = read.recording;
   CheckReference(options.clocks.reference, recording);
   const ClockResult result = AlignClocks(recording, options.clocks);
-  const CalibrationVerdict verdict = JudgeClocks(result, options.input.recording.string());
-  OutputFolder output(options.input.out, "align",
-                      {.force = options.force, .inputs = options.input.Files()});
+  const CalibrationVerdict verdict = JudgeClocks(result);
+  OutputFolder output(
+      options.input.out, "align",
+      {.force = options.force, .inputs = options.input.Files(), .paths = options.input.Paths()});
   output.Warn(read.warnings);
   const std::string camera = recording.vision0 ? recording.vision0->camera : "cam0";
   WriteCalibration(output.folder() / "calibration.yaml", ClockEntries(result, camera));

@@ -16,22 +16,26 @@ nlohmann::json JudgementJson(const Judgement& judged) {
           {"command", judged.command}};
 }
 
-void PrintJudgement(const Judgement& judged, bool quiet) {
+void PrintNext(const std::string& next, const std::string& command) {
+  if (!next.empty()) fmt::print("Next: {}\n", next);
+  if (!command.empty()) fmt::print("  {}\n", command);
+}
+
+void PrintJudgement(const Judgement& judged, const CommandPaths& paths, bool quiet) {
   if (quiet || judged.grade == Grade::kNotFound) return;
   fmt::print("{}\n", judged.says);
   for (const auto& reason : judged.reasons) {
     if (judged.grade == Grade::kBeware) fmt::print(stderr, "flextip: beware: {}\n", reason);
   }
-  if (!judged.next.empty()) fmt::print("Next: {}\n", judged.next);
-  if (!judged.command.empty()) fmt::print("  {}\n", judged.command);
+  PrintNext(judged.next, paths.Fill(judged.command));
 }
 
-void RequireFound(const Judgement& judged, const std::filesystem::path& out) {
+void RequireFound(const Judgement& judged, const CommandPaths& paths) {
   if (judged.grade != Grade::kNotFound) return;
   std::string text = judged.says;
   if (!judged.next.empty()) text += " Next: " + judged.next + ".";
-  if (!judged.command.empty()) text += " (" + judged.command + ")";
-  throw WorkError(fmt::format("{} Details: {}", text, (out / "report.html").string()));
+  if (!judged.command.empty()) text += " (" + paths.Fill(judged.command) + ")";
+  throw WorkError(fmt::format("{} Details: {}", text, (paths.result / "report.html").string()));
 }
 
 }  // namespace flextip

@@ -13,6 +13,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
+#include "core/shell_text.h"
 #include "core/version.h"
 
 namespace flextip {
@@ -45,16 +46,6 @@ bool HasNoNumber(const nlohmann::ordered_json& json) {
   return std::any_of(json.begin(), json.end(), HasNoNumber);
 }
 
-/// As a shell takes it.
-std::string Quoted(const std::string& argument) {
-  constexpr const char* kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
-  if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
-  std::string quoted = "'";
-  for (const char c : argument) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string& Typed() {
   static std::string line;
   return line;
@@ -70,12 +61,13 @@ std::string Date() {
 
 void OutputFolder::NoteTyped(const std::string& program, int argc, char** argv) {
   Typed() = program;
-  for (int i = 1; i < argc; ++i) Typed() += " " + Quoted(argv[i]);
+  for (int i = 1; i < argc; ++i) Typed() += " " + ShellQuoted(argv[i]);
 }
 
 OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
                            const OutputOptions& options)
-    : command_(command), force_(options.force), inputs_(options.inputs) {
+    : command_(command), paths_(options.paths), force_(options.force), inputs_(options.inputs) {
+  paths_.result = name.filename().empty() ? name.parent_path() : name;
   if (name.empty()) throw InputError("the output folder has no name");
   name_ = Normal(name);
   std::error_code error;
@@ -159,6 +151,11 @@ void OutputFolder::WriteSummary(nlohmann::ordered_json results) const {
   if (!warnings.is_array()) warnings = nlohmann::ordered_json::array();
   for (const auto& warning : warnings_) warnings.push_back(warning);
   if (!findings_.empty()) results["findings"] = findings_;
+  results["output"] = paths_.result.string();
+  if (results.contains("verdict") && results["verdict"].contains("command")) {
+    auto& next = results["verdict"]["command"];
+    next = paths_.Fill(next.get<std::string>());
+  }
   std::ofstream out(folder_ / "summary.json");
   // File names may hold bytes that are not UTF-8: they are replaced, not a reason to fail.
   out << results.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/common/command_paths.h"
 #include "apps/common/interruption.h"
 
 namespace flextip {
@@ -16,7 +17,8 @@ namespace flextip {
 struct OutputOptions {
   bool force = false;                              ///< replace a folder that holds something
   std::vector<std::filesystem::path> inputs = {};  ///< inputs of the command: never replaced
-  bool resume = false;  ///< continue an interrupted run, where one was left
+  bool resume = false;      ///< continue an interrupted run, where one was left
+  CommandPaths paths = {};  ///< for the next step's command; `result` is set by OutputFolder
 };
 
 /// Results are written to `folder()`, NAME.partial-PID beside NAME, which becomes NAME with Commit.
@@ -42,6 +44,8 @@ class OutputFolder {
   const std::filesystem::path& folder() const { return folder_; }
   /// NAME, as an absolute path.
   const std::filesystem::path& name() const { return name_; }
+  /// The paths of commands to copy; `result` is NAME as it was given.
+  const CommandPaths& paths() const { return paths_; }
 
   /// Whether an interrupted run's files are in folder().
   bool resumed() const { return resumed_; }
@@ -67,8 +71,9 @@ class OutputFolder {
   void Beware(nlohmann::json findings) { findings_ = std::move(findings); }
 
   /// Writes summary.json: the object `results` with `command`, `version`, `typed` (the command
-  /// line), `date` (UTC), `inputs`, `seconds` since the constructor, `warnings` (those in `results`
-  /// first) and `findings`, where there are any. Throws WorkError where the disk refuses, and where
+  /// line), `date` (UTC), `inputs`, `output` (NAME), `seconds` since the constructor, `warnings`
+  /// (those in `results` first) and `findings`, where there are any. A `verdict` in `results` gets
+  /// the paths into its `command`. Throws WorkError where the disk refuses, and where
   /// a number in `results` is NaN or infinite, which JSON cannot hold.
   void WriteSummary(nlohmann::ordered_json results) const;
 
@@ -83,6 +88,7 @@ class OutputFolder {
   std::filesystem::path name_;
   std::filesystem::path folder_;
   std::string command_;
+  CommandPaths paths_;
   bool force_;
   bool committed_ = false, resumed_ = false, keep_ = false;
   std::vector<std::string> warnings_;

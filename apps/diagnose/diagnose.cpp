@@ -49,8 +49,9 @@ simulation::ClosedLoopGain MeasureGain(const Recording& recording,
 void Run(const Options& options, bool quiet) {
   const InputRead read = ReadInput(options.input, UseOfDiagnose(), quiet);
   const Recording& recording = read.recording;
-  OutputFolder output(options.input.out, "diagnose",
-                      {.force = options.force, .inputs = options.input.Files()});
+  OutputFolder output(
+      options.input.out, "diagnose",
+      {.force = options.force, .inputs = options.input.Files(), .paths = options.input.Paths()});
   output.Warn(read.warnings);
   output.Beware(FindingsJson(read.findings));
   const diagnosis::DiagnosisResult result = diagnosis::Diagnose(
@@ -75,8 +76,8 @@ void Run(const Options& options, bool quiet) {
   output.WriteSummary(summary);
   report::WriteDiagnoseReport(output.folder());
   output.Commit();
-  PrintJudgement(judged, quiet);
-  RequireFound(judged, options.input.out);
+  PrintJudgement(judged, output.paths(), quiet);
+  RequireFound(judged, output.paths());
   if (quiet) return;
   if (!read.NotUsed().empty()) fmt::print("Not used: {}\n", read.NotUsed());
   fmt::print("{}\n", (options.input.out / "report.html").string());

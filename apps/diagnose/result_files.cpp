@@ -110,6 +110,7 @@ std::string DiagnosisJson(const DiagnosisResult& result, const simulation::Close
   json["residual_memory"] = {{"channel", result.memory.channel},
                              {"correlation", result.memory.correlation},
                              {"samples_as_one", result.memory.SamplesAsOne()}};
+  json["adequate"] = result.IsAdequate();
   json["noise_scale"] = ByChannel(result, result.noise_scale);
   json["noise_sd"] = ByChannel(result, result.noise_sd);
   json["nominals"] = Nominal(result, false);

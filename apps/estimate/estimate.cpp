@@ -168,7 +168,8 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   }
   std::vector<std::filesystem::path> inputs = options.input.Files();
   if (!options.model.empty()) inputs.push_back(options.model);
-  OutputFolder output(options.input.out, "estimate", {.force = options.force, .inputs = inputs});
+  OutputFolder output(options.input.out, "estimate",
+                      {.force = options.force, .inputs = inputs, .paths = options.input.Paths()});
   output.Warn(read.warnings);
   output.Beware(FindingsJson(read.findings));
   if (recording.cam0 && !recording.vision0) {
@@ -192,8 +193,8 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
   output.WriteSummary(summary);
   report::WriteEstimateReport(output.folder());
   output.Commit();
-  PrintJudgement(judged, quiet);
-  RequireFound(judged, options.input.out);
+  PrintJudgement(judged, output.paths(), quiet);
+  RequireFound(judged, output.paths());
   if (quiet) return;
   if (!read.NotUsed().empty()) fmt::print("Not used: {}\n", read.NotUsed());
   fmt::print("{}\n", (options.input.out / "report.html").string());

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <string_view>
+#include <system_error>
 
 #include "apps/common/input/input_check.h"
 #include "apps/common/length_option.h"
@@ -100,6 +102,18 @@ void CheckSource(const TrackOptions& options) {
   }
 }
 
+/// The first of the pictures in `folder` by its name; empty where there is none.
+std::filesystem::path FirstPicture(const std::filesystem::path& folder) {
+  const std::set<std::filesystem::path> endings{".png", ".jpg", ".jpeg", ".tif", ".tiff"};
+  std::filesystem::path first;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (!endings.contains(entry.path().extension())) continue;
+    if (first.empty() || entry.path() < first) first = entry.path();
+  }
+  return first;
+}
+
 }  // namespace
 
 bool TrackOptions::IsRecording() const {
@@ -131,6 +145,13 @@ std::vector<std::filesystem::path> TrackOptions::Files() const {
   std::erase_if(files, [](const auto& path) { return path.empty(); });
   files.insert(files.end(), calibrations.begin(), calibrations.end());
   return files;
+}
+
+CommandPaths TrackOptions::Paths() const {
+  CommandPaths paths{.calibrations = calibrations};
+  if (IsRecording()) paths.recording = source;
+  paths.picture = FirstPicture(IsRecording() ? source / "cam0" / "data" : source);
+  return paths;
 }
 
 void AddTrackOptions(CLI::App& command, TrackOptions& options) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/command_paths.h"
 #include "apps/common/input/calibration_input.h"
 #include "recording/frames/track_input.h"
 #include "vision/tracking/tip_tracker.h"
@@ -37,6 +38,8 @@ struct TrackOptions {
   std::string RunName() const;
   /// Returns every file and folder that is read.
   std::vector<std::filesystem::path> Files() const;
+  /// The paths of the input, for commands to copy: the recording, or the first of the pictures.
+  CommandPaths Paths() const;
 };
 
 /// Adds all options and the examples. `options` must outlive the parsing.

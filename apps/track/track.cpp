@@ -110,9 +110,11 @@ void PrintResult(const TrackOptions& options, const nlohmann::json& summary) {
 void RunTrack(TrackOptions options, bool quiet) {
   SilenceVideoCodecs();
   CheckTrackOptions(options);
-  OutputFolder output(
-      options.out, "track",
-      {.force = options.force, .inputs = options.Files(), .resume = options.resume});
+  OutputFolder output(options.out, "track",
+                      {.force = options.force,
+                       .inputs = options.Files(),
+                       .resume = options.resume,
+                       .paths = options.Paths()});
   TrackInput input = OpenTrackInput(options);
   output.Warn(input.warnings);
   const auto findings = CheckTrackInput(options, input, quiet);
@@ -147,14 +149,15 @@ void RunTrack(TrackOptions options, bool quiet) {
   tables.Finish(*input.recording.tags0, input.recording.cam0->calibration.rate_hz,
                 input.recording.cam0->has_T_RC);
   Judgement judged =
-      JudgeTrack(sums.Totals(input.recording.tags0->family, input.recording.cam0->has_T_RC));
+      JudgeTrack(sums.Totals(input.recording.tags0->family, input.recording.cam0->has_T_RC,
+                             input.recording.wrist0.has_value()));
   MentionFindings(findings, judged);
   summary["verdict"] = JudgementJson(judged);
   output.WriteSummary(summary);
   report::WriteTrackReport(output.folder());
   output.Commit();
-  PrintJudgement(judged, quiet);
-  RequireFound(judged, options.out);
+  PrintJudgement(judged, output.paths(), quiet);
+  RequireFound(judged, output.paths());
   if (!quiet) PrintResult(options, summary);
 }
 

@@ -6,6 +6,29 @@
 
 namespace flextip {
 
+namespace {
+
+/// The command that makes a part smaller, where there is one: with files that are yet to be made.
+std::string CommandFor(const std::string& part) {
+  static const std::map<std::string, std::string> kCommands = {
+      {"pixels", "flextip collar -o collar"},
+      {"lens", "flextip calibrate camera board*.jpg --board chessboard:9x6:0.025 -o camera"},
+      {"hand-eye", "flextip calibrate hand-eye recording -o hand-eye"},
+      {"tip offset", "flextip calibrate tip recording -o tip"},
+      {"stiffness", "flextip calibrate stiffness recording -o stiffness"}};
+  const auto it = kCommands.find(part);
+  return it == kCommands.end() ? std::string() : it->second;
+}
+
+const BudgetPartSize* LargestOf(const std::vector<BudgetPartSize>& parts) {
+  for (const BudgetPartSize& part : parts) {
+    if (part.in_total && !part.IsTotal()) return &part;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 std::string BudgetAdvice(const std::vector<BudgetPartSize>& parts) {
   static const std::map<std::string, std::string> kWhatToDo = {
       {"pixels", "the pictures themselves: larger or more tags, nearer, sharper"},
@@ -17,17 +40,15 @@ std::string BudgetAdvice(const std::vector<BudgetPartSize>& parts) {
        "force has to be taken into account"},
       {"load", "the force on the tip: measure it better"},
       {"stiffness", "the shaft's stiffness: calibrate it again with the load it asks for"}};
-  for (const BudgetPartSize& part : parts) {
-    if (!part.in_total || part.IsTotal()) continue;
-    return "most is from " + kWhatToDo.at(part.name);
-  }
-  return {};
+  const BudgetPartSize* largest = LargestOf(parts);
+  return largest == nullptr ? std::string() : "most is from " + kWhatToDo.at(largest->name);
 }
 
 CalibrationVerdict JudgeBudget(const std::vector<BudgetPartSize>& parts,
                                const std::vector<UnknownPart>& not_known, std::size_t frames) {
   CalibrationVerdict verdict;
   verdict.next = BudgetAdvice(parts);
+  if (const BudgetPartSize* largest = LargestOf(parts)) verdict.command = CommandFor(largest->name);
   for (const BudgetPartSize& part : parts) {
     verdict.Add(part.in_total ? part.name : part.name + " (if bending were corrected)",
                 fmt::format("{:.2g} mm in depth, {:.2g} mm across", part.depth_mm, part.across_mm));

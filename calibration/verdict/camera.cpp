@@ -18,6 +18,10 @@ constexpr double kBordersUnsure_px = 1.0;  // a whole pixel somewhere in the pic
 constexpr double kUnsure = 10.0;           // uncertainty over the picture, of the corners' noise
 constexpr double kOverconfident = 3.0;     // halves of the views differ by so many times the claim
 
+constexpr const char* kUsers = "the commands on what this camera records";
+constexpr const char* kUse =
+    "flextip track recording --calibration RESULT/calibration.yaml -o recording-tracked";
+
 void MentionNotFitting(std::size_t count, double all, double many, const std::string& noun,
                        CalibrationVerdict& verdict) {
   verdict.MentionCount(count, all, many, Counted(count, noun) + " did not fit and do not count");
@@ -95,6 +99,7 @@ CalibrationVerdict JudgeCamera(const CameraCalibrationResult& r,
   }
   verdict.says = fmt::format("{} Corners of views that it has not seen are {:.3f} px off.",
                              verdict.Judged(), r.heldout_rms_px);
+  verdict.AdviseUse(kUsers, kUse);
   return verdict;
 }
 
@@ -140,6 +145,7 @@ CalibrationVerdict JudgeStereo(const StereoResult& r,
     verdict.Beware(Counted(apart, "pair") + " whose pictures are not of one moment, see below");
   }
   verdict.says = verdict.Judged() + " " + verdict.says;
+  verdict.AdviseUse(kUsers, kUse);
   return verdict;
 }
 

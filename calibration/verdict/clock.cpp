@@ -52,7 +52,7 @@ void AddReasons(const StreamClock& clock, CalibrationVerdict& verdict) {
 
 }  // namespace
 
-CalibrationVerdict JudgeClocks(const ClockResult& result, const std::string& recording) {
+CalibrationVerdict JudgeClocks(const ClockResult& result) {
   CalibrationVerdict verdict;
   std::string found;
   for (const StreamClock& clock : result.streams) {
@@ -79,7 +79,7 @@ CalibrationVerdict JudgeClocks(const ClockResult& result, const std::string& rec
   verdict.says = found + ".";
   verdict.next = "give calibration.yaml to the commands that use the recording";
   verdict.command =
-      fmt::format("flextip estimate {} --calibration OUT/calibration.yaml -o estimated", recording);
+      "flextip estimate RECORDING --calibration RESULT/calibration.yaml -o RESULT-estimate";
   return verdict;
 }
 

@@ -6,7 +6,7 @@
 
 namespace flextip {
 
-/// Returns the head of the page. `recording` is for the command of the next step.
-CalibrationVerdict JudgeClocks(const ClockResult& result, const std::string& recording);
+/// Returns the head of the page.
+CalibrationVerdict JudgeClocks(const ClockResult& result);
 
 }  // namespace flextip

@@ -23,6 +23,7 @@ void AddReasons(const EmResult& r, CalibrationVerdict& verdict) {
   if (!lag.empty()) {
     verdict.Beware(lag);
     verdict.next = "bring the clocks of sensor and reference together";
+    verdict.command = "flextip align RECORDING -o RESULT-clocks";
   }
   if (r.noise_scale > kNoisier) {
     verdict.Beware(
@@ -87,6 +88,9 @@ CalibrationVerdict JudgeEm(const EmResult& r) {
       verdict.Judged(), 1e3 * sd.segment<3>(3).norm(),
       1e3 * (chosen ? chosen->heldout_rms_m : r.rms_after_m));
   AddValues(r, verdict);
+  verdict.AdviseUse(
+      "the commands on what this EM system records",
+      "flextip estimate RECORDING --calibration RESULT/calibration.yaml -o RESULT-estimate");
   return verdict;
 }
 

@@ -102,6 +102,12 @@ CalibrationVerdict JudgeHandEye(const HandEyeResult& r, const Calibration& found
                                   1e3 * m.sd_before_m, 1e3 * m.sd_after_m);
     }
   }
+  const bool with_collar = found.poses.contains("tags0.T_WE");  // else a board was seen
+  verdict.AdviseUse(
+      "the commands on what this camera records",
+      with_collar
+          ? "flextip track RECORDING --calibration RESULT/calibration.yaml -o RESULT-tracked"
+          : "flextip track recording --calibration RESULT/calibration.yaml -o recording-tracked");
   return verdict;
 }
 

@@ -12,6 +12,10 @@ constexpr double kManyRejected = 0.1;  // of the holds
 constexpr double kTooMuchChi2 = 2.0;   // a degree of freedom
 constexpr double kMuchWorse = 1.5;     // held-out error over the one in sample
 
+constexpr const char* kUsers = "the commands on what this instrument records";
+constexpr const char* kUse =
+    "flextip estimate RECORDING --calibration RESULT/calibration.yaml -o RESULT-estimate";
+
 template <typename Hold>
 void JudgeHolds(const std::vector<Hold>& holds, CalibrationVerdict& verdict) {
   const auto rejected = static_cast<std::size_t>(
@@ -65,6 +69,7 @@ CalibrationVerdict JudgeStrain(const StrainCalibration& r) {
   }
   verdict.says = fmt::format("{} Moments are measured to {:.3g} mNm, {:.1f} % of the largest.",
                              verdict.Judged(), 1e3 * error, 100 * error / r.largest_moment_Nm);
+  verdict.AdviseUse(kUsers, kUse);
   return verdict;
 }
 
@@ -114,6 +119,7 @@ CalibrationVerdict JudgeStiffness(const StiffnessCalibration& r) {
       "that it bends.",
       verdict.Judged(), 100 * m.stiffness_sd_Nm2 / m.stiffness_Nm2, 1e3 * m.heldout_tip_rms_m,
       1e3 * r.bend_m);
+  verdict.AdviseUse(kUsers, kUse);
   return verdict;
 }
 

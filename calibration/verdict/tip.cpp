@@ -85,6 +85,9 @@ CalibrationVerdict JudgeTip(const PivotResult& r, const std::string& tip_name,
                                              r.position_noise_scale, r.orientation_noise_scale)
                                : fmt::format("{:.2f}", r.position_noise_scale));
   verdict.Add("poses used", fmt::format("{} of {}", r.used, r.residuals.size()));
+  verdict.AdviseUse(
+      "the commands on what this instrument records",
+      "flextip estimate recording --calibration RESULT/calibration.yaml -o recording-estimate");
   return verdict;
 }
 

@@ -11,6 +11,19 @@ void CalibrationVerdict::MentionCount(std::size_t count, double all, double many
   if (count > 0) Mention(text, static_cast<double>(count) > many * all);
 }
 
+void CalibrationVerdict::AdviseUse(const std::string& where, const std::string& use) {
+  if (grade == Grade::kNotFound || !command.empty()) return;
+  const std::string give = "give calibration.yaml to " + where;
+  if (next.empty()) {
+    next = give;
+  } else if (grade == Grade::kGood) {
+    next = give + "; sharper still: " + next;
+  } else {
+    next += "; until then " + give;
+  }
+  command = use;
+}
+
 std::string CalibrationVerdict::Judged() const {
   return grade == Grade::kGood ? "Good." : "To be used with care.";
 }

@@ -22,6 +22,9 @@ struct CalibrationVerdict : Judgement {
   void Add(const std::string& name, const std::string& value, const std::string& sd = {}) {
     values.push_back({name, value, sd});
   }
+  /// Says where the calibration is used, with the command, after what would sharpen it. Nothing
+  /// where there is no answer or another command is next.
+  void AdviseUse(const std::string& where, const std::string& use);
   /// Returns "Good." or "To be used with care.", by the grade.
   std::string Judged() const;
   /// Returns `not_found` with one entry a reason: the parameters' names, without their indices.

@@ -115,7 +115,8 @@ Track TrackWhole(const TrackRequest& what) {
   if (track.frames.empty()) {
     throw InputError::At(what.source.string(), 0, "no frame can be read");
   }
-  track.totals = sums.Totals(input.recording.tags0->family, input.recording.cam0->has_T_RC);
+  track.totals = sums.Totals(input.recording.tags0->family, input.recording.cam0->has_T_RC,
+                             input.recording.wrist0.has_value());
   track.judgement = JudgeTrack(track.totals);
   track.vision0 = VisionOf(track.frames, input, sums.DirectionNoise_rad());
   track.warnings = std::move(input.warnings);

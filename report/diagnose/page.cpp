@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "report/diagnose/head.h"
 #include "report/diagnose/parts.h"
 #include "report/diagnose/residuals.h"
 #include "report/diagnose/result.h"
@@ -21,40 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string Arrow(double before, double after) { return Brief(before) + " → " + Brief(after); }
-
-/// The figures that stand below the headline.
-void AddGainFigures(Report& report, const DiagnosedResult& result) {
-  std::vector<std::pair<std::string, std::string>> figures;
-  figures.emplace_back("probability", Percent(result.VerdictProbability()));
-  if (result.heldout_error_ratio && !result.Is("none")) {
-    figures.emplace_back("held-out error",
-                         "× " + fmt::format("{:.2f}", *result.heldout_error_ratio));
-  }
-  const auto &base = result.base, &extended = result.extended;
-  if (base.tip_prediction_rms_m && extended.tip_prediction_rms_m) {
-    figures.emplace_back("tip prediction, rms (mm)", Arrow(1e3 * *base.tip_prediction_rms_m,
-                                                           1e3 * *extended.tip_prediction_rms_m));
-  }
-  if (base.chi2_per_dof && extended.chi2_per_dof) {
-    figures.emplace_back("chi-squared per degree of freedom",
-                         Arrow(*base.chi2_per_dof, *extended.chi2_per_dof));
-  }
-  if (const auto& loop = result.closed_loop; loop && loop->max_before_m && loop->max_after_m) {
-    figures.emplace_back("closed loop, largest deviation (mm)",
-                         Arrow(1e3 * *loop->max_before_m, 1e3 * *loop->max_after_m));
-  }
-  report.AddNumbers(figures);
-}
-
-void AddWarningsOnce(Report& report, const DiagnosedResult& result, const RunSummary& summary) {
-  auto warnings = result.warnings;
-  for (const auto& w : summary.warnings) {
-    if (std::find(warnings.begin(), warnings.end(), w) == warnings.end()) warnings.push_back(w);
-  }
-  report.AddWarnings(warnings);
-}
-
 void AddProbabilities(Report& report, const DiagnosedResult& result) {
   std::string credible;
   for (const auto& name : result.credible_set) {
@@ -62,6 +29,11 @@ void AddProbabilities(Report& report, const DiagnosedResult& result) {
   }
   Figure answers = ProbabilityBars(result);
   if (!credible.empty()) answers.caption = "90 % lie in: " + credible + ".";
+  if (!result.adequate) {
+    answers.caption +=
+        std::string(answers.caption.empty() ? "" : " ") +
+        "All of it holds among the known causes alone: something else is in the data, too.";
+  }
   std::vector<Figure> figures;
   for (const Figure& bars : {answers, PresenceBars(result)}) {
     if (!bars.traces.empty()) figures.push_back(bars);
@@ -274,14 +246,20 @@ void WriteDiagnoseReport(const fs::path& folder) {
   const auto residuals = fs::exists(table) ? ReadResultTable(table) : ResultTable{};
   const auto headline = MakeHeadline(result);
 
-  Report report("Diagnosis: " + headline.title, "flextip " + summary.command);
+  const Head head = HeadOfDiagnosis(folder, result, headline);
+  const bool answered = head.grade != kNoAnswer;
+
+  Report report("Diagnosis: " + (answered ? headline.title : "no answer"),
+                "flextip " + summary.command);
   report.SetEnd(PageEnd(folder));
-  report.AddHtml(HeadlineHtml(headline));
-  AddGainFigures(report, result);
+  report.AddHtml(HeadHtml(head));
+  if (answered) AddGainFigures(report, result);
   AddFindings(report, folder);
-  AddWarningsOnce(report, result, summary);
-  report.AddHeading("Causes");
-  AddProbabilities(report, result);
+  AddWarningsNotSaid(report, result, summary, head.reasons);
+  if (answered) {
+    report.AddHeading("Causes");
+    AddProbabilities(report, result);
+  }
   AddWhatIsWrong(report, result, residuals);
   report.AddHeading(result.Is("none") || result.Is("unknown") ? "How well the models predict"
                                                               : "What the extended model gains");

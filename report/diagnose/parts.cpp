@@ -19,10 +19,6 @@ constexpr const char* kInk = "#1d2733";
 constexpr const char* kBase = "#d55e00";
 constexpr const char* kExtended = "#0072b2";
 
-std::string Paragraph(const char* style, const std::string& text) {
-  return text.empty() ? "" : fmt::format("<p class=\"{}\">{}</p>\n", style, EscapeHtml(text));
-}
-
 std::string FigureHtml(const char* style, const std::string& title, const std::string& inside,
                        const std::string& caption) {
   return fmt::format(
@@ -71,29 +67,19 @@ std::size_t BarsOf(const Figure& figure) {
   return figure.traces.empty() ? 0 : figure.traces.front().y.size();
 }
 
-void AddBar(Figure& figure, const std::string& name, double probability, bool strong) {
+void AddBar(Figure& figure, const DiagnosedResult& result, const std::string& name,
+            double probability, bool strong) {
   if (figure.traces.empty()) figure.traces.push_back({.kind = FigureTrace::Kind::kBars});
   FigureTrace& bars = figure.traces.front();
   bars.labels.push_back(SpokenHypothesis(name));
   bars.y.push_back(100.0 * std::clamp(probability, 0.0, 1.0));
-  bars.texts.push_back(Percent(probability));
+  bars.texts.push_back(PercentOf(result, probability));
   bars.colors.emplace_back(strong ? kStrong : kFaintBar);
 }
 
 std::string ErrorText(double error) { return fmt::format("{:.{}f}", error, error < 10.0 ? 2 : 0); }
 
 }  // namespace
-
-std::string HeadlineHtml(const Headline& headline) {
-  std::string html = "<section class=\"verdict\">\n" + Paragraph("says", headline.verdict);
-  if (!headline.causes.empty()) {
-    html += "<ul class=\"says\">";
-    for (const auto& cause : headline.causes) html += "<li>" + EscapeHtml(cause) + "</li>\n";
-    html += "</ul>\n";
-  }
-  return html + Paragraph("gains", headline.gain) + Paragraph("advice", headline.advice) +
-         "</section>\n";
-}
 
 Figure ProbabilityBars(const DiagnosedResult& result) {
   std::vector<std::string> found;  // the verdict and what this recording cannot tell from it
@@ -103,7 +89,7 @@ Figure ProbabilityBars(const DiagnosedResult& result) {
     const bool strong = std::find(found.begin(), found.end(), name) != found.end();
     const bool always = strong || name == "none" || name == "unknown";
     if (!always && (BarsOf(figure) >= kBars || p < 5e-4)) continue;
-    AddBar(figure, name, p, strong);
+    AddBar(figure, result, name, p, strong);
   }
   return figure;
 }
@@ -114,7 +100,7 @@ Figure PresenceBars(const DiagnosedResult& result) {
   Figure figure = EmptyBars("How likely each effect is there, in whatever company");
   for (const auto& [name, p] : result.presence) {
     if (name == "none" || name == "unknown" || BarsOf(figure) >= kBars || p < 5e-4) continue;
-    AddBar(figure, name, p, std::find(found.begin(), found.end(), name) != found.end());
+    AddBar(figure, result, name, p, std::find(found.begin(), found.end(), name) != found.end());
   }
   return figure;
 }

@@ -1,4 +1,4 @@
-// The parts of the diagnosis page: headline, bars and the shaded table of signatures.
+// The parts of the diagnosis page: bars and the shaded table of signatures.
 #pragma once
 
 #include <string>
@@ -9,9 +9,6 @@
 #include "report/figure.h"
 
 namespace flextip::report {
-
-/// The verdict in large letters, the gain and the advice below.
-std::string HeadlineHtml(const Headline& headline);
 
 /// The likeliest hypotheses, a bar each; none and unknown always. The verdict is darker.
 Figure ProbabilityBars(const DiagnosedResult& result);

@@ -233,6 +233,7 @@ DiagnosedResult ReadDiagnosedResult(const std::filesystem::path& path) {
     result.extended = ScoreIn(json, "extended");
     ReadGain(json, result);
     ReadSignatures(json, result);
+    result.adequate = json.value("adequate", true);
     result.noise_scale = MapIn<double>(json, "noise_scale");
     result.noise_sd = MapIn<double>(json, "noise_sd");
     result.summaries = MapIn<std::string>(json, "summaries");

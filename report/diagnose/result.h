@@ -53,6 +53,7 @@ struct DiagnosedResult {
   DiagnosedScore base, extended;
   std::optional<double> heldout_error_ratio, tip_error_ratio;
   std::optional<std::pair<double, double>> heldout_error_interval;
+  bool adequate = true;  ///< else probabilities hold among the known causes alone
   std::vector<DiagnosedSignature> signatures;  ///< strongest first
   std::map<std::string, double> noise_scale;   ///< measured over data sheet's, by channel
   std::map<std::string, double> noise_sd;      ///< in the channel's unit, by channel

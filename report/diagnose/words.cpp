@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSure = 0.9;  ///< from here on a verdict is stated, below it is "probably"
 constexpr double kLikely = 0.5;
+constexpr double kNearlyAll = 0.99;
 
 std::string Capital(std::string text) {
   if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
@@ -105,8 +106,16 @@ bool HasAlternatives(const DiagnosedResult& result, std::size_t i) {
   return i < result.indistinguishable.size() && result.indistinguishable[i].size() > 1;
 }
 
+/// " (98 %)"; of a model that misses something, among the known causes alone, which nobody can call
+/// sure.
+std::string Bracket(const DiagnosedResult& result, double probability) {
+  if (result.adequate) return " (" + Percent(probability) + ")";
+  return probability > kNearlyAll ? "" : " (" + Percent(probability) + " among them)";
+}
+
 /// The sentence, with as much doubt before it as there is.
-std::string Hedged(double probability, const std::string& sentence) {
+std::string Hedged(const DiagnosedResult& result, double probability, const std::string& sentence) {
+  if (!result.adequate) return "The likeliest of the known causes: " + sentence;
   if (probability >= kSure) return Capital(sentence);
   return (probability >= kLikely ? "Probably: " : "Not sure, but most likely: ") + sentence;
 }
@@ -151,10 +160,10 @@ std::string TitleOfEffects(const DiagnosedResult& result) {
 
 void SayEffects(const DiagnosedResult& result, double probability, Headline& headline) {
   headline.title = TitleOfEffects(result);
-  const std::string percent = Percent(probability);
+  const std::string percent = Bracket(result, probability);
   if (result.verdicts.size() > 1) {
     const std::string count = result.verdicts.size() == 2 ? "two" : "several";
-    headline.verdict = Hedged(probability, count + " effects at once (" + percent + "):");
+    headline.verdict = Hedged(result, probability, count + " effects at once" + percent + ":");
     for (std::size_t i = 0; i < result.verdicts.size(); ++i) {
       headline.causes.push_back(HasAlternatives(result, i)
                                     ? "either " + Alike(result, result.indistinguishable[i]) +
@@ -162,15 +171,15 @@ void SayEffects(const DiagnosedResult& result, double probability, Headline& hea
                                     : Cause(result, result.verdicts[i]));
     }
   } else if (HasAlternatives(result, 0)) {
-    headline.verdict = Hedged(
-        probability, "one of these, and this recording cannot tell which (" + percent + "):");
+    headline.verdict = Hedged(result, probability,
+                              "one of these, and this recording cannot tell which" + percent + ":");
     for (const auto& name : result.indistinguishable[0]) {
       headline.causes.push_back(SummaryAndName(result, name) + ", alone " +
                                 Percent(result.Probability({name})));
     }
   } else {
     headline.verdict =
-        Hedged(probability, Cause(result, result.verdicts.front()) + " (" + percent + ").");
+        Hedged(result, probability, Cause(result, result.verdicts.front()) + percent + ".");
   }
 }
 
@@ -205,7 +214,7 @@ std::string GainSentence(const DiagnosedResult& result) {
                      certain ? "" : "; the interval holds 1, so the gain is not certain");
 }
 
-std::string Advice(const DiagnosedResult& result, double probability) {
+std::string Advice(const DiagnosedResult& result) {
   bool alike = false;
   for (std::size_t i = 0; i < result.verdicts.size(); ++i) alike |= HasAlternatives(result, i);
   std::string advice;
@@ -214,10 +223,6 @@ std::string Advice(const DiagnosedResult& result, double probability) {
     if (advice.back() != '.') advice += '.';
   } else if (alike) {
     advice = "No motion is known that would tell them apart.";
-  }
-  const std::string next = NextBest(result);
-  if (probability < kSure && !next.empty()) {
-    advice += (advice.empty() ? "Next: " : " Next: ") + next + ".";
   }
   return advice;
 }
@@ -240,6 +245,10 @@ std::string SayWhatIsLeft(const DiagnosedResult& result) {
 
 }  // namespace
 
+std::string PercentOf(const DiagnosedResult& result, double probability) {
+  return !result.adequate && probability > kNearlyAll ? "nearly all" : Percent(probability);
+}
+
 Headline MakeHeadline(const DiagnosedResult& result) {
   Headline headline;
   const double probability = result.VerdictProbability();
@@ -258,7 +267,9 @@ Headline MakeHeadline(const DiagnosedResult& result) {
     }
     headline.gain += GainSentence(result);
   }
-  headline.advice = Advice(result, probability);
+  headline.advice = Advice(result);
+  const std::string next = NextBest(result);
+  if (probability < kSure && !next.empty()) headline.runner_up = "Next likely: " + next + ".";
   return headline;
 }
 

@@ -15,11 +15,14 @@ struct Headline {
   std::vector<std::string> causes;  ///< one line for each where there are several
   std::string gain;                 ///< the gain of the extended model
   std::string advice;               ///< the motion that would separate indistinguishable effects
+  std::string runner_up;            ///< the next likely answer, where the verdict is not sure
 };
 Headline MakeHeadline(const DiagnosedResult& result);
 
 /// 0.981 -> "98 %"; never "100 %" or "0 %" of what is not certain.
 std::string Percent(double probability);
+/// The same of an answer of `result`: "nearly all" where that is so among the known causes alone.
+std::string PercentOf(const DiagnosedResult& result, double probability);
 /// "port_friction+backlash" -> "port friction + backlash".
 std::string SpokenHypothesis(const std::string& name);
 /// "em0_position_m" -> "EM position", "strain0_moment_Nm" -> "strain".

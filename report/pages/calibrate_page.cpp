@@ -14,7 +14,6 @@
 #include "report/report.h"
 #include "report/result_files.h"
 #include "report/summary_parts.h"
-#include "report/verdict.h"
 
 namespace flextip::report {
 namespace {
@@ -71,22 +70,6 @@ std::string NotFoundHtml(const Json& list) {
   return html + "</ul></aside>\n";
 }
 
-// Warnings that the verdict does not say already.
-std::vector<std::string> Warnings(const Json& summary, const Json& verdict) {
-  const Json reasons = verdict.value("reasons", Json::array());
-  const Json not_found = verdict.value("not_found", Json::array());
-  std::vector<std::string> warnings;
-  for (const auto& w : summary.value("warnings", Json::array())) {
-    const auto text = w.get<std::string>();
-    bool said = std::find(reasons.begin(), reasons.end(), text) != reasons.end();
-    for (const auto& one : not_found) {
-      said = said || text.find(Text(one, "reason")) != std::string::npos;
-    }
-    if (!said) warnings.push_back(text);
-  }
-  return warnings;
-}
-
 void AddResiduals(Report& report, const fs::path& file) {
   if (!fs::exists(file)) return;
   const auto table = ReadResultTable(file);
@@ -109,13 +92,13 @@ void WriteCalibrateReport(const fs::path& folder) {
   Report report = TitledPage(folder, TitleOf(command));
   const Json summary = Json::parse(ReadBytes(folder / "summary.json"));
   const Json verdict = summary.value("verdict", Json::object());
+  report.AddHtml(HeadHtml(HeadOf(folder)));
   if (!verdict.empty()) {
-    report.AddHtml(VerdictHtml(folder));
     report.AddHtml(ValuesHtml(verdict.value("values", Json::array())));
     report.AddHtml(NotFoundHtml(verdict.value("not_found", Json::array())));
   }
   AddFindings(report, folder);
-  report.AddWarnings(Warnings(summary, verdict));
+  report.AddWarnings(WarningsNotSaid(folder));
   auto pictures = PicturesIn(folder, kPictures);
   const auto views = PicturesIn(folder / "overlay", kPictures);
   pictures.insert(pictures.end(), views.begin(), views.end());

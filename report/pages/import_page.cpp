@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "report/leads.h"
 #include "report/pages.h"
 #include "report/result_files.h"
 #include "report/summary_parts.h"
@@ -107,12 +106,9 @@ std::vector<Figure> FiguresOf(const fs::path& folder) {
 void WriteImportReport(const fs::path& folder) {
   const Json summary = Json::parse(ReadBytes(folder / "summary.json"));
   Report report = TitledPage(folder, "Imported recording");
-  const Lead lead = LeadOf(folder);
-  report.AddLead(lead.says, lead.more);
-  std::vector<std::string> warnings;
-  for (const Json& warning : summary.value("warnings", Json::array())) warnings.push_back(warning);
+  report.AddHtml(HeadHtml(HeadOf(folder)));
   AddFindings(report, folder);
-  report.AddWarnings(warnings);
+  report.AddWarnings(WarningsNotSaid(folder));
   AddStreamTable(report, summary);
   AddAssumed(report, summary);
   report.AddHeading("Streams over time");

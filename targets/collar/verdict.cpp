@@ -52,7 +52,7 @@ CalibrationVerdict JudgeCollar(const CollarDesign& d, const ViewingConditions& c
   verdict.next =
       "print print.pdf at 100 %, print mount.stl, glue them; then take pictures and follow the tip";
   verdict.command =
-      "flextip track pictures --camera cam.yaml --collar collar/tags0/sensor.yaml -o tracked";
+      "flextip track pictures --camera cam.yaml --collar RESULT/tags0/sensor.yaml -o tracked";
   return verdict;
 }
 

@@ -185,7 +185,7 @@ TEST(Clocks, AreAppliedToTheRecording) {
 TEST(Clocks, AreSaidInWords) {
   ClockScene scene{.em_elsewhere = true};
   scene.vision.offset_s = 1.25;
-  const auto verdict = JudgeClocks(AlignClocks(Without(DrawClocks(scene, 2), true)), "rec");
+  const auto verdict = JudgeClocks(AlignClocks(Without(DrawClocks(scene, 2), true)));
   EXPECT_THAT(verdict.says, HasSubstr("vision0's clock is 1.25"));
   EXPECT_THAT(verdict.says, HasSubstr("behind wrist0's"));
   ASSERT_EQ(verdict.not_found.size(), 1u);

@@ -46,7 +46,7 @@ TEST(JudgeDiagnosis, AnAbsurdMisfitIsNoAnswer) {
   const Judgement judged = JudgeDiagnosis(result);
   EXPECT_EQ(judged.grade, Grade::kNotFound);
   EXPECT_THAT(judged.says, HasSubstr("by 1000 times their noise"));
-  EXPECT_EQ(judged.command, "flextip check RECORDING");
+  EXPECT_EQ(judged.command, "flextip check RECORDING -o RESULT-check");
 }
 
 // A stream in another unit can pass for noise: then the noise is absurd.

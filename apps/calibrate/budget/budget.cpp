@@ -111,8 +111,9 @@ std::vector<TimedBudget> Budgets(const CalibrateBudgetOptions& options, const Re
 }
 
 void RunCalibrateBudget(const CalibrateBudgetOptions& options, bool quiet) {
-  OutputFolder output(options.input.out, "calibrate budget",
-                      {.force = options.force, .inputs = options.input.Files()});
+  OutputFolder output(
+      options.input.out, "calibrate budget",
+      {.force = options.force, .inputs = options.input.Files(), .paths = options.input.Paths()});
   const InputRead read = ReadInput(options.input, UseOfBudget(), quiet);
   if (!read.recording.cam0 || !read.recording.tags0) {
     throw InputError::At(options.input.recording.string(), 0,

@@ -60,7 +60,9 @@ void PrintResult(const CalibrateEmOptions& options, const EmResult& result) {
 
 void RunCalibrateEm(const CalibrateEmOptions& options, bool quiet) {
   OutputFolder output(options.input.out, "calibrate em",
-                      {.force = options.force, .inputs = {options.input.recording}});
+                      {.force = options.force,
+                       .inputs = {options.input.recording},
+                       .paths = options.input.Paths()});
   const auto read = ReadInput(options.input, UseOfEm(options.reference), quiet);
   output.Warn(read.warnings);
   output.Beware(FindingsJson(read.findings));

@@ -114,7 +114,9 @@ void RunHandEye(const HandEyeCommand& options, bool quiet) {
   const auto findings =
       CheckInput({options.no_check, quiet}, UseOfHandEye(target == "tags0"), read.recording);
   OutputFolder output(options.out, "calibrate hand-eye",
-                      {.force = options.force, .inputs = {options.recording}});
+                      {.force = options.force,
+                       .inputs = {options.recording},
+                       .paths = {.recording = options.recording}});
   output.Warn(read.warnings);
   output.Beware(FindingsJson(findings));
 

@@ -13,7 +13,8 @@ ShaftRun::ShaftRun(const RecordingInput& from, const plausibility::CommandUse& u
                    bool quiet)
     : input(from),
       read(ReadInput(from, use, quiet)),
-      output(from.out, use.command, {.force = force, .inputs = from.Files()}) {
+      output(from.out, use.command,
+             {.force = force, .inputs = from.Files(), .paths = from.Paths()}) {
   output.Warn(read.warnings);
   output.Beware(FindingsJson(read.findings));
 }

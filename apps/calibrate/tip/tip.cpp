@@ -115,7 +115,9 @@ void PrintResult(const CalibrateTipOptions& options, const PivotResult& result,
 
 void RunCalibrateTip(const CalibrateTipOptions& options, bool quiet) {
   OutputFolder output(options.input.out, "calibrate tip",
-                      {.force = options.force, .inputs = {options.input.recording}});
+                      {.force = options.force,
+                       .inputs = {options.input.recording},
+                       .paths = options.input.Paths()});
   const TipBody body = BodyOf(options, output, quiet);
   const PivotResult result = CalibratePivot(body.poses, {.separate_noise = body.separate_noise});
   if (!result.IsUsable()) {

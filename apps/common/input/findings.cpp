@@ -20,7 +20,7 @@ void MentionFindings(const std::vector<plausibility::Finding>& findings, Judgeme
   if (!wrong.empty()) {
     judged.Beware("the recording does not look as it says, so this answer may be wrong: " + wrong);
     judged.next = "mend the recording as the check says, and do it again";
-    judged.command = "flextip check RECORDING";
+    judged.command = "flextip check RECORDING -o RESULT-check";
   }
   if (!doubtful.empty()) judged.Beware("the check of the recording found doubtful: " + doubtful);
 }

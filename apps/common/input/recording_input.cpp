@@ -27,6 +27,10 @@ std::vector<std::filesystem::path> RecordingInput::Files() const {
   return files;
 }
 
+CommandPaths RecordingInput::Paths() const {
+  return {.recording = recording, .tracked = tracked, .calibrations = calibrations};
+}
+
 std::string InputRead::NotUsed() const {
   std::vector<std::string> names;
   const auto add = [&](bool there, const char* name) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "apps/common/command_paths.h"
 #include "apps/common/input/calibration_input.h"
 #include "plausibility/command_use.h"
 #include "recording/calibrations/calibrated_recording.h"
@@ -19,6 +20,8 @@ struct RecordingInput {
 
   /// Everything that is read, for OutputFolder.
   std::vector<std::filesystem::path> Files() const;
+  /// The paths of the input, for commands to copy.
+  CommandPaths Paths() const;
 };
 
 struct InputRead : CalibratedRecording {
