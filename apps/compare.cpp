@@ -77,6 +77,8 @@ void RunCompare(const CompareOptions& options, bool quiet) {
   report::WriteFigures(output.folder() / "figures.json", comparison.figures);
   Judgement judged;
   judged.says = comparison.says;
+  judged.next = "take the figures into a paper";
+  judged.command = "flextip export pictures RESULT --format pdf -o RESULT-pictures";
   nlohmann::ordered_json runs = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < comparison.names.size(); ++i) {
     runs.push_back({{"run", comparison.names[i]},

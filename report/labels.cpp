@@ -14,7 +14,7 @@
 namespace flextip::report {
 namespace {
 
-constexpr std::array<UnitSuffix, 15> kUnits{{{"_m_N", "mm/N", 1000},
+constexpr std::array<UnitSuffix, 16> kUnits{{{"_m_N", "mm/N", 1000},
                                              {"_Nm2", "N m²", 1},
                                              {"_N_m", "N/m", 1},
                                              {"_Nm", "N m", 1},
@@ -28,7 +28,8 @@ constexpr std::array<UnitSuffix, 15> kUnits{{{"_m_N", "mm/N", 1000},
                                              {"_deg", "°", 1},
                                              {"_hz", "Hz", 1},
                                              {"_m", "mm", 1000},
-                                             {"_N", "N", 1}}};
+                                             {"_N", "N", 1},
+                                             {"_s", "s", 1}}};
 
 using Labelled = std::pair<std::string, std::string>;
 
@@ -70,8 +71,16 @@ const std::vector<Labelled>& Labels() {
       {"tip_sd_m", "standard deviation of the tip, an axis"},
       {"force_across_sd_N", "standard deviation of the tip's force across the shaft"},
       {"force_along_sd_N", "standard deviation of the tip's force along the shaft"},
-      {"chi2_per_measurement", "residual² over variance, a measurement (noise alone: 1)"},
+      {"chi2_per_measurement", "misfit² over its variance (noise alone: 1)"},
+      {"estimate ok", "samples estimated"},
+      {"estimate unobservable", "samples whose load no sensor shows"},
+      {"estimate not_converged", "samples without convergence"},
+      {"estimate bad_input", "samples with readings that are no numbers"},
       {"scored_samples", "samples compared with the truth"},
+      // diagnose
+      {"heldout_error_ratio", "held-out error over the base's"},
+      {"fits", "models fitted"},
+      {"failed_samples", "samples without an equilibrium"},
       // shape
       {"shape ok", "shapes solved"},
       // align

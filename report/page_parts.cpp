@@ -47,7 +47,10 @@ std::string Meaning(const std::string& group) {
       {"f_tip", "Force on the tip"},
       {"sd_f_tip", "Standard deviation of the force on the tip"},
       {"s_port", "Port along the shaft"},
-      {"chi2", "Squared residuals over their variances"}};
+      {"chi2", "Squared residuals over their variances"},
+      {"F_p_over_EI", "Beam model: the port's force over the stiffness E I"},
+      {"a", "Beam model: the port's place along its chord"},
+      {"measurements", "Measurements that were used"}};
   const auto it = meanings.find(group);
   return it == meanings.end() ? group : it->second;
 }
@@ -129,8 +132,7 @@ void AddColumnsOverTime(Report& report, const ResultTable& table) {
     auto plot =
         std::find_if(plots.begin(), plots.end(), [&](const Figure& p) { return p.title == title; });
     if (plot == plots.end()) {
-      const auto label = name.unit.empty() ? name.group : name.group + " (" + name.unit + ")";
-      plots.push_back({.title = title, .x_label = "time (s)", .y_label = label});
+      plots.push_back({.title = title, .x_label = "time (s)", .y_label = name.unit});
       plot = plots.end() - 1;
     }
     FigureTrace trace{.name = name.part, .x = seconds, .y = table.numbers[i]};

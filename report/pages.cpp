@@ -1,4 +1,4 @@
-// The pages of estimate, check, shape and detect.
+// The pages of estimate, shape and detect.
 #include "report/pages.h"
 
 #include <string>
@@ -37,10 +37,6 @@ void WriteEstimateReport(const fs::path& folder) {
     AddColumnsOverTime(report, table);
   }
   report.Write(folder / "report.html");
-}
-
-void WriteCheckReport(const fs::path& folder) {
-  BeginPage(folder, "Check of a recording").Write(folder / "report.html");
 }
 
 void WriteShapeReport(const fs::path& folder) {

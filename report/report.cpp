@@ -33,6 +33,11 @@ bool IsFlat(const nlohmann::json& figure) {
                      [](const auto& trace) { return trace.value("kind", "") == "bars"; });
 }
 
+/// A few lying bars are flat: beside a figure of full height they would leave it empty below.
+bool IsLying(const nlohmann::json& figure) {
+  return figure.is_object() && figure.value("lying_bars", false);
+}
+
 bool IsInSpace(const nlohmann::json& figure) {
   const auto traces = figure.value("traces", nlohmann::json::array());
   return std::any_of(traces.begin(), traces.end(),
@@ -51,12 +56,39 @@ std::string Title(const std::string& text) {
   return text.empty() ? "" : fmt::format("<h3>{}</h3>\n", EscapeHtml(text));
 }
 
-std::string Row(const std::vector<std::string>& cells, std::string_view element) {
+/// What begins like a number, or says that there is none.
+bool IsNumber(const std::string& cell) {
+  return cell.empty() || std::string_view("0123456789+-.<>(").find(cell[0]) != std::string::npos ||
+         cell.starts_with("–") || cell.starts_with("×");
+}
+
+/// The class of each column: sentences break their lines, words begin at the left as numbers end at
+/// the right.
+std::vector<std::string> ColumnClasses(const Table& table) {
+  std::vector<std::string> classes(table.header.size());
+  for (std::size_t c = 1; c < classes.size(); ++c) {  // the first begins at the left, always
+    std::size_t words = 0, longest = 0;
+    for (const auto& row : table.rows) {
+      words += IsNumber(row[c]) ? 0 : 1;
+      longest = std::max(longest, row[c].size());
+    }
+    if (longest > kWords) {
+      classes[c] = "words";
+    } else if (2 * words > table.rows.size()) {
+      classes[c] = "text";
+    }
+  }
+  return classes;
+}
+
+std::string Row(const std::vector<std::string>& cells, const std::vector<std::string>& classes,
+                std::string_view element) {
   std::string html = "<tr>";
-  for (const auto& cell : cells) {
-    const bool words = element == "td" && cell.size() > kWords;
-    html += fmt::format("<{0}{1}>{2}</{0}>", element, words ? " class=\"words\"" : "",
-                        EscapeHtml(cell));
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const bool is_long = classes[c] == "words" && element == "td" && cells[c].size() > kWords;
+    const std::string style = is_long ? "words" : classes[c].empty() ? "" : "text";
+    html += fmt::format("<{0}{1}>{2}</{0}>", element,
+                        style.empty() ? "" : " class=\"" + style + "\"", EscapeHtml(cells[c]));
   }
   return html + "</tr>\n";
 }
@@ -144,24 +176,25 @@ void Report::AddHeading(const std::string& text) {
 }
 
 void Report::AddTable(const Table& table) {
-  body_ += "<figure class=\"table\">\n" + Title(table.title) + "<table>\n<thead>" +
-           Row(table.header, "th") + "</thead>\n<tbody>\n";
-  for (const auto& row : table.rows) {
+  for (const auto& row : table.rows)
     FLEXTIP_CHECK(row.size() == table.header.size(), "a cell for each column");
-    body_ += Row(row, "td");
-  }
+  const auto classes = ColumnClasses(table);
+  body_ += "<figure class=\"table\">\n" + Title(table.title) + "<table>\n<thead>" +
+           Row(table.header, classes, "th") + "</thead>\n<tbody>\n";
+  for (const auto& row : table.rows) body_ += Row(row, classes, "td");
   body_ += "</tbody></table>\n" + Caption(table.caption) + "</figure>\n";
 }
 
 void Report::AddDrawing(const std::string& title, const std::string& caption,
-                        const std::string& json, bool in_space) {
+                        const std::string& json, bool in_space, bool lone) {
   has_figures_ = true;
   has_space_ = has_space_ || in_space;
   FLEXTIP_CHECK(!has_space_ || !has_flat_, "a page has one of the two plotting bundles");
   body_ += fmt::format(
-      "<figure class=\"plot\">\n{}<div class=\"drawing{}\"><script type=\"application/json\">{}"
+      "<figure class=\"plot{}\">\n{}<div class=\"drawing{}\"><script type=\"application/json\">{}"
       "</script></div>\n{}</figure>\n",
-      Title(title), in_space ? " space" : "", WithoutTags(json), Caption(caption));
+      lone ? " lone" : "", Title(title), in_space ? " space" : "", WithoutTags(json),
+      Caption(caption));
 }
 
 void Report::AddFigures(const std::vector<Figure>& figures) {
@@ -181,12 +214,13 @@ void Report::AddFigureFile(const std::filesystem::path& file, const std::string&
   if (!figures.is_array()) throw InputError::At(file.string(), 0, "is not a list of figures");
   if (figures.empty()) return;
   if (!heading.empty()) AddHeading(heading);
+  const auto lying = std::count_if(figures.begin(), figures.end(), IsLying);
   body_ += "<div class=\"drawings\">\n";
   for (const auto& figure : figures) {
     if (!figure.is_object()) throw InputError::At(file.string(), 0, "holds what is no figure");
     has_flat_ = has_flat_ || IsFlat(figure);
     AddDrawing(figure.value("title", ""), figure.value("caption", ""), figure.dump(),
-               IsInSpace(figure));
+               IsInSpace(figure), lying == 1 && IsLying(figure));
   }
   body_ += "</div>\n";
 }

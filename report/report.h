@@ -55,7 +55,7 @@ class Report {
  private:
   /// Adds a drawing from the `json` of a figure.
   void AddDrawing(const std::string& title, const std::string& caption, const std::string& json,
-                  bool in_space);
+                  bool in_space, bool lone = false);
 
   std::string title_, subtitle_, body_, end_;
   bool has_figures_ = false, has_space_ = false, has_flat_ = false;  ///< flat: fields or bars

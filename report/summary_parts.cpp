@@ -103,7 +103,8 @@ void AddJsonTable(Report& report, const std::string& name, const Json& items) {
   Table table;
   table.title = Label(name);
   if (items.is_object()) table.header.emplace_back("");
-  for (const auto& key : keys) table.header.push_back(ColumnTitle(key, keys));
+  const bool of_runs = name == "numbers";  // of compare: its columns are names of folders
+  for (const auto& key : keys) table.header.push_back(of_runs ? key : ColumnTitle(key, keys));
   for (const auto& [label, item] : items.items()) {
     std::vector<std::string> row;
     if (items.is_object()) row.push_back(label);

@@ -12,7 +12,7 @@
 namespace flextip::report {
 namespace {
 
-std::string TextOf(const nlohmann::ordered_json& object, const char* key) {
+std::string VerdictText(const nlohmann::ordered_json& object, const char* key) {
   return object.contains(key) && object[key].is_string() ? object[key].get<std::string>() : "";
 }
 
@@ -54,10 +54,10 @@ Head VerdictOf(const std::filesystem::path& folder) {
   if (!summary.is_object()) throw InputError::At(file.string(), 0, "not an object");
   if (!summary.contains("verdict") || !summary["verdict"].is_object()) return {};
   const auto& verdict = summary["verdict"];
-  Head head{.grade = TextOf(verdict, "grade"),
-            .says = TextOf(verdict, "says"),
-            .next = TextOf(verdict, "next"),
-            .command = TextOf(verdict, "command")};
+  Head head{.grade = VerdictText(verdict, "grade"),
+            .says = VerdictText(verdict, "says"),
+            .next = VerdictText(verdict, "next"),
+            .command = VerdictText(verdict, "command")};
   for (const auto& reason : verdict.value("reasons", nlohmann::ordered_json::array())) {
     if (reason.is_string()) head.reasons.push_back(reason.get<std::string>());
   }

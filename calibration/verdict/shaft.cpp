@@ -113,6 +113,10 @@ CalibrationVerdict JudgeStiffness(const StiffnessCalibration& r) {
     return verdict;
   }
   for (const std::string& doubt : StiffnessDoubts(r)) verdict.Beware(doubt);
+  if (r.status == StiffnessStatus::kModelIncomplete) {
+    verdict.next = "let a diagnosis say what else gives way";
+    verdict.command = "flextip diagnose RECORDING -o RESULT-cause";
+  }
   verdict.says = fmt::format(
       "{} The stiffness is known to {:.2g} %; loads held out put the tip {:.2f} mm off, of {:.1f} "
       "mm "

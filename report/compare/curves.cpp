@@ -1,8 +1,13 @@
 #include "report/compare/curves.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "report/result_files.h"
 #include "report/thinned_table.h"
@@ -47,11 +52,67 @@ void AddTrace(const fs::path& file, const std::string& name, const Curve& curve,
     figure.traces.push_back(std::move(trace));
 }
 
+std::string TipFile(const std::string& command) {
+  if (command == "track") return "vision0/data.csv";
+  return command == "estimate" ? "state0/data.csv" : "";
+}
+
+/// The tips (mm) by their times (ns).
+std::map<long long, Eigen::Vector3d> TipsOf(const fs::path& file) {
+  std::map<long long, Eigen::Vector3d> tips;
+  if (!fs::exists(file)) return tips;
+  const ResultTable table = ReadResultTable(file);
+  const auto *x = table.Column("p_RE_x"), *y = table.Column("p_RE_y"), *z = table.Column("p_RE_z");
+  if (x == nullptr || y == nullptr || z == nullptr) return tips;
+  for (std::size_t i = 0; i < table.Rows(); ++i) {
+    const Eigen::Vector3d p_mm = kMmPerM * Eigen::Vector3d((*x)[i], (*y)[i], (*z)[i]);
+    if (p_mm.allFinite()) tips[std::stoll(table.texts.front()[i])] = p_mm;
+  }
+  return tips;
+}
+
+/// Where two curves lie on one another: how far each run's tip is from the first run's at the same
+/// time. Of neighbouring times the largest.
+std::optional<Figure> DifferenceOf(const std::string& command, const std::vector<fs::path>& folders,
+                                   const std::vector<std::string>& names) {
+  const std::string file = TipFile(command);
+  if (file.empty()) return {};
+  const auto first = TipsOf(folders[0] / file);
+  Figure figure{.title = "The tip: distance from that of " + names[0],
+                .caption = "At times that both runs have.",
+                .x_label = "time (s)",
+                .y_label = "distance (mm)"};
+  for (std::size_t run = 1; run < folders.size(); ++run) {
+    FigureTrace trace{.name = names[run]};
+    std::vector<std::pair<double, double>> points;
+    for (const auto& [t_ns, p_mm] : TipsOf(folders[run] / file)) {
+      const auto at = first.find(t_ns);
+      if (at == first.end()) continue;
+      points.emplace_back(1e-9 * static_cast<double>(t_ns - first.begin()->first),
+                          (p_mm - at->second).norm());
+    }
+    const std::size_t together = 1 + points.size() / kMostPoints;
+    for (std::size_t i = 0; i < points.size(); i += together) {
+      const auto end = points.begin() + std::min(points.size(), i + together);
+      const auto most = std::max_element(points.begin() + i, end, [](const auto& a, const auto& b) {
+        return a.second < b.second;
+      });
+      trace.x.push_back(most->first);
+      trace.y.push_back(most->second);
+    }
+    if (trace.x.size() > 1) figure.traces.push_back(std::move(trace));
+  }
+  if (figure.traces.empty()) return {};
+  return figure;
+}
+
 }  // namespace
 
 std::vector<Figure> CurvesOf(const std::string& command, const std::vector<fs::path>& folders,
                              const std::vector<std::string>& names) {
   std::vector<Figure> figures;
+  if (auto difference = DifferenceOf(command, folders, names))
+    figures.push_back(std::move(*difference));
   for (const Curve& curve : kCurves) {
     if (command != curve.command) continue;
     Figure figure{.title = curve.title, .x_label = "time (s)", .y_label = curve.y_label};

@@ -12,6 +12,7 @@
 #include "report/diagnose/residuals.h"
 #include "report/diagnose/result.h"
 #include "report/diagnose/words.h"
+#include "report/labels.h"
 #include "report/page_end.h"
 #include "report/pages.h"
 #include "report/report.h"
@@ -214,6 +215,7 @@ void AddWhatWasGiven(Report& report, const DiagnosedResult& result, const RunSum
     if (result.counts.empty()) run.rows.push_back({"samples", std::to_string(t->size())});
   }
   for (const auto& [name, value] : summary.figures) {
+    if (name == Label("probability") || name == Label("heldout_error_ratio")) continue;  // results
     const bool said = std::any_of(run.rows.begin(), run.rows.end(),
                                   [&what = name](const auto& row) { return row.front() == what; });
     if (!said) run.rows.push_back({name, value});

@@ -138,8 +138,12 @@ void SayUnknown(const DiagnosedResult& result, double probability, Headline& hea
                   probability >= kSure ? "S" : "Probably s", Percent(probability));
   if (result.signatures.empty()) return;
   const auto& s = result.signatures.front();
-  headline.verdict += fmt::format(" It shows most in {}, which depends on {}.",
-                                  SpokenChannel(s.channel), SpokenHypothesis(s.against));
+  headline.verdict +=
+      s.against == "previous_sample"
+          ? fmt::format(" It shows most in {}, where what is left goes on from sample to sample.",
+                        SpokenChannel(s.channel))
+          : fmt::format(" It shows most in {}, which depends on {}.", SpokenChannel(s.channel),
+                        SpokenHypothesis(s.against));
 }
 
 /// "hand eye or tag offset, and port friction".

@@ -46,7 +46,7 @@ void AddStreamTable(Report& report, const Json& summary) {
 void AddAssumed(Report& report, const Json& summary) {
   Table table;
   table.title = "Assumed: neither the files nor the options say so";
-  table.header = {"what", "taken"};
+  table.header = {"item", "taken as"};
   for (const Json& item : summary.value("assumed", Json::array())) {
     table.rows.push_back({TextAt(item, "name"), TextAt(item, "is")});
   }

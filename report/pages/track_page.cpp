@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kPictures = 12, kBuckets = 1500;
 constexpr double kMmPerM = 1000.0;
 constexpr const char* kPredicted = "#d55e00";
-constexpr const char* kBandsSay = " Orange: predicted; red: lost.";
 
 ThinnedColumn Plain(const std::string& name, double factor = 1.0) {
   return {{name}, [factor](const std::vector<double>& v) { return factor * v[0]; }};
@@ -54,6 +53,11 @@ std::vector<FigureBand> StatusBands(const ThinnedTable& table) {
     before = bucket.worst_text;
   }
   return bands;
+}
+
+/// What the bands say, where there are any.
+std::string BandsSay(const ThinnedTable& table) {
+  return StatusBands(table).empty() ? "" : " Orange: predicted; red: lost.";
 }
 
 bool AddTrace(const ThinnedTable& table, std::size_t column, FigureTrace trace, Figure& plot) {
@@ -111,12 +115,12 @@ void AddTip(Report& report, const fs::path& file) {
   if (table.buckets.empty()) return;
   report.AddHeading("The tip");
   AddPath(report, table);
-  Figure movement{
-      .title = "Movement of the tip",
-      .caption = std::string("Along the robot's axes, from where it was seen first.") + kBandsSay,
-      .x_label = "time (s)",
-      .y_label = "movement (mm)",
-      .bands = StatusBands(table)};
+  Figure movement{.title = "Movement of the tip",
+                  .caption = std::string("Along the robot's axes, from where it was seen first.") +
+                             BandsSay(table),
+                  .x_label = "time (s)",
+                  .y_label = "movement (mm)",
+                  .bands = StatusBands(table)};
   constexpr const char* kAxes[] = {"x", "y", "z"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (AddTrace(table, axis, {.name = kAxes[axis]}, movement)) FromFirst(movement.traces.back().y);
@@ -125,7 +129,7 @@ void AddTip(Report& report, const fs::path& file) {
   Figure sure{.title = "How sure the position is",
               .caption = std::string("Standard deviation of the position, all three axes "
                                      "together, on a logarithmic scale.") +
-                         kBandsSay,
+                         BandsSay(table),
               .x_label = "time (s)",
               .y_label = "standard deviation (mm)",
               .log_y = true,
@@ -137,7 +141,7 @@ void AddError(Report& report, const ThinnedTable& table) {
   Figure plot{.title = "Error of the tip",
               .caption = std::string("How far the tip was from the truth, and what its covariance "
                                      "says; on a logarithmic scale.") +
-                         kBandsSay,
+                         BandsSay(table),
               .x_label = "time (s)",
               .y_label = "error (mm)",
               .log_y = true,
@@ -158,7 +162,7 @@ void AddFrames(Report& report, const fs::path& file) {
   const auto add = [&](std::size_t column, const char* title, const char* caption,
                        const char* unit) {
     Figure plot{.title = title,
-                .caption = std::string(caption) + kBandsSay,
+                .caption = std::string(caption) + BandsSay(table),
                 .x_label = "time (s)",
                 .y_label = unit,
                 .bands = StatusBands(table)};

@@ -152,8 +152,10 @@ TEST(HandEyeVerdict, JudgesViewsNoiseAndWhatIsKnown) {
   HandEyeResult r = GoodHandEye();
   const auto judge = [&] { return JudgeHandEye(r, HandEyeCalibration(r)); };
   EXPECT_EQ(judge().grade, Grade::kGood);
-  EXPECT_EQ(judge().next,
-            "turn it about x (1.00 mm would become 0.50 mm for a point on the board)");
+  EXPECT_THAT(judge().next,
+              HasSubstr("sharper still: turn it about x (1.00 mm would become 0.50 mm for a point "
+                        "on the board)"));
+  EXPECT_THAT(judge().command, HasSubstr("--calibration RESULT/calibration.yaml"));
   EXPECT_NE(ValueOf(judge(), "camera in R, cam0.T_RC"), "absent");
   for (int i = 0; i < 3; ++i) r.views[static_cast<std::size_t>(i)].used = false;
   EXPECT_THAT(judge().reasons, Contains(HasSubstr("3 views did not agree")));
@@ -244,7 +246,10 @@ TEST(CameraVerdict, JudgesCoverageAndHalves) {
   const CameraCalibrationResult r = GoodCamera();
   const CalibrationVerdict good = JudgeCamera(r, Uncertain(0.05, 0.1), {});
   EXPECT_EQ(good.grade, Grade::kGood);
-  EXPECT_EQ(good.next, "hold the board upright (the mean would fall from 0.500 to 0.250 px)");
+  EXPECT_EQ(
+      good.next,
+      "give calibration.yaml to the commands on what this camera records; sharper still: hold "
+      "the board upright (the mean would fall from 0.500 to 0.250 px)");
   EXPECT_EQ(ValueOf(good, "lens"), "opencv 5");
   EXPECT_EQ(ValueOf(good, "halves of the views differ by"), "absent");
   const CalibrationVerdict bare = JudgeCamera(r, Uncertain(0.05, 5), {});
@@ -265,7 +270,7 @@ TEST(CameraVerdict, TellsRejectedViewsAndABoardThatIsNotTrue) {
   EXPECT_EQ(verdict.grade, Grade::kGood);
   EXPECT_THAT(verdict.reasons, ElementsAre("1 view did not fit and do not count",
                                            HasSubstr("the board is not as described")));
-  EXPECT_EQ(verdict.next, "");
+  EXPECT_EQ(verdict.next, "give calibration.yaml to the commands on what this camera records");
   r.views_rejected = 4;
   EXPECT_EQ(JudgeCamera(r, {}, {}).grade, Grade::kBeware);
 }

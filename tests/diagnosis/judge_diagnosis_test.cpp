@@ -58,6 +58,28 @@ TEST(JudgeDiagnosis, AnAbsurdNoiseIsNoAnswer) {
   EXPECT_EQ(JudgeDiagnosis(result).grade, Grade::kGood);
 }
 
+TEST(JudgeDiagnosis, SaysWhatToDoWithTheAnswer) {
+  DiagnosisResult result = Found();
+  EXPECT_EQ(JudgeDiagnosis(result).command,
+            "flextip estimate RECORDING --model RESULT/model.yaml -o RESULT-estimate");
+  result.gain.measured = true;
+  result.gain.heldout_error_ratio = 1.02;  // the model is no better
+  EXPECT_EQ(JudgeDiagnosis(result).command, "flextip estimate RECORDING -o RESULT-estimate");
+  result.verdict = {"none"};
+  EXPECT_EQ(JudgeDiagnosis(result).next, "keep the base simulation");
+  result.verdict = {"unknown"};
+  EXPECT_THAT(JudgeDiagnosis(result).next, HasSubstr("residual patterns"));
+}
+
+TEST(JudgeDiagnosis, AModelThatMissesSomethingIsLikeliestAmongTheKnownAlone) {
+  DiagnosisResult result = Found();
+  result.memory.correlation = 0.7;
+  EXPECT_FALSE(result.IsAdequate());
+  EXPECT_EQ(JudgeDiagnosis(result).says, "length (72 % among the known causes).");
+  result.probabilities[0].probability = 0.9996;
+  EXPECT_EQ(JudgeDiagnosis(result).says, "length (the likeliest of the known causes).");
+}
+
 TEST(JudgeDiagnosis, NoAnswerIsCertain) {
   DiagnosisResult result = Found();
   result.probabilities[0].probability = 0.99962;

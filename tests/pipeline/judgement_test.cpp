@@ -25,7 +25,7 @@ TEST(JudgeEstimates, HealthyOnesAreGood) {
   EXPECT_EQ(judged.grade, Grade::kGood);
   EXPECT_THAT(judged.says, HasSubstr("found at 100 of 100 samples; the tip is known to 0.1 mm"));
   EXPECT_THAT(judged.reasons, IsEmpty());
-  EXPECT_EQ(judged.next, "");
+  EXPECT_EQ(judged.command, "flextip export csv RESULT -o RESULT-tables");
 }
 
 TEST(JudgeEstimates, AMisfitBeyondTheNoiseIsNamed) {
@@ -96,6 +96,9 @@ TEST(JudgeTrack, SaysWhereTheTipWasSeen) {
       {.frames = 60, .ok = 57, .predicted = 2, .lost = 1, .tags = 150, .family = "tag36h11"});
   EXPECT_EQ(judged.grade, Grade::kGood);
   EXPECT_EQ(judged.says, "The tip was seen in 57 of 60 frames, predicted in 2, lost in 1.");
+  EXPECT_EQ(judged.command, "flextip estimate RECORDING --tracked RESULT -o RESULT-estimate");
+  EXPECT_THAT(JudgeTrack({.frames = 60, .ok = 60, .has_wrist = false}).command,
+              HasSubstr("flextip export csv RESULT"));
 }
 
 TEST(JudgeTrack, TheWrongFamilyIsNoAnswer) {

@@ -47,7 +47,7 @@ TEST_F(DiagnoseHeadline, SaysOfNoneWhetherOnlyNoiseIsLeft) {
   json["probabilities"] = {{"none", 0.6}, {"port_friction", 0.38}, {"unknown", 0.02}};
   headline = Of(json);
   EXPECT_THAT(headline.verdict, HasSubstr("Probably nothing"));
-  EXPECT_THAT(headline.advice, HasSubstr("Next: port friction, 38 %"));
+  EXPECT_EQ(headline.runner_up, "Next likely: port friction, 38 %.");
 }
 
 TEST_F(DiagnoseHeadline, NamesNoCauseWhereItIsUnknown) {
@@ -107,7 +107,7 @@ TEST_F(DiagnoseHeadline, DoesNotClaimWhatTheDataDoNotHold) {
   auto headline = Of(json);
   EXPECT_THAT(headline.verdict, testing::StartsWith("Not sure, but most likely: the shaft rubs"));
   EXPECT_THAT(headline.gain, HasSubstr("the gain is not certain"));
-  EXPECT_EQ(headline.advice, "Next: none, 30 %.");
+  EXPECT_EQ(headline.runner_up, "Next likely: none, 30 %.");
   json["gain"] = {{"heldout_error_ratio", 1.04}};
   EXPECT_THAT(Of(json).gain, HasSubstr("no better than the base simulation"));
   auto unmeasured = json;
@@ -115,6 +115,18 @@ TEST_F(DiagnoseHeadline, DoesNotClaimWhatTheDataDoNotHold) {
   EXPECT_THAT(Of(unmeasured).gain, HasSubstr("was not measured"));
   json["base"]["heldout_rms"] = Json::object();  // a ratio of nothing
   EXPECT_THAT(Of(json).gain, HasSubstr("was not measured"));
+}
+
+TEST_F(DiagnoseHeadline, AModelThatMissesSomethingIsLikeliestAmongTheKnownAlone) {
+  auto json = Friction();
+  json["adequate"] = false;
+  json["probabilities"]["port_friction"] = 0.9996;
+  EXPECT_EQ(
+      Of(json).verdict,
+      "The likeliest of the known causes: the shaft rubs in the port, and sticks: coefficient "
+      "0.213 ± 0.011.");
+  json["probabilities"]["port_friction"] = 0.68;
+  EXPECT_THAT(Of(json).verdict, HasSubstr("0.213 ± 0.011 (68 % among them)."));
 }
 
 TEST(DiagnoseWords, SayNumbersAsPeopleReadThem) {

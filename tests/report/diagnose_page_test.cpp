@@ -61,6 +61,43 @@ TEST_F(DiagnosePage, StandsByItselfAndStatesTheVerdict) {
   EXPECT_LT(own.find("coefficient 0.213"), own.find("the strain gages"));
 }
 
+TEST_F(DiagnosePage, HasGradeReasonsAndNextStepInItsHead) {
+  Write("summary.json", R"({"command": "diagnose", "version": "1", "warnings": ["a caveat", "rare"],
+    "verdict": {"grade": "beware", "says": "port_friction (98 %).", "reasons": ["a caveat"],
+      "next": "let the estimator use the model", "command": "flextip estimate rec -o better"}})");
+  auto json = Friction();
+  json["warnings"] = {"a caveat"};
+  const std::string own = Own(Page(json));
+  const auto head_end = own.find("</section>");
+  EXPECT_THAT(own.substr(0, head_end), HasSubstr("</span>beware</p>"));
+  EXPECT_LT(own.find("coefficient 0.213 ± 0.011 (98 %)"), head_end);
+  EXPECT_LT(own.find("<li>a caveat</li>"), head_end);
+  EXPECT_EQ(own.find("a caveat", head_end), std::string::npos);  // once on the page
+  EXPECT_LT(own.find("<pre>flextip estimate rec -o better</pre>"), head_end);
+  EXPECT_GT(own.find("<li>rare</li>"), head_end);
+}
+
+TEST_F(DiagnosePage, NeverCallsAModelThatMissesSomethingNearlyCertain) {
+  auto json = Friction();
+  json["probabilities"]["port_friction"] = 0.9996;
+  json["presence"]["port_friction"] = 0.9996;
+  EXPECT_THAT(Own(Page(json)), HasSubstr("&gt; 99 %"));
+  json["adequate"] = false;
+  const std::string own = Own(Page(json));
+  EXPECT_THAT(own, Not(HasSubstr("> 99 %")));
+  EXPECT_THAT(own, Not(HasSubstr("&gt; 99 %")));
+  EXPECT_THAT(own, HasSubstr("nearly all"));
+}
+
+TEST_F(DiagnosePage, WhereNoModelComesNearThatIsTheAnswer) {
+  Write("summary.json", R"({"command": "diagnose", "version": "1", "verdict": {
+    "grade": "not found", "says": "No model of this instrument comes near the recording."}})");
+  const std::string own = Own(Page(Friction()));
+  EXPECT_THAT(own, HasSubstr("<title>Diagnosis: no answer</title>"));
+  EXPECT_THAT(own, HasSubstr("<p class=\"says\">No model of this instrument comes near"));
+  EXPECT_THAT(own, Not(HasSubstr("98 %")));
+}
+
 TEST_F(DiagnosePage, AlwaysShowsNoneAndUnknown) {
   auto json = Friction();
   for (int i = 0; i < 20; ++i) {

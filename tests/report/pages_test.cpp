@@ -217,11 +217,60 @@ TEST_F(Pages, LeadWithTheResult) {
     "verdict": {"grade": "beware", "says": "The tip was seen in 118 of 120 frames",
       "reasons": ["the lens is bent"], "next": "calibrate the camera"}})");
   WriteTrackReport(folder_);
-  EXPECT_THAT(Page(), HasSubstr("<section class=\"verdict beware\">\n<p class=\"says\">The tip was "
-                                "seen in 118 of 120 frames</p>"));
+  EXPECT_THAT(Page(), HasSubstr("<section class=\"verdict beware\">\n<p class=\"grade\"><span "
+                                "class=\"unseen\">Grade: </span>beware</p>\n<p class=\"says\">The "
+                                "tip was seen in 118 of 120 frames</p>"));
   EXPECT_THAT(Page(), HasSubstr("<li>the lens is bent</li>"));
   EXPECT_THAT(Page(), HasSubstr("<b>Next:</b> calibrate the camera."));
   EXPECT_LT(Page().find("The tip was seen in"), Page().find("<dl class=\"figures\">"));
+}
+
+TEST_F(Pages, SayTheGradeAndTheNextStepOfCommandsWithoutAVerdict) {
+  const auto page = [&](const std::string& summary) {
+    Write("summary.json", summary);
+    WriteReport(folder_);
+    return Page();
+  };
+  const std::string streams = R"("streams": [{"stream": "wrist0"}, {"stream": "em0"}])";
+  const std::string good = page(R"({"command": "check", "version": "1", "wrong": 0, "doubtful": 0,
+    "inputs": ["my rec"], "output": "out/check", )" +
+                                streams + "}");
+  EXPECT_THAT(good, HasSubstr("verdict good\">"));
+  EXPECT_THAT(good,
+              HasSubstr("<pre>flextip diagnose &#39;my rec&#39; -o &#39;my rec-cause&#39;</pre>"));
+  const std::string wrong = page(R"({"command": "check", "version": "1", "wrong": 1, "doubtful": 2,
+    "inputs": ["rec"], "output": "out/check", "findings": [{"severity": "wrong", "finding":
+    "em0.unit", "text": "em0: <mm>", "mend": "multiply"}], )" +
+                                 streams + "}");
+  EXPECT_THAT(wrong, HasSubstr("</span>beware</p>"));
+  EXPECT_THAT(wrong, HasSubstr("not as it says: 1 thing is wrong, 2 doubtful."));
+  EXPECT_THAT(wrong, HasSubstr("<pre>flextip check rec -o out/check --force</pre>"));
+  EXPECT_THAT(wrong, HasSubstr("em0: &lt;mm&gt; <code>em0.unit</code><br>Mend: multiply"));
+  // Of an older summary nobody knows the paths.
+  EXPECT_THAT(page(R"({"command": "check", "version": "1", "wrong": 0, "doubtful": 0})"),
+              Not(HasSubstr("<pre>")));
+  Write("tags.csv", "image,id\n");
+  const std::string none = page(R"({"command": "detect", "version": "1", "tags": 0,
+    "inputs": ["a.png"], "output": "o", "images": [{"image": "a.png", "tags": 0}]})");
+  EXPECT_THAT(none, HasSubstr("verdict not-found\">"));
+  EXPECT_THAT(none, HasSubstr("</span>not found</p>"));
+}
+
+TEST_F(Pages, AWarningThatTheHeadSaysIsNoWarningAgain) {
+  Write("summary.json", R"({"command": "estimate", "version": "1",
+    "warnings": ["the port moved", "rare"], "verdict": {"grade": "beware", "says": "Found.",
+    "reasons": ["the port moved"]}})");
+  WriteEstimateReport(folder_);
+  EXPECT_THAT(Page(), HasSubstr("<h3>1 warning</h3>\n<ul>\n<li>rare</li>"));
+}
+
+TEST_F(Pages, WordsInTablesBeginAtTheLeft) {
+  Write("summary.json", R"({"command": "detect", "version": "1", "tags": 1,
+    "images": [{"image": "a.png", "tags": 4, "kind": "grey"}]})");
+  WriteDetectReport(folder_);
+  EXPECT_THAT(Page(), HasSubstr("<th class=\"text\">kind</th>"));
+  EXPECT_THAT(Page(), HasSubstr("<td class=\"text\">grey</td>"));
+  EXPECT_THAT(Page(), HasSubstr("<td>4</td>"));
 }
 
 TEST_F(Pages, EndWithHowTheyWereMade) {
