@@ -12,6 +12,7 @@
 #include "apps/common/input/calibration_input.h"
 #include "apps/common/input/findings.h"
 #include "apps/common/input/whole_check.h"
+#include "apps/common/next_step.h"
 #include "apps/common/output.h"
 #include "core/error.h"
 #include "recording/recording_reader.h"
@@ -86,6 +87,7 @@ void RunCheck(const CheckOptions& options, bool quiet) {
     fmt::print("{}\n", json.dump(2));
   } else if (!quiet) {
     Print(result);
+    if (!options.out.empty()) PrintNextOf(options.out);
   }
   if (result.AnythingWrong()) {
     const auto wrong = json["wrong"].get<std::size_t>();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/common/commands.h"
+#include "apps/common/next_step.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/track/overlay.h"
@@ -102,7 +103,7 @@ void WriteResults(const DetectOptions& options, std::vector<DetectedImage>& resu
     tags += r.tags.size();
   }
   WriteTextFile(output.folder() / "tags.csv", TagTable(results));
-  output.WriteSummary({{"tags", tags}, {"images", images}});
+  output.WriteSummary({{"tags", tags}, {"family", options.detector.family}, {"images", images}});
   report::WriteDetectReport(output.folder());
   output.Commit();
 }
@@ -130,6 +131,7 @@ void RunDetect(const DetectOptions& options, bool quiet) {
     fmt::print("{}\n", ToJson(results).dump(2));
   } else if (!quiet) {
     PrintTags(results);
+    if (!options.out.empty()) PrintNextOf(options.out);
   }
 }
 

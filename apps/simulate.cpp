@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "apps/common/commands.h"
+#include "apps/common/next_step.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "core/error.h"
@@ -194,6 +195,7 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
     fmt::print("{:<20} {:>12.3f} {:>12.3f}\n", Name(scenario.controllers[i]),
                1e3 * results[i].max_deviation_m, 1e3 * results[i].rms_deviation_m);
   }
+  PrintNextOf(output.folder());
   fmt::print("report: {}\n", (options.out / "report.html").string());
 }
 

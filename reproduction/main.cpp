@@ -14,11 +14,13 @@
 #include <vector>
 
 #include "apps/common/exit_code.h"
+#include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "report/figure.h"
+#include "report/leads/leads.h"
 #include "report/pages.h"
 #include "reproduction/chapter.h"
 
@@ -102,6 +104,8 @@ void RunReproduce(const Options& options) {
   output.Commit();
   if (options.quiet) return;
   PrintRows(all.rows);
+  const report::Head head = report::leads::LeadOf(output.folder());
+  PrintNext(head.next, head.command);
   fmt::print("{}\n", (output.name() / "report.html").string());
 }
 

@@ -10,6 +10,7 @@
 #include "apps/common/commands.h"
 #include "apps/common/input/findings.h"
 #include "apps/common/input/whole_check.h"
+#include "apps/common/next_step.h"
 #include "apps/common/output.h"
 #include "apps/import/options.h"
 #include "core/error.h"
@@ -138,7 +139,9 @@ void RunImport(const ImportOptions& options, bool quiet) {
       {{"streams", StreamsJson(imported, lines)}, {"assumed", AssumedJson(imported)}});
   report::WriteImportReport(output.folder());
   output.Commit();
-  if (!quiet) Print(imported, lines, check, options.out);
+  if (quiet) return;
+  Print(imported, lines, check, options.out);
+  PrintNextOf(output.folder());
 }
 
 struct FormatHelp {

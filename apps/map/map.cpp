@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/common/commands.h"
+#include "apps/common/next_step.h"
 #include "apps/common/output.h"
 #include "apps/map/output.h"
 #include "core/error.h"
@@ -222,7 +223,9 @@ void RunScenario(const MapScenario<N>& scenario, OutputFolder& output, bool quie
   const auto page = output.name() / "report.html";
   output.Commit();
   if (quiet) return;
-  fmt::print("{}{}\n", findings.table.text(), page.string());
+  fmt::print("{}", findings.table.text());
+  PrintNextOf(output.folder());
+  fmt::print("{}\n", page.string());
 }
 
 void RunMap(const Options& options, const AppContext& context) {

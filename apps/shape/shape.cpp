@@ -12,6 +12,7 @@
 
 #include "apps/common/commands.h"
 #include "apps/common/length_option.h"
+#include "apps/common/next_step.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
 #include "apps/common/vector_option.h"
@@ -130,7 +131,9 @@ void RunBatch(const ShapeOptions& options, bool quiet) {
     }
   }
   WriteResults(output, problems, shapes);
-  if (!quiet) fmt::print("{} shapes in {}\n", shapes.size(), (options.out / "shapes.csv").string());
+  if (quiet) return;
+  fmt::print("{} shapes in {}\n", shapes.size(), (options.out / "shapes.csv").string());
+  PrintNextOf(output.folder());
 }
 
 /// --tip-force is the load and --overwrite the leave to replace earlier results. --force stands for

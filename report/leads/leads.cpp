@@ -111,8 +111,10 @@ Head DetectLead(const Json& summary) {
   head.grade = kNotFound;
   head.says = pictures == 1 ? "No tag was found in the picture."
                             : fmt::format("No tag was found in {} pictures.", pictures);
+  const std::string other =
+      summary.value("family", "tag36h11") == "tag36h11" ? "tag25h9" : "tag36h11";
   head.next = "try another family: tag36h11, tag25h9, tag16h5 are common";
-  head.command = "flextip detect PICTURE --family tag25h9 -o RESULT-tag25h9";
+  head.command = fmt::format("flextip detect PICTURE --family {0} -o RESULT-{0}", other);
   return head;
 }
 
