@@ -48,7 +48,8 @@ std::string WhyBest(const Runs& runs) {
 double Failed(const Json& run) {
   double failed = 0.0;
   for (const char* key : {"control_statuses", "tip_statuses"}) {
-    for (const auto& [status, count] : run.value(key, Json::object()).items())
+    const nlohmann::ordered_json statuses = run.value(key, nlohmann::ordered_json::object());
+    for (const auto& [status, count] : statuses.items())
       failed += status == "ok" ? 0.0 : count.get<double>();
   }
   return failed;

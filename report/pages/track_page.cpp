@@ -1,5 +1,6 @@
 // The page of flextip track, from frames.csv and vision0/data.csv, thinned: it is as long for an
 // hour of frames as for a minute.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -112,7 +113,10 @@ void AddTip(Report& report, const fs::path& file) {
                                                Plain("p_RE_y", kMmPerM),
                                                Plain("p_RE_z", kMmPerM),
                                                {{"cov_xx", "cov_yy", "cov_zz"}, sd_mm}});
-  if (table.buckets.empty()) return;
+  const bool seen = std::any_of(table.buckets.begin(), table.buckets.end(), [](const auto& bucket) {
+    return std::isfinite(bucket.columns[0].least);
+  });
+  if (!seen) return;
   report.AddHeading("The tip");
   AddPath(report, table);
   Figure movement{.title = "Movement of the tip",
