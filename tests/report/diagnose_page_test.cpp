@@ -120,8 +120,9 @@ TEST_F(DiagnosePage, AlwaysShowsNoneAndUnknown) {
 
 TEST_F(DiagnosePage, CountsParametersInTolerances) {
   const std::string html = Page(Friction());
-  EXPECT_THAT(html, HasSubstr("<td>coefficient</td><td>0.213 ± 0.011</td><td>0.03</td>"
-                              "<td>7.1</td>"));
+  EXPECT_THAT(html,
+              HasSubstr("<td class=\"text\">coefficient</td><td>0.213 ± 0.011</td><td>0.03</td>"
+                        "<td>7.1</td>"));
   // Folded: what moved by more than half a tolerance, which is the y of three components.
   EXPECT_THAT(html, HasSubstr("2 parameters moved within tolerance"));
   EXPECT_THAT(html, HasSubstr("<td>offset y</td><td>-0.16 ± 0.05 mm</td><td>0.2 mm</td>"
@@ -133,8 +134,11 @@ TEST_F(DiagnosePage, CountsParametersInTolerances) {
 TEST_F(DiagnosePage, ShowsErrorsInReadableUnits) {
   auto json = Friction();
   std::string html = Page(json);
-  EXPECT_THAT(html, HasSubstr("<td>EM position</td><td>0.9</td><td>0.14</td><td>mm</td>"));
-  EXPECT_THAT(html, HasSubstr("<td>strain</td><td>4</td><td>1</td><td>mN m</td><td>0.25</td>"));
+  EXPECT_THAT(html,
+              HasSubstr("<td>EM position</td><td>0.9</td><td>0.14</td><td class=\"text\">mm</td>"));
+  EXPECT_THAT(
+      html,
+      HasSubstr("<td>strain</td><td>4</td><td>1</td><td class=\"text\">mN m</td><td>0.25</td>"));
   EXPECT_THAT(html, Not(HasSubstr("in units of noise")));  // neither noise nor residuals known
   json["noise_sd"] = {{"em0_position_m", 0.0002}};
   html = Page(json);
