@@ -31,7 +31,8 @@ std::vector<std::string> StreamNames(const Json& summary, const char* key) {
   return names;
 }
 
-/// What a recording is for: to be tracked, where it has pictures alone, else to be judged.
+/// What a recording is for: to be tracked, where it has pictures alone, else to be judged. The next
+/// result stands beside this one, not among the recordings.
 void SayUse(const std::vector<std::string>& streams, const std::string& recording, Head& head) {
   const auto has = [&](const char* name) {
     return std::find(streams.begin(), streams.end(), name) != streams.end();
@@ -39,7 +40,7 @@ void SayUse(const std::vector<std::string>& streams, const std::string& recordin
   const bool track = has("cam0") && !has("vision0");
   head.next = track ? "track the tip in its pictures"
                     : "let a diagnosis say what the simulation gets wrong of it";
-  head.command = fmt::format("flextip {0} {1} -o {1}-{2}", track ? "track" : "diagnose", recording,
+  head.command = fmt::format("flextip {} {} -o RESULT-{}", track ? "track" : "diagnose", recording,
                              track ? "tracked" : "cause");
 }
 
