@@ -9,10 +9,9 @@
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kFewest = 60;               // residuals of a row
-constexpr double kChance = 3.0;              // standard deviations that chance explains
-constexpr double kMostMemory = 0.98;         // a coefficient that a recording can tell
-constexpr std::size_t kLongestLagShare = 4;  // a longer lag has too few pairs
+constexpr double kFewest = 60;        // residuals of a row
+constexpr double kChance = 3.0;       // standard deviations that chance explains
+constexpr double kMostMemory = 0.98;  // a coefficient that a recording can tell
 
 using RowSeries = std::array<std::vector<double>, row::kCount>;
 
@@ -38,19 +37,6 @@ RowSeries LeftBy(const Eigen::VectorXd& x, const Replay& replay, const Eigen::Ma
   return left;
 }
 
-/// One and twice the autocorrelations until the first within chance: the variance of a mean over
-/// that of independent values (Priestley, Spectral Analysis and Time Series, 1981, eq. 5.3.5).
-double IntegratedAutocorrelation(const std::vector<double>& series, double squares, double chance) {
-  double sum = 1.0;
-  for (std::size_t lag = 1; lag <= series.size() / kLongestLagShare; ++lag) {
-    double products = 0.0;
-    for (std::size_t i = lag; i < series.size(); ++i) products += series[i] * series[i - lag];
-    if (products <= chance * squares) break;
-    sum += 2.0 * products / squares;
-  }
-  return sum;
-}
-
 }  // namespace
 
 ResidualMemory MemoryOfSeries(const std::vector<double>& residuals) {
@@ -65,9 +51,7 @@ ResidualMemory MemoryOfSeries(const std::vector<double>& residuals) {
   const double chance = kChance / std::sqrt(count);
   const double rho = std::clamp(products / squares, 0.0, kMostMemory);
   memory.correlation = rho > chance ? rho : 0.0;
-  // A sum of slow and fast parts remembers longer than AR(1) of its first correlation.
-  const double slow = std::max((1.0 + memory.correlation) / (1.0 - memory.correlation),
-                               IntegratedAutocorrelation(residuals, squares, chance));
+  const double slow = (1.0 + memory.correlation) / (1.0 - memory.correlation);
   const double mean_square = squares / count;
   const bool by_chance = mean_square > 1.0 && mean_square < 1.0 + chance * std::sqrt(2.0 * slow);
   memory.slow_variance = slow * (by_chance ? 1.0 : mean_square);

@@ -58,17 +58,6 @@ TEST(ResidualMemory, IsNotCountedTwice) {
   EXPECT_NEAR(memory.slow_variance, 1.0, 0.12);
 }
 
-// Slow noise under white noise: the first correlation is small, the memory long.
-TEST(ResidualMemory, CountsALongMemoryUnderFastNoise) {
-  constexpr double kPhi = 0.95, kSlow = 0.4;
-  std::vector<double> series = Remembering(20000, kPhi, kSlow, 7);
-  std::mt19937 rng(8);
-  std::normal_distribution<double> white(0.0, std::sqrt(1.0 - kSlow));
-  for (double& value : series) value += white(rng);
-  const double truth = 1.0 - kSlow + kSlow * (1.0 + kPhi) / (1.0 - kPhi);
-  EXPECT_NEAR(MemoryOfSeries(series).slow_variance / truth, 1.0, 0.15);
-}
-
 TEST(ResidualMemory, IsNotToldByFewSamples) {
   EXPECT_EQ(MemoryOfSeries(Remembering(40, 0.9, 1.0, 1)).SamplesAsOne(), 1.0);
   EXPECT_EQ(MemoryOfSeries({}).SamplesAsOne(), 1.0);
