@@ -17,6 +17,8 @@
 namespace flextip::report::leads {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr const char* kPictures = "flextip export pictures RESULT --format pdf -o RESULT-pictures";
 
 std::string Things(double count, const char* how) {
@@ -231,7 +233,7 @@ std::string Filled(const std::string& command, const Json& summary) {
 }
 
 Head LeadFor(const std::string& command, const Json& summary, const std::filesystem::path& folder) {
-  if (command == "simulate") return SimulateLead(summary);
+  if (command == "simulate") return SimulateLead(folder);
   if (command == "check") return CheckLead(summary);
   if (command == "shape") return ShapeLead(summary, folder);
   if (command == "detect") return DetectLead(summary);

@@ -4,15 +4,18 @@
 
 #include <algorithm>
 #include <cctype>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "report/leads/numbers.h"
+#include "report/result_files.h"
 
 namespace flextip::report::leads {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using Runs = std::vector<std::pair<std::string, Json>>;
 
 /// "rod-track" -> "rod", "track".
@@ -58,7 +61,9 @@ double Failed(const Json& run) {
 }  // namespace
 
 /// Controllers by their largest deviation, the best first.
-Head SimulateLead(const Json& summary) {
+Head SimulateLead(const std::filesystem::path& folder) {
+  const Json summary = Json::parse(ReadBytes(folder / "summary.json"), nullptr, false);
+  if (!summary.is_object()) return {};
   Runs runs;
   const Json controllers = summary.value("controllers", Json::object());
   for (const auto& [name, run] : controllers.items()) {

@@ -1,13 +1,14 @@
 // The head of simulate's page.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <filesystem>
 
 #include "report/verdict.h"
 
 namespace flextip::report::leads {
 
-/// Returns which controller is best, by how much, and why. Empty where none has a deviation.
-Head SimulateLead(const nlohmann::ordered_json& summary);
+/// Returns which controller is best, by how much, and why, from the folder's summary.json. Empty
+/// where none has a deviation. Throws InputError where the file cannot be read.
+Head SimulateLead(const std::filesystem::path& folder);
 
 }  // namespace flextip::report::leads

@@ -58,10 +58,10 @@ class RandomPath {
 };
 
 /// A point that follows another one at a distance of half the play per axis, on a grid of 1 ms.
-class Followed {
+class DraggedWrist {
  public:
   template <class Driver>
-  Followed(const Driver& driver, double play_m, double seconds) {
+  DraggedWrist(const Driver& driver, double play_m, double seconds) {
     Eigen::Vector3d at = driver(0.0);
     for (int i = 0; i <= static_cast<int>(1e3 * seconds) + 1; ++i) {
       const Eigen::Vector3d to = driver(1e-3 * i);
@@ -98,7 +98,7 @@ inline Recording DrawClocks(const ClockScene& scene, std::uint64_t seed) {
   const auto force = [&](double t) -> Eigen::Vector3d {
     return 0.5 * scene.speed * path.At(t).tail<3>();
   };
-  const Followed moved(wrist, scene.play_m, scene.seconds);
+  const DraggedWrist moved(wrist, scene.play_m, scene.seconds);
   const auto on_shaft = [&](double t, double from_wrist_m) -> Eigen::Vector3d {
     const Eigen::Vector3d p_RW = scene.play_m > 0.0 ? moved.At(t) : wrist(t);
     const double breath_m = scene.breath_m * std::sin(2.0 * std::numbers::pi * t / 3.7);
