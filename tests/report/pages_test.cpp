@@ -236,8 +236,7 @@ TEST_F(Pages, SayTheGradeAndTheNextStepOfCommandsWithoutAVerdict) {
     "inputs": ["my rec"], "output": "out/check", )" +
                                 streams + "}");
   EXPECT_THAT(good, HasSubstr("verdict good\">"));
-  EXPECT_THAT(good,
-              HasSubstr("<pre>flextip diagnose &#39;my rec&#39; -o &#39;my rec-cause&#39;</pre>"));
+  EXPECT_THAT(good, HasSubstr("<pre>flextip diagnose &#39;my rec&#39; -o out/check-cause</pre>"));
   const std::string wrong = page(R"({"command": "check", "version": "1", "wrong": 1, "doubtful": 2,
     "inputs": ["rec"], "output": "out/check", "findings": [{"severity": "wrong", "finding":
     "em0.unit", "text": "em0: <mm>", "mend": "multiply"}], )" +
