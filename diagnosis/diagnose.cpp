@@ -25,9 +25,9 @@ std::string SpokenName(const std::string& channel) {
 
 std::string MemoryWarning(const ResidualMemory& memory) {
   return fmt::format(
-      "what is left of {} remembers itself ({:.2f} from sample to sample): an error of the model "
-      "is "
-      "in it, and the probability holds among the known causes alone; {}",
+      "what is left of {} remembers itself ({:.2f} from sample to sample): slow noise or an error "
+      "of "
+      "the model is in it, and the probability holds among the known causes alone; {}",
       SpokenName(memory.channel), memory.correlation,
       memory.SamplesAsOne() > 1.0
           ? fmt::format("{:.1f} samples count as one", memory.SamplesAsOne())
@@ -203,7 +203,11 @@ bool NamesEffects(const Verdict& verdict) {
   return verdict != Verdict{"none"} && verdict != Verdict{"unknown"};
 }
 
-bool DiagnosisResult::IsAdequate() const { return memory.correlation <= kLongMemory; }
+bool DiagnosisResult::IsAdequate() const {
+  if (memory.correlation <= kLongMemory) return true;
+  // Where nothing is named, a slow rest that is smaller than the noise is no matter.
+  return verdict == Verdict{"none"} && memory.SamplesAsOne() <= 1.0;
+}
 
 DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                          const DiagnoseOptions& options) {
@@ -220,12 +224,12 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                     selection.far_samples, work.samples.samples.size()));
   }
   result.memory = selection.memory;
-  if (!result.IsAdequate()) result.warnings.push_back(MemoryWarning(selection.memory));
   const Probabilities probabilities = MakeProbabilities(selection, work.layout, selection_options);
   result.probabilities = probabilities.hypotheses;
   result.presence = probabilities.presence;
   result.credible_set = probabilities.credible_set;
   result.verdict = probabilities.hypotheses.front().verdict;
+  if (!result.IsAdequate()) result.warnings.push_back(MemoryWarning(selection.memory));
   const WeighedHypothesis& known = selection.BestKnown();
   DescribeParameters(work, selection, known, result);
   if (NamesEffects(result.verdict)) DescribeAmbiguity(work, selection, known, result);

@@ -80,6 +80,16 @@ TEST(JudgeDiagnosis, AModelThatMissesSomethingIsLikeliestAmongTheKnownAlone) {
   EXPECT_EQ(JudgeDiagnosis(result).says, "length (the likeliest of the known causes).");
 }
 
+TEST(JudgeDiagnosis, AHealthyRecordingMayRememberLessThanItsNoise) {
+  DiagnosisResult result = Found();
+  result.verdict = {"none"};
+  result.memory.correlation = 0.98;
+  result.memory.slow_variance = 0.3;
+  EXPECT_TRUE(result.IsAdequate());
+  result.memory.slow_variance = 3.0;
+  EXPECT_FALSE(result.IsAdequate());
+}
+
 TEST(JudgeDiagnosis, NoAnswerIsCertain) {
   DiagnosisResult result = Found();
   result.probabilities[0].probability = 0.99962;
