@@ -172,7 +172,8 @@ class FaultSearch {
       if (left < least || (left == least && culprit == "wrist0")) least = left, culprit = stream;
     }
     // A clock that is doubted explains it.
-    for (const auto& [stream, shift_s] : supposed_) {
+    for (const auto& supposed : supposed_) {
+      const std::string& stream = supposed.first;
       if (std::all_of(relations_.begin(), relations_.end(),
                       [&](const Relation& r) { return !r.Violated() || r.IsAbout(stream); }))
         return;

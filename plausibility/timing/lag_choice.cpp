@@ -25,9 +25,9 @@ Misfits MisfitsOf(const Recording& recording, const std::string& stream, const S
 /// The sum of the squares of the relations that all have.
 double TotalOf(const Misfits& misfits, const std::vector<Misfits>& all) {
   double sum = 0.0;
-  for (const auto& [name, misfit] : misfits) {
-    if (std::all_of(all.begin(), all.end(), [&](const Misfits& m) { return m.contains(name); }))
-      sum += misfit * misfit;
+  for (const auto& misfit : misfits) {
+    const auto has = [&](const Misfits& m) { return m.contains(misfit.first); };
+    if (std::all_of(all.begin(), all.end(), has)) sum += misfit.second * misfit.second;
   }
   return sum;
 }

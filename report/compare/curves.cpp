@@ -93,12 +93,12 @@ std::optional<Figure> DifferenceOf(const std::string& command, const std::vector
     }
     const std::size_t together = 1 + points.size() / kMostPoints;
     for (std::size_t i = 0; i < points.size(); i += together) {
-      const auto end = points.begin() + std::min(points.size(), i + together);
-      const auto most = std::max_element(points.begin() + i, end, [](const auto& a, const auto& b) {
-        return a.second < b.second;
-      });
-      trace.x.push_back(most->first);
-      trace.y.push_back(most->second);
+      std::pair<double, double> most = points[i];
+      for (std::size_t k = i; k < std::min(points.size(), i + together); ++k) {
+        if (points[k].second > most.second) most = points[k];
+      }
+      trace.x.push_back(most.first);
+      trace.y.push_back(most.second);
     }
     if (trace.x.size() > 1) figure.traces.push_back(std::move(trace));
   }
