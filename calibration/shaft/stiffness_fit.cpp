@@ -13,7 +13,7 @@ namespace {
 using namespace tapered_input;
 
 constexpr int kMaxIterations = 30;
-constexpr double kSettled = 1e-6;  // squared step in standard deviations
+constexpr double kSettledStep = 1e-6;  // squared step in standard deviations
 constexpr double kMostTaper = 1.8;
 constexpr double kLeast_m = 1e-6, kLeast_rad = 1e-6, kLeast_Nm = 1e-7;
 
@@ -212,7 +212,7 @@ StiffnessFit StiffnessFitter::Fit(const std::vector<double>& weights,
     next.x[kStiffnessTaper] = std::clamp(next.x[kStiffnessTaper], -kMostTaper, kMostTaper);
     hidden_ = hidden;
     const double next_cost = Evaluate(next.x, weights, next_N, next_gradient, next);
-    const bool settled = dx.dot(N * dx) < kSettled;
+    const bool settled = dx.dot(N * dx) < kSettledStep;
     // A hold whose rod has no equilibrium drops out of the cost: that is no progress.
     const bool progress = settled || next.Usable() >= fit.Usable();
     return {.cost = progress ? next_cost : HUGE_VAL, .settled = settled};
