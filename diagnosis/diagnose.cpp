@@ -26,8 +26,7 @@ std::string SpokenName(const std::string& channel) {
 std::string MemoryWarning(const ResidualMemory& memory) {
   return fmt::format(
       "what is left of {} remembers itself ({:.2f} from sample to sample): slow noise or an error "
-      "of "
-      "the model is in it, and the probability holds among the known causes alone; {}",
+      "of the model is in it, and the probability holds among the known causes alone; {}",
       SpokenName(memory.channel), memory.correlation,
       memory.SamplesAsOne() > 1.0
           ? fmt::format("{:.1f} samples count as one", memory.SamplesAsOne())
@@ -205,6 +204,8 @@ bool NamesEffects(const Verdict& verdict) {
 
 bool DiagnosisResult::IsAdequate() const {
   if (memory.correlation <= kLongMemory) return true;
+  if (verdict == Verdict{"unknown"})
+    return true;  // the answer itself says that more is in the data
   // Where nothing is named, a slow rest that is smaller than the noise is no matter.
   return verdict == Verdict{"none"} && memory.SamplesAsOne() <= 1.0;
 }

@@ -88,6 +88,8 @@ TEST(JudgeDiagnosis, AHealthyRecordingMayRememberLessThanItsNoise) {
   EXPECT_TRUE(result.IsAdequate());
   result.memory.slow_variance = 3.0;
   EXPECT_FALSE(result.IsAdequate());
+  result.verdict = {"unknown"};  // says itself that more is in the data
+  EXPECT_TRUE(result.IsAdequate());
 }
 
 TEST(JudgeDiagnosis, NoAnswerIsCertain) {
