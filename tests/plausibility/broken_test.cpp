@@ -9,6 +9,7 @@
 #include "plausibility/check_recording.h"
 #include "testdata/broken/broken_recording.h"
 #include "testdata/hidden/recording.h"
+#include "tests/plausibility/all_streams.h"
 
 namespace flextip {
 namespace {
@@ -17,16 +18,10 @@ constexpr int kRecordings = 5;  // a way
 
 /// A healthy recording with a load, and with all streams.
 Recording Base(std::uint64_t seed, hidden::LoadKind load) {
-  hidden::HiddenOptions options;
-  options.scene.family = hidden::MotionFamily::kAny;
-  options.scene.load = load;
-  options.scene.duration_s = 14.0;
-  options.tick_rate_hz = 50.0;
-  options.links_per_side = 30;
-  Recording recording = hidden::MakeHidden(options, seed).recording;
-  broken::Rng rng(seed);
-  broken::AddFurtherStreams(recording, rng);
-  return recording;
+  hidden::SceneDraw scene;
+  scene.family = hidden::MotionFamily::kAny;
+  scene.load = load;
+  return WithAllStreams(scene, seed);
 }
 
 std::vector<Recording> Bases(std::uint64_t first_seed, bool hung_mass) {

@@ -10,6 +10,7 @@
 #include "plausibility/timing/lag.h"
 #include "testdata/broken/broken_recording.h"
 #include "testdata/hidden/recording.h"
+#include "tests/plausibility/all_streams.h"
 
 namespace flextip {
 namespace {
@@ -22,16 +23,10 @@ constexpr double kSecond_ns = 1e9;
 
 /// A healthy recording with all streams.
 Recording Healthy(std::uint64_t seed, hidden::MotionKind motion = hidden::MotionKind::kSines) {
-  hidden::HiddenOptions options;
-  options.scene.motion = motion;
-  options.scene.load = hidden::LoadKind::kVarying;
-  options.scene.duration_s = 14.0;
-  options.tick_rate_hz = 50.0;
-  options.links_per_side = 30;
-  Recording recording = hidden::MakeHidden(options, seed).recording;
-  broken::Rng rng(seed);
-  broken::AddFurtherStreams(recording, rng);
-  return recording;
+  hidden::SceneDraw scene;
+  scene.motion = motion;
+  scene.load = hidden::LoadKind::kVarying;
+  return WithAllStreams(scene, seed);
 }
 
 std::vector<std::string> Found(const Recording& recording) {
