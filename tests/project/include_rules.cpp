@@ -25,10 +25,12 @@ const std::map<std::string, Names>& Arrows() {
   static const Names libraries{
       "core",     "kinematics",   "estimation",  "control",    "vision",    "recording",
       "pipeline", "plausibility", "calibration", "simulation", kClosedLoop, "diagnosis",
-      "report",   "workspace",    "targets",     "exchange",   "exports"};
+      "report",   "workspace",    "targets",     "exchange",   "exports",
+      "batch"};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
+      {"batch", {"core"}},
       {"kinematics", {"core"}},
       {"estimation", {"core", "kinematics"}},
       {"control", {"core", "kinematics", "estimation"}},
@@ -79,6 +81,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
        {"exchange", "report", "exports", "reproduction", "apps", "bench", "testdata", "tests"}},
       {"CLI/", {"reproduction", "apps", "bench", "testdata"}},
       {"pybind11/", {"python"}},
+      {"mpi.h", {"batch"}},
   };
   return foreign;
 }

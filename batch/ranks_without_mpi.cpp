@@ -1,0 +1,18 @@
+// In the place of ranks.cpp where there is no MPI.
+#include <cstdlib>
+
+#include "batch/ranks.h"
+#include "core/error.h"
+
+namespace flextip::batch {
+
+bool HasMpi() { return false; }
+
+Ranks::Ranks() { throw WorkError("this program was built without MPI"); }
+Ranks::~Ranks() = default;
+bool Ranks::SeesFolder(const std::string&) const { return false; }
+void Ranks::RunItems(Pool&, const std::vector<Item>&, const Done&, const Transfer&) const {}
+void Ranks::Serve(Pool&, const std::function<void(Item&)>&, const Transfer&) const {}
+void Ranks::Abort() const { std::abort(); }
+
+}  // namespace flextip::batch
