@@ -9,7 +9,7 @@
 #include "apps/common/commands.h"
 #include "apps/common/defaults.h"
 #include "apps/common/exit_code.h"
-#include "apps/common/output.h"
+#include "apps/common/run_facts.h"
 #include "apps/common/usage.h"
 #include "core/version.h"
 
@@ -18,6 +18,7 @@ namespace {
 
 void AddCommands(CLI::App& app, AppContext& context) {
   AddAlign(app, context);
+  AddBatch(app, context);
   AddBoard(app, context);
   AddCalibrate(app, context);
   AddCheck(app, context);
@@ -38,9 +39,10 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddTrack(app, context);
 }
 
-int Run(int argc, char** argv) {
+int Run(const std::vector<std::string>& typed) {
   AppContext context;
-  OutputFolder::NoteTyped("flextip", argc, argv);
+  context.program = [](const auto& others) { return ExitCodeOf([&] { return Run(others); }); };
+  NoteTyped("flextip", typed);
   CLI::App app("Control of thin, bending surgical instruments by sight", "flextip");
   app.set_version_flag("--version", std::string("flextip ") + kVersion);
   app.add_flag("-q,--quiet", context.quiet, "No progress bar and no remarks, only errors");
@@ -50,7 +52,7 @@ int Run(int argc, char** argv) {
   app.fallthrough();
   AddCommands(app, context);
   try {
-    std::vector<std::string> arguments = WithHelpAndVersion({argv + 1, argv + argc});
+    std::vector<std::string> arguments = WithHelpAndVersion(typed);
     std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
     app.parse(std::move(arguments));
   } catch (const CLI::Success& done) {  // --help, --version
@@ -66,5 +68,5 @@ int Run(int argc, char** argv) {
 }  // namespace flextip
 
 int main(int argc, char** argv) {
-  return flextip::ExitCodeOf([&] { return flextip::Run(argc, argv); });
+  return flextip::ExitCodeOf([&] { return flextip::Run({argv + 1, argv + argc}); });
 }

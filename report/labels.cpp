@@ -138,6 +138,14 @@ bool IsBefore(const std::string& a, const std::string& b, const std::string& com
   return PlaceOf(a, command) < PlaceOf(b, command);
 }
 
+SpokenUnit UnitOf(const std::string& key) {
+  if (key == "seconds") return {"s", 1.0};
+  if (IsShare(key)) return {"%", 100.0};
+  const UnitSuffix* unit = SuffixOf(key, kUnits);
+  if (unit == nullptr) return {};
+  return {std::string(unit->shown), unit->factor};
+}
+
 std::string SpokenValue(const std::string& key, double value) {
   if (key == "seconds") return fmt::format("{:.3g} s", value);
   if (IsShare(key)) return fmt::format("{:.1f} %", 100.0 * value);

@@ -14,6 +14,14 @@ std::string Label(const std::string& key, const std::string& command = "");
 /// own matter least.
 bool IsBefore(const std::string& a, const std::string& b, const std::string& command);
 
+/// The unit people read a key's numbers in, and the factor to it: "_m" is "mm" and 1000. No unit
+/// and 1 where the key has none.
+struct SpokenUnit {
+  std::string unit;
+  double factor = 1.0;
+};
+SpokenUnit UnitOf(const std::string& key);
+
 /// Returns the number behind `key` in the unit people read: metres as mm, shares as %.
 std::string SpokenValue(const std::string& key, double value);
 

@@ -39,6 +39,9 @@ void WriteReproduceReport(const std::filesystem::path& folder);
 void WriteMapReport(const std::filesystem::path& folder);
 /// The numbers of several runs side by side, and figures.json (which must be there).
 void WriteCompareReport(const std::filesystem::path& folder);
+/// Items that failed, the spread of the numbers and every item, from table.csv and figures.json
+/// (which must be there).
+void WriteBatchReport(const std::filesystem::path& folder);
 /// What was assumed, and every stream over time.
 void WriteImportReport(const std::filesystem::path& folder);
 

@@ -31,6 +31,7 @@ const std::vector<CommandPage>& Pages() {
       {"calibrate", WriteCalibrateReport},
       {"align", WriteCalibrateReport, {"figures.json"}},
       {"compare", WriteCompareReport, {"figures.json"}},
+      {"batch", WriteBatchReport, {"figures.json", "table.csv"}},
       {"board", WriteCalibrateReport},
       {"collar", WriteCalibrateReport, {"figures.json", "drawing.png"}},
       {"diagnose", WriteDiagnoseReport, {"diagnosis.json", "residuals.csv"}},

@@ -16,6 +16,7 @@
 #include "apps/common/exit_code.h"
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
+#include "apps/common/run_facts.h"
 #include "apps/common/progress.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
@@ -122,7 +123,7 @@ void AddOptions(CLI::App& app, Options& options) {
 }
 
 int Run(int argc, char** argv) {
-  OutputFolder::NoteTyped("flextip reproduce", argc, argv);
+  NoteTyped("flextip reproduce", {argv + 1, argv + argc});
   CLI::App app("The thesis's figures and numbers beside ours", "flextip reproduce");
   Options options;
   AddOptions(app, options);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace flextip {
 
@@ -15,6 +16,9 @@ struct AppContext {
   bool quiet = false;              ///< no progress and no chatter; errors still go to stderr
   std::filesystem::path defaults;  ///< a file with values of options; empty: none was given
   std::function<void()> work;      ///< set by the command that was chosen, run after parsing
+  /// The program itself, on arguments (without its name) as a user types them. Returns the exit
+  /// code.
+  std::function<int(const std::vector<std::string>& arguments)> program;
 };
 
 /// Makes `work` what the program does when `command` is chosen. It returns on success, throws
@@ -30,6 +34,7 @@ inline void OnRun(CLI::App& command, AppContext& context, std::function<void()> 
 //   command.footer("Example:\n  flextip track RECORDING -o OUT");
 //   OnRun(command, context, [options, &context] { RunTrack(*options, context); });
 void AddAlign(CLI::App& app, AppContext& context);
+void AddBatch(CLI::App& app, AppContext& context);
 void AddBoard(CLI::App& app, AppContext& context);
 void AddCalibrate(CLI::App& app, AppContext& context);
 void AddCheck(CLI::App& app, AppContext& context);

@@ -1,6 +1,5 @@
 #include "apps/common/output.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
@@ -11,6 +10,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "apps/common/run_facts.h"
 #include "core/check.h"
 #include "core/error.h"
 #include "core/shell_text.h"
@@ -46,23 +46,7 @@ bool HasNoNumber(const nlohmann::ordered_json& json) {
   return std::any_of(json.begin(), json.end(), HasNoNumber);
 }
 
-std::string& Typed() {
-  static std::string line;
-  return line;
-}
-
-std::string Date() {
-  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z",
-                     fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
-}
-
 }  // namespace
-
-void OutputFolder::NoteTyped(const std::string& program, int argc, char** argv) {
-  Typed() = program;
-  for (int i = 1; i < argc; ++i) Typed() += " " + ShellQuoted(argv[i]);
-}
 
 OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
                            const OutputOptions& options)
@@ -142,9 +126,7 @@ void OutputFolder::WriteSummary(nlohmann::ordered_json results) const {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
   results["command"] = command_;
   results["version"] = kVersion;
-  results["seconds"] = seconds.count();
-  results["date"] = Date();
-  if (!Typed().empty()) results["typed"] = Typed();
+  AddRunFacts(seconds.count(), results);
   results["inputs"] = nlohmann::ordered_json::array();
   for (const fs::path& input : inputs_) results["inputs"].push_back(input.string());
   auto& warnings = results["warnings"];

@@ -57,9 +57,6 @@ class OutputFolder {
   void OnlyNoteInterrupt() { interruption_->OnlyNote(); }
   bool StopRequested() const { return interruption_->Requested(); }
 
-  /// Keeps the command line for the summaries of this process; `program` stands for argv[0].
-  static void NoteTyped(const std::string& program, int argc, char** argv);
-
   /// A line for the summary's `warnings`.
   void Warn(const std::string& warning) { warnings_.push_back(warning); }
   void Warn(const std::vector<std::string>& warnings) {

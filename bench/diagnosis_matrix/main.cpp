@@ -1,13 +1,15 @@
 // How often the diagnosis is right: hidden recordings of every effect, size and kind, each written
 // to a folder without its label, read again, diagnosed, and compared. Resumes where it stopped.
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
-#include <atomic>
-#include <fstream>
-#include <mutex>
+#include <algorithm>
+#include <cstdio>
 #include <set>
 #include <thread>
 
+#include "batch/line_file.h"
+#include "batch/run.h"
 #include "bench/diagnosis_matrix/output/picture.h"
 #include "bench/diagnosis_matrix/output/summary.h"
 #include "bench/diagnosis_matrix/run.h"
@@ -63,37 +65,6 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       "--seeds-per-cell 2 --family held_out -o matrix\n");
 }
 
-/// Appends lines one by one. A line that an interrupted run left half written is cut off first.
-class CaseFile {
- public:
-  explicit CaseFile(const std::filesystem::path& file) : file_(file) {
-    if (std::filesystem::exists(file)) {
-      const std::string text = ReadTextFile(file);
-      std::filesystem::resize_file(file, text.rfind('\n') + 1);
-    } else {
-      WriteTextFile(file, "");
-    }
-  }
-
-  void Append(const MatrixRecord& record) {
-    const std::lock_guard lock(mutex_);
-    std::ofstream out(file_, std::ios::app);
-    out << JsonLine(record) + "\n" << std::flush;
-    if (!out) throw WorkError(file_.string() + ": cannot be written");
-    fmt::print(
-        "{:>5}  {:<70} {}{}  p {:.3f}  {:.2f} s\n", ++written_, record.key,
-        record.IsRight() && record.error.empty() ? "ok" : "MISS ",
-        record.error.empty() ? (record.IsRight() ? "" : JoinedNames(record.verdict)) : record.error,
-        record.p_truth, record.seconds);
-    std::fflush(stdout);
-  }
-
- private:
-  std::filesystem::path file_;
-  std::mutex mutex_;
-  int written_ = 0;
-};
-
 std::vector<MatrixCase> NotDoneYet(const MatrixPlan& plan, const std::filesystem::path& file) {
   std::set<std::string> done;
   for (const MatrixRecord& r : ReadRecords(file)) done.insert(r.key);
@@ -104,26 +75,52 @@ std::vector<MatrixCase> NotDoneYet(const MatrixPlan& plan, const std::filesystem
   return cases;
 }
 
-void RunCases(const std::vector<MatrixCase>& cases, int jobs, CaseFile& file) {
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      for (std::size_t i = next++; i < cases.size(); i = next++) {
-        file.Append(RunMatrixCase(cases[i]));
+/// The record's line, and behind it the line for the terminal.
+int RunCase(const MatrixCase& one, std::size_t threads, std::string& payload) {
+  const tbb::global_control share(tbb::global_control::max_allowed_parallelism, threads);
+  const MatrixRecord record = RunMatrixCase(one);
+  payload = JsonLine(record) + "\n" +
+            fmt::format("{:<70} {}{}  p {:.3f}  {:.2f} s", record.key,
+                        record.IsRight() && record.error.empty() ? "ok" : "MISS ",
+                        record.error.empty() ? (record.IsRight() ? "" : JoinedNames(record.verdict))
+                                             : record.error,
+                        record.p_truth, record.seconds);
+  return 0;
+}
+
+/// A case that crashed or threw has no line in the file: it is done again when the tool goes on.
+void RunCases(const std::vector<MatrixCase>& cases, int jobs, const std::filesystem::path& file) {
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t threads = std::max<std::size_t>(1, cores / static_cast<std::size_t>(jobs));
+  std::vector<batch::Item> items;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    items.push_back({cases[i].Key(), {std::to_string(i)}, 0.0});
+  }
+  batch::Pool pool(
+      [&](const batch::Item& item, std::string& payload) {
+        return RunCase(cases[std::stoul(item.arguments[0])], threads, payload);
+      },
+      {.jobs = jobs});
+  batch::LineFile lines(file);
+  int written = 0, lost = 0;
+  batch::RunItems(pool, items, [&](const std::vector<batch::Ended>& ended) {
+    std::vector<std::string> records;
+    for (const batch::Ended& one : ended) {
+      const std::string& payload = one.outcome.payload;
+      const std::size_t end = payload.find('\n');
+      if (one.outcome.status == batch::Status::kOk) {
+        records.push_back(payload.substr(0, end));
+        fmt::print("{:>5}  {}\n", ++written, payload.substr(end + 1));
+      } else {
+        fmt::print("{:>5}  {:<70} {}  {}\n", "", one.outcome.name, StatusText(one.outcome),
+                   payload);
+        ++lost;
       }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      failure = std::current_exception();
-      next = cases.size();
     }
-  };
-  std::vector<std::thread> threads;
-  for (int i = 1; i < jobs; ++i) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
-  if (failure) std::rethrow_exception(failure);
+    lines.Append(records);
+    std::fflush(stdout);
+  });
+  if (lost > 0) throw WorkError(fmt::format("{} cases did not come to an end", lost));
 }
 
 void Summarize(const std::filesystem::path& out) {
@@ -148,8 +145,8 @@ void Summarize(const std::filesystem::path& out) {
 void Run(Arguments& arguments) {
   if (!arguments.summarize) {
     std::filesystem::create_directories(arguments.out);
-    CaseFile file(arguments.out / "cases.jsonl");
-    RunCases(NotDoneYet(arguments.plan, arguments.out / "cases.jsonl"), arguments.jobs, file);
+    const std::filesystem::path file = arguments.out / "cases.jsonl";
+    RunCases(NotDoneYet(arguments.plan, file), arguments.jobs, file);
   }
   Summarize(arguments.out);
 }

@@ -4,12 +4,13 @@
 #include <tbb/global_control.h>
 
 #include <chrono>
-#include <fstream>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "batch/line_file.h"
+#include "batch/run.h"
 #include "bench/tool.h"
 #include "bench/vision/score.h"
 #include "bench/vision/sequence.h"
@@ -23,7 +24,7 @@ namespace flextip::bench {
 namespace {
 
 struct Arguments {
-  int frames = 10000, frames_each = 100, width_px = 640, only = -1;
+  int frames = 10000, frames_each = 100, width_px = 640, only = -1, jobs = 1;
   std::uint64_t seed = 1;
   std::vector<std::string> events, families = {"tag36h11", "tag25h9", "tagStandard41h12"};
   bool wrist = false, outline = false, summarize = false;
@@ -48,6 +49,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--sequence", a.only, "Only the sequence of this number");
   app.add_option("--pictures", a.pictures, "Folder for PNGs of the frames");
   app.add_option("--sheet", a.sheet, "Only writes this picture: a frame of each event");
+  app.add_option("--jobs", a.jobs, "Sequences at a time; times of frames want 1")
+      ->check(CLI::PositiveNumber);
   app.add_flag("--summarize", a.summarize, "Only read sequences.jsonl");
   app.add_option("-o,--out", a.out,
                  "Folder for sequences.jsonl, summary.json, table.txt, wrong.txt")
@@ -174,34 +177,57 @@ void Summarize(const std::filesystem::path& out) {
   fmt::print("{}", table);
 }
 
+/// The sequence's line, and behind it the line for the terminal.
+int RunOne(const Arguments& a, int number, std::string& payload) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  cv::setNumThreads(1);
+  const SequenceScore score = RunSequence(a, number);
+  int ok = 0, wrong = 0;
+  for (const FrameScore& f : score.frames) {
+    ok += f.status == "ok";
+    wrong += f.IsFalseOk() || f.IsWrongOk();
+  }
+  payload = JsonLine(score) + "\n" +
+            fmt::format("{:>4}  {:<28} {:<17} {:>3.0f} px  ok {:>3}  wrong {}", number,
+                        fmt::format("{}", fmt::join(score.events, "+")), score.family, score.tag_px,
+                        ok, wrong);
+  return 0;
+}
+
 void RunAll(const Arguments& a) {
   const std::filesystem::path file = a.out / "sequences.jsonl";
   std::set<int> done;
   for (const SequenceScore& s : ReadScores(file)) done.insert(s.number);
-  if (std::filesystem::exists(file)) {  // without a line that was left half written
-    std::filesystem::resize_file(file, ReadTextFile(file).rfind('\n') + 1);
-  }
+  std::vector<batch::Item> items;
   for (int number = 0; number * a.frames_each < a.frames; ++number) {
     if (done.contains(number) || (a.only >= 0 && number != a.only)) continue;
-    const SequenceScore score = RunSequence(a, number);
-    std::ofstream out(file, std::ios::app);
-    out << JsonLine(score) + "\n" << std::flush;
-    if (!out) throw WorkError(file.string() + ": cannot be written");
-    int ok = 0, wrong = 0;
-    for (const FrameScore& f : score.frames) {
-      ok += f.status == "ok";
-      wrong += f.IsFalseOk() || f.IsWrongOk();
-    }
-    fmt::print("{:>4}  {:<28} {:<17} {:>3.0f} px  ok {:>3}  wrong {}\n", number,
-               fmt::format("{}", fmt::join(score.events, "+")), score.family, score.tag_px, ok,
-               wrong);
-    std::fflush(stdout);
+    items.push_back({std::to_string(number), {}, 0.0});
   }
+  batch::Pool pool([&](const batch::Item& item,
+                       std::string& payload) { return RunOne(a, std::stoi(item.name), payload); },
+                   {.jobs = a.jobs});
+  batch::LineFile lines(file);
+  int lost = 0;
+  batch::RunItems(pool, items, [&](const std::vector<batch::Ended>& ended) {
+    std::vector<std::string> scores;
+    for (const batch::Ended& one : ended) {
+      const std::string& payload = one.outcome.payload;
+      const std::size_t end = payload.find('\n');
+      if (one.outcome.status == batch::Status::kOk) {
+        scores.push_back(payload.substr(0, end));
+        fmt::print("{}\n", payload.substr(end + 1));
+      } else {
+        fmt::print("{:>4}  {}  {}\n", one.outcome.name, StatusText(one.outcome), payload);
+        ++lost;
+      }
+    }
+    lines.Append(scores);
+    std::fflush(stdout);
+  });
+  if (lost > 0) throw WorkError(fmt::format("{} sequences did not come to an end", lost));
 }
 
 void Run(Arguments& arguments) {
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  cv::setNumThreads(1);
   if (!arguments.sheet.empty()) {
     WriteSheet(arguments);
     return;

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "report/compare/curves.h"
+#include "report/compare/summary_values.h"
 #include "report/labels.h"
 #include "report/result_files.h"
 #include "report/summary_parts.h"
@@ -76,16 +77,9 @@ class NumberTable {
   explicit NumberTable(std::size_t runs) : runs_(runs) {}
 
   /// Adds every number of a run's summary, and of the objects in it, the names of which are groups.
-  void Add(std::size_t run, const Json& object, const std::string& group = "") {
-    for (const auto& [key, value] : object.items()) {
-      if (value.is_number()) {
-        Place(key, group).values[run] = value.get<double>();
-      } else if (value.is_object() && key != "verdict") {
-        const bool list = key == "controllers" || key == "statuses";
-        std::string inner = group;
-        if (!list) inner += (group.empty() ? "" : " ") + key;
-        Add(run, value, inner);
-      }
+  void Add(std::size_t run, const fs::path& folder) {
+    for (const SummaryValue& value : ValuesOf(folder)) {
+      if (value.number) Place(value.key, value.group).values[run] = *value.number;
     }
   }
   std::vector<ComparedNumber> Take() { return std::move(numbers_); }
@@ -206,7 +200,7 @@ Comparison CompareResults(const std::vector<fs::path>& folders) {
                            fmt::format("a result of {}, expected one of {} as {} is", command,
                                        comparison.command, folders[0].string()));
     }
-    table.Add(i, summary);
+    table.Add(i, folders[i]);
     const Json verdict = summary.value("verdict", Json::object());
     comparison.answers.push_back(verdict.is_object() ? verdict.value("says", "") : "");
   }

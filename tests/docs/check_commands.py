@@ -39,7 +39,10 @@ class Help:
 
     def complaint(self, command):
         """Returns why the program does not know `flextip WORD ... --option`; empty where it does."""
+        command, _, of_items = command.partition(" -- ")
         tokens = re.split(r"[\s=]+", command)[1:]
+        if of_items and tokens[0] == "batch":  # options of the command that it runs
+            return self.complaint(command) or self.complaint(f"flextip {tokens[1]} {of_items}")
         if not tokens or not re.fullmatch(r"[a-z][a-z-]*", tokens[0]):
             return ""
         words = (tokens[0],)
