@@ -39,6 +39,19 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddTrack(app, context);
 }
 
+/// Takes off what is behind "--" of flextip batch: options of another command.
+std::vector<std::string> TakeOptionsOfItems(std::vector<std::string>& arguments) {
+  const auto dashes = std::find(arguments.begin(), arguments.end(), "--");
+  auto command = arguments.begin();
+  while (command != dashes && command->starts_with("-")) {
+    command += *command == "--defaults" && command + 1 != dashes ? 2 : 1;
+  }
+  if (dashes == arguments.end() || command == dashes || *command != "batch") return {};
+  std::vector<std::string> behind(dashes + 1, arguments.end());
+  arguments.erase(dashes, arguments.end());
+  return behind;
+}
+
 int Run(const std::vector<std::string>& typed) {
   AppContext context;
   context.program = [](const auto& others) { return ExitCodeOf([&] { return Run(others); }); };
@@ -52,7 +65,9 @@ int Run(const std::vector<std::string>& typed) {
   app.fallthrough();
   AddCommands(app, context);
   try {
-    std::vector<std::string> arguments = WithHelpAndVersion(typed);
+    std::vector<std::string> arguments = typed;
+    context.behind_dashes = TakeOptionsOfItems(arguments);
+    arguments = WithHelpAndVersion(std::move(arguments));
     std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
     app.parse(std::move(arguments));
   } catch (const CLI::Success& done) {  // --help, --version

@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BatchOptions {
-  std::vector<std::string> words;  // COMMAND LIST OPTIONS
+  std::vector<std::string> words;  // COMMAND LIST
   fs::path out;
   int jobs = 0;  // 0: as many as there are cores
   double timeout_s = 0.0;
@@ -104,20 +104,20 @@ void Keep(const std::vector<batch::Ended>& ended, BatchFolder& folder, Reporter&
   }
 }
 
-/// The command and what is behind the list; `words` keeps the list.
-BatchPlan CommandOf(const BatchOptions& options, std::string& list) {
+/// The command with its options; `list` is what names the items.
+BatchPlan CommandOf(const BatchOptions& options, const AppContext& context, std::string& list) {
   BatchPlan plan;
   std::vector<std::string> words = options.words;
   plan.command = TakeBatchCommand(words);
   if (words.empty()) throw InputError("no list was given, expected a file of paths or a glob");
-  list = words[0];
-  plan.options.assign(words.begin() + 1, words.end());
-  if (!plan.options.empty() && plan.options[0][0] != '-') {
+  if (words.size() > 1) {
     throw InputError(
         fmt::format("found {} behind the list, expected options behind --; a glob "
                     "stands in quotes",
-                    plan.options[0]));
+                    words[1]));
   }
+  list = words[0];
+  plan.options = context.behind_dashes;
   RefuseBatchOptions(plan.options, "", 0);
   return plan;
 }
@@ -143,7 +143,7 @@ BatchWork WorkOf(const BatchOptions& options, const BatchPlan& plan, const AppCo
 /// A rank but the first: works for that one.
 void WorkAsRank(const BatchOptions& options, const AppContext& context) {
   std::string list;
-  const BatchPlan plan = CommandOf(options, list);
+  const BatchPlan plan = CommandOf(options, context, list);
   const BatchWork work = WorkOf(options, plan, context);
   fs::path place = options.out;  // of the results
   const auto pool = PoolOf(options, work, place);
@@ -212,7 +212,7 @@ void RunBatch(const BatchOptions& options, const AppContext& context) {
   }
   if (batch::IsRank() && batch::RankNumber() > 0) return WorkAsRank(options, context);
   std::string list;
-  BatchPlan plan = CommandOf(options, list);
+  BatchPlan plan = CommandOf(options, context, list);
   plan.items = ReadBatchList(list);
   BatchFolder folder(options.out, plan, options.resume);
   const std::vector<std::size_t> open = folder.TakeNotDone();

@@ -16,6 +16,7 @@ struct AppContext {
   bool quiet = false;              ///< no progress and no chatter; errors still go to stderr
   std::filesystem::path defaults;  ///< a file with values of options; empty: none was given
   std::function<void()> work;      ///< set by the command that was chosen, run after parsing
+  std::vector<std::string> behind_dashes;  ///< of flextip batch: options of the command it runs
   /// The program itself, on arguments (without its name) as a user types them. Returns the exit
   /// code.
   std::function<int(const std::vector<std::string>& arguments)> program;

@@ -17,11 +17,11 @@ class BatchList : public BatchCommand {
 TEST_F(BatchList, IsRefusedWithItsLine) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> wrong{
       {"a\n\"b\n", {"list.txt:2: found no second \""}},
-      {"a\n# only this\nb name=x/y\n", {"list.txt:3: found the name 'x/y'", "letters"}},
+      {"a\n# only this\nb name=x/y\n", {"list.txt:3: found the name \"x/y\"", "letters"}},
       {"a name=.hidden\n", {"list.txt:1: found the name"}},
       {"a name=same\nb name=same\n", {"list.txt:2: found the name same of line 1 again"}},
       {"d/a\nd/a --json\n", {"list.txt:2: found the name", "of line 1 again"}},
-      {"name=x a\n", {"list.txt:1: found 'name=x', expected a path first"}},
+      {"name=x a\n", {"list.txt:1: found \"name=x\", expected a path first"}},
       {"a -o b\n", {"list.txt:1: found -o for the items"}},
       {"a --output=b\n", {"list.txt:1: found --output=b for the items"}},
       {"a --force\n", {"list.txt:1: found --force for the items"}},
@@ -57,7 +57,7 @@ TEST_F(BatchList, GoesWithACommandThatHasInputAndOutput) {
 }
 
 TEST_F(BatchList, NamesItemsByAsMuchOfThePathAsTellsThemApart) {
-  Run("monday/take 1.csv\nmonday/'take 2'\ntuesday/take\\ 2\nx name=y\n");
+  Run("\"monday/take 1.csv\"\nmonday/'take 2'\ntuesday/take\\ 2\nx name=y\n");
   for (const char* name : {"take_1", "monday-take_2", "tuesday-take_2", "y"}) {
     EXPECT_EQ(RowOf(folder_ / "out", name)["status"], "failed") << name;
   }

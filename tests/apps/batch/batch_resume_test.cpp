@@ -106,7 +106,7 @@ TEST_F(BatchResume, StopsOnAFullDiskAndGoesOn) {
   const pid_t batch = fork();
   if (batch == 0) {  // files may not become as large as a page
     signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{30'000, 30'000};
+    const rlimit limit{6'000, 6'000};
     setrlimit(RLIMIT_FSIZE, &limit);
     _exit(ExitCodeOf(Begin(Line("out"), folder_ / "")));
   }
