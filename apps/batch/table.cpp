@@ -51,8 +51,8 @@ std::string OneLine(std::string text) {
   return text;
 }
 
-/// As a shell has it.
-int ExitCodeOf(const Outcome& end) { return end.signal != 0 ? 128 + end.signal : end.exit_code; }
+/// 128 and the signal where one ended the item.
+int CodeInAShell(const Outcome& end) { return end.signal != 0 ? 128 + end.signal : end.exit_code; }
 
 std::vector<Row> RowsOf(const BatchPlan& plan, BatchFolder& folder) {
   std::vector<Row> rows;
@@ -86,7 +86,7 @@ std::string TableCsv(const std::vector<Row>& rows) {
   CsvWriter csv(columns, false);
   for (const Row& row : rows) {
     csv.Add(row.item->name).Add(OneLine(row.item->input));
-    csv.Add(std::to_string(ExitCodeOf(*row.end))).Add(StatusText(*row.end));
+    csv.Add(std::to_string(CodeInAShell(*row.end))).Add(StatusText(*row.end));
     csv.Add(OneLine(row.message));
     std::map<std::string, std::string> texts;
     for (const auto& value : row.values) texts[value.Path()] = value.text;
@@ -168,6 +168,7 @@ std::size_t WriteBatchResults(const BatchPlan& plan, BatchFolder& folder, const 
                         {"date", folder.date()},
                         {"typed", Typed()},
                         {"inputs", Json::array({list})},
+                        {"output", out.string()},
                         {"warnings", Json::array()}};
   batch::WriteWhole(out / "summary.json",
                     summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

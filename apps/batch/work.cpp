@@ -99,15 +99,16 @@ int DoItem(const BatchWork& work, const batch::Item& item, std::string& payload)
   words.insert(words.end(), item.arguments.begin() + 1, item.arguments.end());
   words.insert(words.end(), work.options.begin(), work.options.end());
   words.emplace_back("-o");
+  const fs::path said = fs::path("items") / item.name;  // seen from OUT, wherever that is
   std::vector<std::string> typed = words;
-  typed.push_back((fs::path("items") / item.name).string());
+  typed.push_back(said.string());
   words.push_back(ItemFolder(out, item.name).string());
   words.insert(words.begin(), "--quiet");
   if (!work.defaults.empty()) {
     words.insert(words.begin(), {"--defaults", work.defaults.string()});
   }
   Json times = Json::object();
-  KeepTimesApart(ShellLine("flextip", typed), times);
+  KeepTimesApart(ShellLine("flextip", typed), said, times);
   const int code = work.program(words);
   payload = Json{{"times", times}}.dump();
   return code;

@@ -13,7 +13,6 @@
 #include "apps/common/run_facts.h"
 #include "core/check.h"
 #include "core/error.h"
-#include "core/shell_text.h"
 #include "core/version.h"
 
 namespace flextip {
@@ -51,7 +50,7 @@ bool HasNoNumber(const nlohmann::ordered_json& json) {
 OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
                            const OutputOptions& options)
     : command_(command), paths_(options.paths), force_(options.force), inputs_(options.inputs) {
-  paths_.result = name.filename().empty() ? name.parent_path() : name;
+  paths_.result = ResultAsSaid(name.filename().empty() ? name.parent_path() : name);
   if (name.empty()) throw InputError("the output folder has no name");
   name_ = Normal(name);
   std::error_code error;

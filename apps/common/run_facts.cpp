@@ -6,6 +6,8 @@
 #include <array>
 #include <chrono>
 
+#include "core/shell_text.h"
+
 namespace flextip {
 namespace {
 
@@ -15,21 +17,12 @@ constexpr std::array kTimes{"seconds", "frames_per_second"};
 struct Facts {
   std::string typed;
   nlohmann::ordered_json* times = nullptr;  // where they are kept apart
+  std::filesystem::path result = {};
 };
 
 Facts& FactsOfThisProcess() {
   static Facts facts;
   return facts;
-}
-
-/// As a shell takes it.
-std::string Quoted(const std::string& argument) {
-  constexpr const char* kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
-  if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
-  std::string quoted = "'";
-  for (const char c : argument) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
 }
 
 }  // namespace
@@ -38,7 +31,7 @@ std::string ShellLine(const std::string& program, const std::vector<std::string>
   std::string line = program;
   for (const std::string& argument : arguments) {
     line += ' ';
-    line += Quoted(argument);
+    line += ShellQuoted(argument);
   }
   return line;
 }
@@ -56,8 +49,14 @@ std::string DateNow() {
                      fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
 }
 
-void KeepTimesApart(const std::string& typed, nlohmann::ordered_json& times) {
-  FactsOfThisProcess() = {typed, &times};
+void KeepTimesApart(const std::string& typed, const std::filesystem::path& result,
+                    nlohmann::ordered_json& times) {
+  FactsOfThisProcess() = {typed, &times, result};
+}
+
+std::filesystem::path ResultAsSaid(const std::filesystem::path& given) {
+  const Facts& facts = FactsOfThisProcess();
+  return facts.times == nullptr ? given : facts.result;
 }
 
 void AddRunFacts(double seconds, nlohmann::ordered_json& summary) {

@@ -1,6 +1,7 @@
 // What a summary says of the run: when, how long, by which command line.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -20,8 +21,14 @@ std::string DateNow();
 
 /// From now on nothing in this process's summaries depends on the moment, the machine or the place:
 /// what measures time goes into `times`, which must outlive the work; there is no date; `typed`
-/// stands for the command line. Two runs then write the same bytes.
-void KeepTimesApart(const std::string& typed, nlohmann::ordered_json& times);
+/// stands for the command line, and `result` for the path of the results. Two runs then write the
+/// same bytes.
+void KeepTimesApart(const std::string& typed, const std::filesystem::path& result,
+                    nlohmann::ordered_json& times);
+
+/// Returns how a summary names the folder of the results: as it was given, or as KeepTimesApart
+/// says.
+std::filesystem::path ResultAsSaid(const std::filesystem::path& given);
 
 /// Adds `seconds`, `date` and `typed` to a summary, or keeps them apart.
 void AddRunFacts(double seconds, nlohmann::ordered_json& summary);
