@@ -17,8 +17,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostWords = 12;  // of a list; longer ones are tables of their own
 
 bool IsOfTheRun(const std::string& key) {
-  static const std::set<std::string> keys{"command", "version",  "date",    "typed",
-                                          "inputs",  "warnings", "findings"};
+  static const std::set<std::string> keys{"command", "version", "date",     "typed",
+                                          "output",  "inputs",  "warnings", "findings"};
   return keys.contains(key);
 }
 
