@@ -18,6 +18,7 @@
 #include "apps/common/commands.h"
 #include "apps/common/exit_code.h"
 #include "apps/common/progress.h"
+#include "batch/cores.h"
 #include "batch/ranks.h"
 #include "batch/run.h"
 #include "core/error.h"
@@ -124,7 +125,7 @@ BatchPlan CommandOf(const BatchOptions& options, const AppContext& context, std:
 
 int JobsOf(const BatchOptions& options) {
   if (options.jobs > 0) return options.jobs;
-  return batch::IsRank() ? 1 : CoresOfThisProcess();
+  return batch::IsRank() ? 1 : batch::CoresOfThisProcess();
 }
 
 std::unique_ptr<batch::Pool> PoolOf(const BatchOptions& options, const BatchWork& work,
@@ -136,7 +137,7 @@ std::unique_ptr<batch::Pool> PoolOf(const BatchOptions& options, const BatchWork
 }
 
 BatchWork WorkOf(const BatchOptions& options, const BatchPlan& plan, const AppContext& context) {
-  const int threads = ThreadsOfAnItem(JobsOf(options), batch::RanksOnThisMachine());
+  const int threads = batch::ThreadsOfAnItem(JobsOf(options));
   return {plan.command, plan.options, context.defaults, threads, context.program};
 }
 

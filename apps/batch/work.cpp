@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sched.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
@@ -68,20 +67,6 @@ std::string WithoutPlace(std::string text, const fs::path& out) {
 }
 
 }  // namespace
-
-int CoresOfThisProcess() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
-  return std::max(1, CPU_COUNT(&set));
-}
-
-int ThreadsOfAnItem(int jobs, int processes) {
-  const int cores = CoresOfThisProcess();
-  // A process bound to some of the cores has them for itself.
-  const bool bound = cores < sysconf(_SC_NPROCESSORS_ONLN);
-  return std::max(1, cores / (jobs * (bound ? 1 : std::max(1, processes))));
-}
 
 batch::Item ItemOf(const ListedItem& listed, const fs::path& out) {
   batch::Item item{listed.name, {out.string(), listed.input}, BytesAt(listed.input)};

@@ -19,13 +19,6 @@ struct BatchWork {
   std::function<int(const std::vector<std::string>&)> program;
 };
 
-/// Returns the threads of one item where `jobs` run at a time in each of `processes` on this
-/// machine: its share of the cores that this process may use, one at least.
-int ThreadsOfAnItem(int jobs, int processes);
-
-/// Returns how many cores this process may use.
-int CoresOfThisProcess();
-
 /// The item as the library hands it out: OUT, the input, its options. Its size is that of the files
 /// at its path.
 batch::Item ItemOf(const ListedItem& listed, const std::filesystem::path& out);

@@ -2,6 +2,7 @@
 // other poses of the board and other noise, by the program's own commands, and the tip that is then
 // tracked beside where it is.
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 #include <fstream>
@@ -9,6 +10,8 @@
 
 #include "bench/calibration/chain_commands.h"
 #include "bench/calibration/chain_picture.h"
+#include "bench/calibration/chain_record.h"
+#include "bench/campaign/campaign.h"
 #include "bench/tool.h"
 #include "core/linear_algebra.h"
 
@@ -16,7 +19,7 @@ namespace flextip::bench {
 namespace {
 
 struct Arguments {
-  int runs = 30;
+  int runs = 30, jobs = 1;
   unsigned first_seed = 1;
   std::filesystem::path out, program = FLEXTIP_PROGRAM;
   bool keep = false;
@@ -25,9 +28,10 @@ struct Arguments {
 void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--runs", a.runs, "Repetitions")->check(CLI::PositiveNumber);
   app.add_option("--first-seed", a.first_seed, "Of poses and noise; each repetition has the next");
+  app.add_option("--jobs", a.jobs, "Repetitions at a time")->check(CLI::PositiveNumber);
   app.add_option("--program", a.program, "The flextip to be judged")->check(CLI::ExistingFile);
   app.add_flag("--keep", a.keep, "Leave the recordings and results of every repetition");
-  app.add_option("-o,--out", a.out, "Folder for chain.json and chain.svg")->required();
+  app.add_option("-o,--out", a.out, "Folder for runs.jsonl, chain.json and chain.svg")->required();
   app.footer("Example:\n  flextip_calibration_chain --runs 30 -o chain\n");
 }
 
@@ -127,18 +131,36 @@ void Write(const std::filesystem::path& out, const std::vector<ChainRun>& runs) 
   std::ofstream(out / "chain.svg") << ChainSvg(parts);
 }
 
+/// Its pictures are rendered once, for all that follow. No thread may be left where cases begin.
+ChainScene SceneWithoutThreads() {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  return ChainScene({});
+}
+
+CaseResult RunOne(const Arguments& a, const ChainScene& scene, unsigned seed) {
+  const auto folder = a.out / fmt::format("run{:03}", seed);
+  std::filesystem::remove_all(folder);  // of a repetition that was cut off
+  std::filesystem::create_directories(folder);
+  const ChainRun run = RunChain(scene, a.program, folder, seed);
+  if (!a.keep) std::filesystem::remove_all(folder);
+  return {JsonLine(seed, run), fmt::format("{}: {} frames", seed, run.claimed_V.size())};
+}
+
 void Run(Arguments& a) {
   std::filesystem::create_directories(a.out);
-  const ChainScene scene({});
-  std::vector<ChainRun> runs;
-  for (int i = 0; i < a.runs; ++i) {
-    const unsigned seed = a.first_seed + static_cast<unsigned>(i);
-    const auto folder = a.out / fmt::format("run{:03}", seed);
-    std::filesystem::create_directories(folder);
-    runs.push_back(RunChain(scene, a.program, folder, seed));
-    if (!a.keep) std::filesystem::remove_all(folder);
-    fmt::print(stderr, "{} of {}: {} frames\n", i + 1, a.runs, runs.back().claimed_V.size());
+  std::vector<unsigned> seeds;
+  for (int i = 0; i < a.runs; ++i) seeds.push_back(a.first_seed + static_cast<unsigned>(i));
+  Campaign campaign{.records = a.out / "runs.jsonl", .jobs = a.jobs};
+  for (const unsigned seed : seeds) campaign.names.push_back(std::to_string(seed));
+  for (const auto& [seed, run] : ReadChainRuns(campaign.records)) {
+    campaign.done.insert(std::to_string(seed));
   }
+  const ChainScene scene = SceneWithoutThreads();
+  campaign.run = [&](std::size_t index) { return RunOne(a, scene, seeds[index]); };
+  if (!RunCampaign(campaign)) return;
+  const std::map<unsigned, ChainRun> done = ReadChainRuns(campaign.records);
+  std::vector<ChainRun> runs;
+  for (const unsigned seed : seeds) runs.push_back(done.at(seed));
   Write(a.out, runs);
 }
 

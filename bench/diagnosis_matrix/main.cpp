@@ -1,15 +1,8 @@
 // How often the diagnosis is right: hidden recordings of every effect, size and kind, each written
 // to a folder without its label, read again, diagnosed, and compared. Resumes where it stopped.
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
-#include <algorithm>
-#include <cstdio>
-#include <set>
-#include <thread>
-
-#include "batch/line_file.h"
-#include "batch/run.h"
+#include "bench/campaign/campaign.h"
 #include "bench/diagnosis_matrix/output/picture.h"
 #include "bench/diagnosis_matrix/output/summary.h"
 #include "bench/diagnosis_matrix/run.h"
@@ -65,62 +58,21 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       "--seeds-per-cell 2 --family held_out -o matrix\n");
 }
 
-std::vector<MatrixCase> NotDoneYet(const MatrixPlan& plan, const std::filesystem::path& file) {
-  std::set<std::string> done;
-  for (const MatrixRecord& r : ReadRecords(file)) done.insert(r.key);
-  std::vector<MatrixCase> cases = PlanMatrix(plan);
-  const std::size_t all = cases.size();
-  std::erase_if(cases, [&](const MatrixCase& one) { return done.contains(one.Key()); });
-  fmt::print("{} cases, {} of them done before\n", all, all - cases.size());
-  return cases;
+CaseResult RunCase(const MatrixCase& one) {
+  const MatrixRecord r = RunMatrixCase(one);
+  const bool right = r.IsRight() && r.error.empty();
+  const std::string answer = !r.error.empty() ? r.error : right ? "" : JoinedNames(r.verdict);
+  return {JsonLine(r), fmt::format("{:<70} {}{}  p {:.3f}  {:.2f} s", r.key, right ? "ok" : "MISS ",
+                                   answer, r.p_truth, r.seconds)};
 }
 
-/// The record's line, and behind it the line for the terminal.
-int RunCase(const MatrixCase& one, std::size_t threads, std::string& payload) {
-  const tbb::global_control share(tbb::global_control::max_allowed_parallelism, threads);
-  const MatrixRecord record = RunMatrixCase(one);
-  payload = JsonLine(record) + "\n" +
-            fmt::format("{:<70} {}{}  p {:.3f}  {:.2f} s", record.key,
-                        record.IsRight() && record.error.empty() ? "ok" : "MISS ",
-                        record.error.empty() ? (record.IsRight() ? "" : JoinedNames(record.verdict))
-                                             : record.error,
-                        record.p_truth, record.seconds);
-  return 0;
-}
-
-/// A case that crashed or threw has no line in the file: it is done again when the tool goes on.
-void RunCases(const std::vector<MatrixCase>& cases, int jobs, const std::filesystem::path& file) {
-  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t threads = std::max<std::size_t>(1, cores / static_cast<std::size_t>(jobs));
-  std::vector<batch::Item> items;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    items.push_back({cases[i].Key(), {std::to_string(i)}, 0.0});
-  }
-  batch::Pool pool(
-      [&](const batch::Item& item, std::string& payload) {
-        return RunCase(cases[std::stoul(item.arguments[0])], threads, payload);
-      },
-      {.jobs = jobs});
-  batch::LineFile lines(file);
-  int written = 0, lost = 0;
-  batch::RunItems(pool, items, [&](const std::vector<batch::Ended>& ended) {
-    std::vector<std::string> records;
-    for (const batch::Ended& one : ended) {
-      const std::string& payload = one.outcome.payload;
-      const std::size_t end = payload.find('\n');
-      if (one.outcome.status == batch::Status::kOk) {
-        records.push_back(payload.substr(0, end));
-        fmt::print("{:>5}  {}\n", ++written, payload.substr(end + 1));
-      } else {
-        fmt::print("{:>5}  {:<70} {}  {}\n", "", one.outcome.name, StatusText(one.outcome),
-                   payload);
-        ++lost;
-      }
-    }
-    lines.Append(records);
-    std::fflush(stdout);
-  });
-  if (lost > 0) throw WorkError(fmt::format("{} cases did not come to an end", lost));
+bool RunCases(const Arguments& arguments, const std::filesystem::path& file) {
+  const std::vector<MatrixCase> cases = PlanMatrix(arguments.plan);
+  Campaign campaign{.records = file, .jobs = arguments.jobs};
+  for (const MatrixCase& one : cases) campaign.names.push_back(one.Key());
+  for (const MatrixRecord& record : ReadRecords(file)) campaign.done.insert(record.key);
+  campaign.run = [&](std::size_t index) { return RunCase(cases[index]); };
+  return RunCampaign(campaign);
 }
 
 void Summarize(const std::filesystem::path& out) {
@@ -145,8 +97,7 @@ void Summarize(const std::filesystem::path& out) {
 void Run(Arguments& arguments) {
   if (!arguments.summarize) {
     std::filesystem::create_directories(arguments.out);
-    const std::filesystem::path file = arguments.out / "cases.jsonl";
-    RunCases(NotDoneYet(arguments.plan, file), arguments.jobs, file);
+    if (!RunCases(arguments, arguments.out / "cases.jsonl")) return;
   }
   Summarize(arguments.out);
 }

@@ -7,10 +7,8 @@
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <set>
 
-#include "batch/line_file.h"
-#include "batch/run.h"
+#include "bench/campaign/campaign.h"
 #include "bench/tool.h"
 #include "bench/vision/score.h"
 #include "bench/vision/sequence.h"
@@ -177,54 +175,34 @@ void Summarize(const std::filesystem::path& out) {
   fmt::print("{}", table);
 }
 
-/// The sequence's line, and behind it the line for the terminal.
-int RunOne(const Arguments& a, int number, std::string& payload) {
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  cv::setNumThreads(1);
+CaseResult RunOne(const Arguments& a, int number) {
   const SequenceScore score = RunSequence(a, number);
   int ok = 0, wrong = 0;
   for (const FrameScore& f : score.frames) {
     ok += f.status == "ok";
     wrong += f.IsFalseOk() || f.IsWrongOk();
   }
-  payload = JsonLine(score) + "\n" +
-            fmt::format("{:>4}  {:<28} {:<17} {:>3.0f} px  ok {:>3}  wrong {}", number,
-                        fmt::format("{}", fmt::join(score.events, "+")), score.family, score.tag_px,
-                        ok, wrong);
-  return 0;
+  return {JsonLine(score), fmt::format("{:>4}  {:<28} {:<17} {:>3.0f} px  ok {:>3}  wrong {}",
+                                       number, fmt::format("{}", fmt::join(score.events, "+")),
+                                       score.family, score.tag_px, ok, wrong)};
 }
 
-void RunAll(const Arguments& a) {
-  const std::filesystem::path file = a.out / "sequences.jsonl";
-  std::set<int> done;
-  for (const SequenceScore& s : ReadScores(file)) done.insert(s.number);
-  std::vector<batch::Item> items;
-  for (int number = 0; number * a.frames_each < a.frames; ++number) {
-    if (done.contains(number) || (a.only >= 0 && number != a.only)) continue;
-    items.push_back({std::to_string(number), {}, 0.0});
+bool RunAll(const Arguments& a) {
+  Campaign campaign{.records = a.out / "sequences.jsonl", .jobs = a.jobs};
+  for (const SequenceScore& s : ReadScores(campaign.records)) {
+    campaign.done.insert(std::to_string(s.number));
   }
-  batch::Pool pool([&](const batch::Item& item,
-                       std::string& payload) { return RunOne(a, std::stoi(item.name), payload); },
-                   {.jobs = a.jobs});
-  batch::LineFile lines(file);
-  int lost = 0;
-  batch::RunItems(pool, items, [&](const std::vector<batch::Ended>& ended) {
-    std::vector<std::string> scores;
-    for (const batch::Ended& one : ended) {
-      const std::string& payload = one.outcome.payload;
-      const std::size_t end = payload.find('\n');
-      if (one.outcome.status == batch::Status::kOk) {
-        scores.push_back(payload.substr(0, end));
-        fmt::print("{}\n", payload.substr(end + 1));
-      } else {
-        fmt::print("{:>4}  {}  {}\n", one.outcome.name, StatusText(one.outcome), payload);
-        ++lost;
-      }
-    }
-    lines.Append(scores);
-    std::fflush(stdout);
-  });
-  if (lost > 0) throw WorkError(fmt::format("{} sequences did not come to an end", lost));
+  std::vector<int> numbers;
+  for (int number = 0; number * a.frames_each < a.frames; ++number) {
+    if (a.only < 0 || number == a.only) numbers.push_back(number);
+  }
+  for (const int number : numbers) campaign.names.push_back(std::to_string(number));
+  campaign.run = [&](std::size_t index) {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    cv::setNumThreads(1);
+    return RunOne(a, numbers[index]);
+  };
+  return RunCampaign(campaign);
 }
 
 void Run(Arguments& arguments) {
@@ -233,7 +211,7 @@ void Run(Arguments& arguments) {
     return;
   }
   std::filesystem::create_directories(arguments.out);
-  if (!arguments.summarize) RunAll(arguments);
+  if (!arguments.summarize && !RunAll(arguments)) return;
   Summarize(arguments.out);
 }
 

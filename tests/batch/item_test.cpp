@@ -38,7 +38,7 @@ TEST(BatchItem, RefusesWhatIsNoOutcome) {
   EXPECT_THROW(UnpackItem("a"), InputError);
 }
 
-Outcome Ended(Status status, int signal) {
+Outcome EndedBy(Status status, int signal) {
   Outcome outcome;
   outcome.status = status;
   outcome.signal = signal;
@@ -46,11 +46,11 @@ Outcome Ended(Status status, int signal) {
 }
 
 TEST(BatchItem, HasItsStatusInWords) {
-  EXPECT_EQ(StatusText(Ended(Status::kOk, 0)), "ok");
-  EXPECT_EQ(StatusText(Ended(Status::kFailed, 0)), "failed");
-  EXPECT_EQ(StatusText(Ended(Status::kTimedOut, SIGKILL)), "timed out");
-  EXPECT_EQ(StatusText(Ended(Status::kCrashed, SIGSEGV)), "crashed SIGSEGV");
-  EXPECT_EQ(StatusText(Ended(Status::kCrashed, SIGABRT)), "crashed SIGABRT");
+  EXPECT_EQ(StatusText(EndedBy(Status::kOk, 0)), "ok");
+  EXPECT_EQ(StatusText(EndedBy(Status::kFailed, 0)), "failed");
+  EXPECT_EQ(StatusText(EndedBy(Status::kTimedOut, SIGKILL)), "timed out");
+  EXPECT_EQ(StatusText(EndedBy(Status::kCrashed, SIGSEGV)), "crashed SIGSEGV");
+  EXPECT_EQ(StatusText(EndedBy(Status::kCrashed, SIGABRT)), "crashed SIGABRT");
 }
 
 }  // namespace
