@@ -3,11 +3,13 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "batch/ranks.h"
+#include "batch/records.h"
 #include "batch/run.h"
 #include "bench/tool.h"
 
@@ -16,6 +18,7 @@ namespace {
 
 struct Arguments {
   int items = 5000, jobs = 1, megabytes = 0;
+  std::filesystem::path records;
 };
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -23,6 +26,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--jobs", a.jobs, "At a time, of each rank")->check(CLI::PositiveNumber);
   app.add_option("--megabytes", a.megabytes, "Memory in use where items are forked from")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--records", a.records,
+                 "File of the items' ends, made anew; rank 0 waits for the disk");
   app.footer("Examples:\n  flextip_batch_rate --jobs 2\n  mpirun -n 3 flextip_batch_rate\n");
 }
 
@@ -48,7 +53,15 @@ void Run(Arguments& a) {
   const double before_s = OwnSeconds();
   const auto begin = std::chrono::steady_clock::now();
   std::size_t ended = 0;
-  const batch::Done count = [&](const std::vector<batch::Ended>& some) { ended += some.size(); };
+  std::optional<batch::Records> records;
+  if (!a.records.empty()) {
+    std::filesystem::remove(a.records);
+    records.emplace(a.records);
+  }
+  const batch::Done count = [&](const std::vector<batch::Ended>& some) {
+    ended += some.size();
+    if (records) records->Add(some);
+  };
   if (ranks) {
     ranks->RunItems(pool, items, count, {});
   } else {

@@ -199,6 +199,17 @@ bool NaturallyBefore(const std::string& a, const std::string& b) {
   return std::pair(a.size(), a) < std::pair(b.size(), b);
 }
 
+std::vector<std::string> PictureNames(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.is_regular_file() && IsPicture(entry.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end(), NaturallyBefore);
+  return names;
+}
+
 /// Every name as a number of nanoseconds, where that can be meant.
 std::vector<TimeNs> TimesOfNames(const std::vector<std::string>& names) {
   constexpr TimeNs kShortest_ns = 100'000;
@@ -213,15 +224,26 @@ std::vector<TimeNs> TimesOfNames(const std::vector<std::string>& names) {
 
 }  // namespace
 
+std::vector<fs::path> PictureFiles(const std::vector<fs::path>& paths) {
+  std::vector<fs::path> files;
+  for (const fs::path& path : paths) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) {
+      files.push_back(path);
+      continue;
+    }
+    const std::vector<std::string> names = PictureNames(path);
+    if (names.empty()) {
+      throw InputError::At(path.string(), 0, "no PNG, JPEG or TIFF files, expected pictures");
+    }
+    for (const std::string& name : names) files.push_back(path / name);
+  }
+  return files;
+}
+
 Series<std::string> PicturesInFolder(const fs::path& folder, double rate_hz,
                                      bool times_from_names) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && IsPicture(entry.path())) {
-      names.push_back(entry.path().filename().string());
-    }
-  }
-  std::sort(names.begin(), names.end(), NaturallyBefore);
+  const std::vector<std::string> names = PictureNames(folder);
   const auto times = times_from_names ? TimesOfNames(names) : std::vector<TimeNs>{};
   Series<std::string> pictures;
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/image.h"
 #include "core/time_series.h"
@@ -56,6 +57,10 @@ std::unique_ptr<FrameSource> OpenPlainFrames(const std::filesystem::path& source
 /// 0.1 ms apart.
 Series<std::string> PicturesInFolder(const std::filesystem::path& folder, double rate_hz,
                                      bool times_from_names);
+
+/// Returns the pictures that paths stand for: a folder stands for its PNG, JPEG and TIFF files in
+/// the order of the numbers in their names. Throws InputError for a folder without any.
+std::vector<std::filesystem::path> PictureFiles(const std::vector<std::filesystem::path>& paths);
 
 /// Opens a device number, a URL or a pipe. Stamps by the clock (nanoseconds since 1970).
 std::unique_ptr<FrameSource> OpenLiveFrames(const std::string& source,

@@ -13,6 +13,7 @@
 #include "apps/common/progress.h"
 #include "calibration/boards/board_pictures.h"
 #include "core/error.h"
+#include "recording/frames/frame_source.h"
 
 namespace flextip {
 namespace {
@@ -39,8 +40,9 @@ std::string WhyNot(const CameraCalibrationResult& result) {
 void RunCalibrateCamera(const CalibrateCameraOptions& options, bool quiet) {
   OutputFolder output(options.out, "calibrate camera",
                       {.force = options.force, .inputs = options.images});
-  const CornersFile corners = CornersOf({options.images, options.lens.board, options.corners},
-                                        ProgressFunction("images", quiet));
+  const CornersFile corners =
+      CornersOf({PictureFiles(options.images), options.lens.board, options.corners},
+                ProgressFunction("images", quiet));
   const JudgedCamera judged = CalibrateAndJudge(corners, options.lens.Calibration());
   const CameraCalibrationResult& result = judged.result;
   if (!result.IsUsable()) throw WorkError(WhyNot(result));
@@ -59,7 +61,9 @@ void RunCalibrateCamera(const CalibrateCameraOptions& options, bool quiet) {
 void AddCalibrateCamera(CLI::App& calibrate, AppContext& context) {
   auto* command = calibrate.add_subcommand("camera", "Intrinsics from pictures of a board");
   auto options = std::make_shared<CalibrateCameraOptions>();
-  command->add_option("images", options->images, "PNG or JPEG files, all of one size")
+  command
+      ->add_option("images", options->images,
+                   "PNG or JPEG files, all of one size; a folder stands for those in it")
       ->type_name("IMAGE");
   AddLensOptions(*command, options->lens);
   command

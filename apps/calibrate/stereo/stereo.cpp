@@ -16,6 +16,7 @@
 #include "calibration/boards/board_pictures.h"
 #include "core/error.h"
 #include "recording/cameras/camera_file.h"
+#include "recording/frames/frame_source.h"
 
 namespace flextip {
 namespace {
@@ -40,7 +41,9 @@ void RequireAsMany(std::size_t left, std::size_t right) {
 
 void RunCalibrateStereo(const CalibrateStereoOptions& options, bool quiet) {
   // Named on neither side: all that the corners' files have.
-  if (options.corners.empty()) RequireAsMany(options.left.size(), options.right.size());
+  const std::array<std::vector<fs::path>, 2> images{PictureFiles(options.left),
+                                                    PictureFiles(options.right)};
+  if (options.corners.empty()) RequireAsMany(images[0].size(), images[1].size());
   Pose T_RC0;
   if (!options.pose.empty()) T_RC0 = ReadCameraCalibration(options.pose).T_RC;
   std::vector<fs::path> inputs = options.left;
@@ -49,8 +52,8 @@ void RunCalibrateStereo(const CalibrateStereoOptions& options, bool quiet) {
   std::array<CornersFile, 2> eyes;
   for (std::size_t eye = 0; eye < 2; ++eye) {
     const fs::path corners = options.corners.empty() ? fs::path() : options.corners[eye];
-    const auto& images = eye == 0 ? options.left : options.right;
-    eyes[eye] = CornersOf({images, options.lens.board, corners}, ProgressFunction("images", quiet));
+    eyes[eye] =
+        CornersOf({images[eye], options.lens.board, corners}, ProgressFunction("images", quiet));
   }
   RequireAsMany(eyes[0].views.size(), eyes[1].views.size());
   StereoOptions calibration;
@@ -76,7 +79,10 @@ void RunCalibrateStereo(const CalibrateStereoOptions& options, bool quiet) {
 void AddCalibrateStereo(CLI::App& calibrate, AppContext& context) {
   auto* command = calibrate.add_subcommand("stereo", "Two cameras fixed to each other");
   auto options = std::make_shared<CalibrateStereoOptions>();
-  command->add_option("left", options->left, "Pictures of camera 0, in order")->type_name("IMAGE");
+  command
+      ->add_option("left", options->left,
+                   "Pictures of camera 0, in order; a folder stands for those in it")
+      ->type_name("IMAGE");
   command->add_option("--right", options->right, "Of camera 1, at the same moments")
       ->type_name("IMAGE");
   AddLensOptions(*command, options->lens);

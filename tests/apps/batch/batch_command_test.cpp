@@ -1,4 +1,5 @@
 // flextip batch: rows, items, the same bytes whatever the jobs.
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -54,6 +55,35 @@ TEST_F(BatchCommand, WritesWhatTheCommandAloneWrites) {
   }
   EXPECT_EQ(item, alone);
   EXPECT_TRUE(PageIsMadeAgain(folder_ / "out/items/sample_0"));
+}
+
+/// A folder stands for its pictures; two cameras are calibrated as one needs two of them.
+TEST_F(BatchCommand, CalibratesCamerasByFoldersOfPictures) {
+  const fs::path photos = "/usr/share/doc/opencv-doc/examples/data";
+  if (!fs::exists(photos / "left01.jpg")) GTEST_SKIP() << "Debian's opencv-doc is not installed";
+  for (const std::string eye : {"left", "right"}) {
+    fs::create_directories(folder_ / eye);
+    for (const int i : {1, 2, 3, 4, 5, 6, 7, 8}) {
+      const std::string name = fmt::format("{}{:02}.jpg", eye, i);
+      fs::create_symlink(photos / name, folder_ / eye / name);
+    }
+  }
+  fs::create_directories(folder_ / "empty");
+  const std::string list = folder_.Write("list.txt", "left\nright\nempty\n");
+  const std::vector<std::string> board{"--", "--board", "chessboard:9x6:0.025"};
+  std::vector<std::string> line{"batch", "calibrate", "camera", list, "-o", Out()};
+  line.insert(line.end(), board.begin(), board.end());
+  EXPECT_EQ(RunProgram(line).exit_code, 1);  // one folder is empty
+  EXPECT_EQ(RowOf(folder_ / "out", "left").at("views_used"), "8");
+  EXPECT_EQ(RowOf(folder_ / "out", "right").at("status"), "ok");
+  EXPECT_THAT(RowOf(folder_ / "out", "empty").at("message"), HasSubstr("no PNG, JPEG or TIFF"));
+
+  const std::string pairs = folder_.Write("pairs.txt", "left name=pair --right ./right\n");
+  line = {"batch", "calibrate", "stereo", pairs, "-o", Out("stereo")};
+  line.insert(line.end(), board.begin(), board.end());
+  const ProgramResult run = RunProgram(line);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NEAR(std::stod(RowOf(folder_ / "stereo", "pair").at("baseline_m")), 0.083, 0.002);
 }
 
 TEST_F(BatchCommand, HasARowForEachItem) {
