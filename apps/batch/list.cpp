@@ -118,13 +118,14 @@ std::vector<Line> LinesOf(const std::string& file) {
                            fmt::format("found {}, expected a path first", Quoted(words[0])));
     }
     Line one{{"", Beside(folder, words[0]), {}}, number};
-    auto rest = words.begin() + 1;
-    if (rest != words.end() && rest->starts_with("name=")) {
-      one.item.name = rest->substr(5);
+    for (auto word = words.begin() + 1; word != words.end(); ++word) {
+      if (!word->starts_with("name=")) {
+        one.item.options.push_back(WithPath(folder, *word));
+        continue;
+      }
+      one.item.name = word->substr(5);
       CheckName(one.item.name, file, number);
-      ++rest;
     }
-    for (; rest != words.end(); ++rest) one.item.options.push_back(WithPath(folder, *rest));
     RefuseBatchOptions(one.item.options, file, number);
     lines.push_back(std::move(one));
   }

@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostRows = 2000;   // the page must still open
+constexpr const char* kItsLine = "its line";
 constexpr std::size_t kMostNumbers = 10;  // columns of numbers
 
 const std::string& Cell(const ResultTable& table, const std::string& column, std::size_t row) {
@@ -46,13 +47,16 @@ std::string LinkedName(const fs::path& folder, const std::string& name) {
 
 std::string Head(const std::vector<std::string>& columns) {
   std::string html = "<figure class=\"table\"><table class=\"sortable\">\n<thead><tr>";
-  for (const std::string& column : columns) html += fmt::format("<th>{}</th>", EscapeHtml(column));
+  for (const std::string& column : columns) {
+    const bool words = column == kItsLine || column == "answer";
+    html += fmt::format("<th{}>{}</th>", words ? " class=\"words\"" : "", EscapeHtml(column));
+  }
   return html + "</tr></thead>\n<tbody>\n";
 }
 
 std::string FailedHtml(const fs::path& folder, const ResultTable& table,
                        const std::vector<std::size_t>& rows) {
-  std::string html = Head({"item", "end", "exit code", "its line", "messages"});
+  std::string html = Head({"item", "end", "exit code", kItsLine, "messages"});
   for (const std::size_t row : rows) {
     const std::string name = Cell(table, "name", row), log = "logs/" + name + ".log";
     html += "<tr>" + Td(LinkedName(folder, name)) + Td(EscapeHtml(Cell(table, "status", row))) +
@@ -116,7 +120,6 @@ void WriteBatchReport(const fs::path& folder) {
     report.AddHeading("Items that did not run through");
     report.AddHtml(FailedHtml(folder, table, failed));
   }
-  report.AddFigureFile(folder / "figures.json", "Spread");
   report.AddHeading("Items");
   if (rows.size() > kMostRows) {
     report.AddHtml(fmt::format("<p>The first {} of {} items; table.csv has all.</p>\n", kMostRows,
@@ -124,6 +127,7 @@ void WriteBatchReport(const fs::path& folder) {
     rows.resize(kMostRows);
   }
   report.AddHtml(ItemsHtml(folder, table, rows, command));
+  report.AddFigureFile(folder / "figures.json", "Spread");
   report.Write(folder / "report.html");
 }
 

@@ -21,6 +21,7 @@ TEST_F(BatchList, IsRefusedWithItsLine) {
       {"a name=.hidden\n", {"list.txt:1: found the name"}},
       {"a name=same\nb name=same\n", {"list.txt:2: found the name same of line 1 again"}},
       {"d/a\nd/a --json\n", {"list.txt:2: found the name", "of line 1 again"}},
+      {"a --option name=..\n", {"list.txt:1: found the name"}},
       {"name=x a\n", {"list.txt:1: found \"name=x\", expected a path first"}},
       {"a -o b\n", {"list.txt:1: found -o for the items"}},
       {"a --output=b\n", {"list.txt:1: found --output=b for the items"}},
