@@ -188,7 +188,6 @@ void RunOpenItems(const BatchOptions& options, const BatchPlan& plan, const AppC
     const batch::Outcome* end = folder.records().Find(item.name);
     failed += end && end->status != batch::Status::kOk ? 1 : 0;
   }
-  const batch::StopSignals signals;
   {
     Reporter reporter(plan.items.size(), plan.items.size() - open.size(), failed, context.quiet);
     const auto keep = [&](const std::vector<batch::Ended>& ended) {
@@ -215,6 +214,7 @@ void RunBatch(const BatchOptions& options, const AppContext& context) {
   std::string list;
   BatchPlan plan = CommandOf(options, context, list);
   plan.items = ReadBatchList(list);
+  const batch::StopSignals signals;  // from here on, an interrupted batch says how it goes on
   BatchFolder folder(options.out, plan, options.resume);
   const std::vector<std::size_t> open = folder.TakeNotDone();
   if (options.resume && !context.quiet) {

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostRows = 2000;   // the page must still open
+constexpr std::size_t kMostRows = 2000;  // the page must still open
 constexpr const char* kItsLine = "its line";
 constexpr std::size_t kMostNumbers = 10;  // columns of numbers
 
