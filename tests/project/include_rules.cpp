@@ -25,8 +25,7 @@ const std::map<std::string, Names>& Arrows() {
   static const Names libraries{
       "core",     "kinematics",   "estimation",  "control",    "vision",    "recording",
       "pipeline", "plausibility", "calibration", "simulation", kClosedLoop, "diagnosis",
-      "report",   "workspace",    "targets",     "exchange",   "exports",
-      "batch"};
+      "report",   "workspace",    "targets",     "exchange",   "exports",   "batch"};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
