@@ -25,6 +25,7 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddCollar(app, context);
   AddCompare(app, context);
   AddCompletion(app, context);
+  AddControl(app, context);
   AddConvert(app, context);
   AddDetect(app, context);
   AddDiagnose(app, context);
@@ -32,6 +33,7 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddExport(app, context);
   AddImport(app, context);
   AddMap(app, context);
+  AddReplay(app, context);
   AddReport(app, context);
   AddReproduce(app, context);
   AddShape(app, context);

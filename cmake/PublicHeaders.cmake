@@ -39,6 +39,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   control/direction_controller.h
   control/fixtures.h
   control/motion_error.h
+  control/tip_path.h
   control/virtual_fixture.h
   control/virtual_fixture_mesh.h
   core/camera.h
@@ -117,7 +118,6 @@ set(FLEXTIP_PUBLIC_HEADERS
   report/report.h
   simulation/closed_loop/closed_loop.h
   simulation/closed_loop/scenario.h
-  simulation/closed_loop/tip_path.h
   simulation/plant/chain_curvature.h
   simulation/plant/chain_geometry.h
   simulation/plant/chain_problem.h

@@ -31,6 +31,7 @@ const std::vector<CommandPage>& Pages() {
       {"calibrate", WriteCalibrateReport},
       {"align", WriteCalibrateReport, {"figures.json"}},
       {"compare", WriteCompareReport, {"figures.json"}},
+      {"replay", WriteCompareReport, {"figures.json"}},
       {"batch", WriteBatchReport, {"figures.json", "table.csv"}},
       {"board", WriteCalibrateReport},
       {"collar", WriteCalibrateReport, {"figures.json", "drawing.png"}},
@@ -39,6 +40,11 @@ const std::vector<CommandPage>& Pages() {
       {"map", WriteMapReport, {"figures.json", "table.csv"}},
       {"reproduce", WriteReproduceReport, {"figures.json", "table.csv"}}};
   return pages;
+}
+
+/// A served robot has no path of its own.
+bool WasServed(const fs::path& folder) {
+  return ReadBytes(folder / "summary.json").find("\"served\"") != std::string::npos;
 }
 
 /// A run's deviation.csv lies in the folder itself or, of several controllers, in one of each.
@@ -66,7 +72,7 @@ void WriteReport(const fs::path& folder) {
   for (const char* file : page->needs) {
     if (!fs::exists(folder / file)) refuse(fmt::format("no {}, the page needs it", file));
   }
-  if (first_word == "simulate" && !HasDeviations(folder)) {
+  if (first_word == "simulate" && !HasDeviations(folder) && !WasServed(folder)) {
     refuse("no deviation.csv, the page needs it");
   }
   page->write(folder);

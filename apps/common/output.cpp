@@ -64,7 +64,9 @@ OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
     RefuseToReplace(options.inputs);
   }
   folder_ = name_;
-  folder_ += fmt::format(".partial-{}", getpid());
+  in_place_ = options.in_place;
+  keep_ = in_place_;
+  if (!in_place_) folder_ += fmt::format(".partial-{}", getpid());
   resumed_ = options.resume && TakeOver();
   interruption_.emplace(folder_);
   if (resumed_) {
@@ -147,6 +149,11 @@ void OutputFolder::WriteSummary(nlohmann::ordered_json results) const {
 
 void OutputFolder::Commit() {
   FLEXTIP_CHECK(!committed_, "committed once");
+  if (in_place_) {
+    committed_ = true;
+    interruption_.reset();
+    return;
+  }
   const auto move = [&](const fs::path& from, const fs::path& to) {
     std::error_code error;
     fs::rename(from, to, error);

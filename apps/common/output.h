@@ -18,6 +18,7 @@ struct OutputOptions {
   bool force = false;                              ///< replace a folder that holds something
   std::vector<std::filesystem::path> inputs = {};  ///< inputs of the command: never replaced
   bool resume = false;      ///< continue an interrupted run, where one was left
+  bool in_place = false;    ///< grows at NAME itself, and stays there whatever happens
   CommandPaths paths = {};  ///< for the next step's command; `result` is set by OutputFolder
 };
 
@@ -90,6 +91,7 @@ class OutputFolder {
   bool committed_ = false, resumed_ = false, keep_ = false;
   std::vector<std::string> warnings_;
   std::vector<std::filesystem::path> inputs_;
+  bool in_place_ = false;
   std::optional<Interruption> interruption_;  // until committed
   nlohmann::json findings_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

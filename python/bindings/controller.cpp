@@ -10,11 +10,11 @@
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
 #include "pipeline/instrument_controller.h"
+#include "pipeline/task/mesh_file.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/long_call.h"
 #include "python/bindings/tracker.h"
-#include "simulation/closed_loop/mesh_file.h"
 
 namespace flextip::python {
 namespace {
@@ -82,7 +82,7 @@ void AddFixtures(py::module_& module) {
                             "A virtual fixture: the tip stays out of a closed mesh, or in it.")
       .def(
           py::init([](const std::filesystem::path& file, bool forbidden_outside) {
-            return ForbiddenMesh(simulation::ReadMesh(file), forbidden_outside);
+            return ForbiddenMesh(ReadMesh(file), forbidden_outside);
           }),
           py::arg("file"), py::arg("forbidden_outside") = false,
           "file: Wavefront OBJ, m, in R, faces anticlockwise seen from outside. Raises InputError.")

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "control/tip_path.h"
 #include "pipeline/instrument_controller.h"
-#include "simulation/closed_loop/tip_path.h"
 #include "simulation/plant/plant.h"
 #include "simulation/sensors/sensors.h"
 
@@ -63,8 +63,8 @@ simulation::PlantSetup MakePlant(const SensorCase& setup) {
   return plant;
 }
 
-simulation::PathSetup MakePath(SensorMove move) {
-  simulation::PathSetup path;
+PathSetup MakePath(SensorMove move) {
+  PathSetup path;
   path.speed_m_s = 0.015;
   path.settle_s = 0.3;
   if (move == SensorMove::kPress) path.waypoints_m = {{0.0, 0.0, -0.01}};
@@ -122,7 +122,7 @@ class SensorLoop {
   SensorRun Run() {
     Wander();
     if (run_.lost) return run_;
-    std::optional<simulation::TipPath> path;
+    std::optional<TipPath> path;
     path.emplace(MakePath(setup_.move), shape_.T_RE(), kRate_hz);
     Eigen::Vector3d p_RW = kWrist;
     while (!path->Done() && Move(p_RW)) {

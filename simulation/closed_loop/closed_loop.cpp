@@ -10,26 +10,6 @@
 namespace flextip::simulation {
 namespace {
 
-InstrumentControllerOptions MakeControllerOptions(const LoopSetup& setup) {
-  const Recording& base = setup.base;
-  InstrumentControllerOptions options;
-  options.estimator =
-      EstimatorOptionsFor(base.instrument, base.p_RP, base.gravity_m_s2, setup.port_prior_m);
-  options.control = setup.controller;
-  options.direction = setup.direction;
-  options.direction_free_axis = setup.direction_free_axis;
-  options.fixtures = setup.fixtures;
-  return options;
-}
-
-/// The tracker of recordings; none where the tip's sensor is simulated by its figures.
-std::unique_ptr<InstrumentTracker> MakeTracker(const LoopSetup& setup, const LoopCamera* camera) {
-  if (camera == nullptr) return nullptr;
-  InstrumentTrackerSetup tracker = TrackerSetupOf(setup.base, camera->tracker);
-  tracker.with_model = true;
-  return std::make_unique<InstrumentTracker>(tracker);
-}
-
 /// With a camera, the tip is what vision sees, not what a figure says it would.
 SensorSetup WithoutTipIf(bool camera, SensorSetup sensors) {
   if (camera) sensors.tip.reset();
@@ -44,8 +24,8 @@ class Loop {
         camera_(camera),
         plant_(setup.plant, setup.plant_options),
         sensors_(WithoutTipIf(camera != nullptr, setup.sensors), setup.seed, setup.sensor_effects),
-        controller_(MakeControllerOptions(setup), setup.model ? setup.model() : nullptr,
-                    MakeTracker(setup, camera)),
+        controller_(ControllerOptionsOf(setup), setup.model ? setup.model() : nullptr,
+                    TrackerOf(setup, camera != nullptr ? &camera->tracker : nullptr)),
         p_RW_(setup.p_RW_start),
         p_RW_command_(setup.p_RW_start) {
     result_.recording = setup.base;
@@ -202,6 +182,25 @@ class Loop {
 };
 
 }  // namespace
+
+InstrumentControllerOptions ControllerOptionsOf(const LoopSetup& setup) {
+  const Recording& base = setup.base;
+  InstrumentControllerOptions options;
+  options.estimator =
+      EstimatorOptionsFor(base.instrument, base.p_RP, base.gravity_m_s2, setup.port_prior_m);
+  options.control = setup.controller;
+  options.direction = setup.direction;
+  options.direction_free_axis = setup.direction_free_axis;
+  options.fixtures = setup.fixtures;
+  return options;
+}
+
+std::unique_ptr<InstrumentTracker> TrackerOf(const LoopSetup& setup, const TrackerOptions* camera) {
+  if (camera == nullptr) return nullptr;
+  InstrumentTrackerSetup tracker = TrackerSetupOf(setup.base, *camera);
+  tracker.with_model = true;
+  return std::make_unique<InstrumentTracker>(tracker);
+}
 
 LoopResult RunClosedLoop(const LoopSetup& setup, const LoopCamera* camera,
                          const std::function<void(int, int)>& progress) {

@@ -12,12 +12,13 @@
 #include "control/controller.h"
 #include "control/direction_controller.h"
 #include "control/fixtures.h"
+#include "control/tip_path.h"
 #include "core/image.h"
 #include "estimation/instrument_model.h"
 #include "estimation/shaft_estimator.h"
+#include "pipeline/instrument_controller.h"
 #include "recording/recording.h"
 #include "recording/truth.h"
-#include "simulation/closed_loop/tip_path.h"
 #include "simulation/plant/plant.h"
 #include "simulation/render/laparoscope.h"
 #include "simulation/sensors/sensors.h"
@@ -73,6 +74,11 @@ struct LoopResult {
   std::map<std::string, int> fixture_statuses;  ///< empty without fixtures
   int steps_limited = 0, steps_damped = 0;
 };
+
+/// Returns what the controller of a run is made of, and the tracker of recordings for `camera`;
+/// null without one: the tip's sensor is then simulated by its figures.
+InstrumentControllerOptions ControllerOptionsOf(const LoopSetup& setup);
+std::unique_ptr<InstrumentTracker> TrackerOf(const LoopSetup& setup, const TrackerOptions* camera);
 
 /// Runs one controller along the path. `camera` null: the tip comes from `sensors.tip` instead.
 /// Throws InputError where the plant has no equilibrium at the start and WorkError where it loses

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "pipeline/task/task_reader.h"
 #include "recording/cameras/camera_file.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/yaml_map.h"
-#include "simulation/closed_loop/task_reader.h"
 #include "simulation/effects/catalogue.h"
 
 namespace flextip::simulation {
@@ -32,7 +32,7 @@ class ScenarioReader {
     ReadSensors();
     ReadCamera();
     ReadEffects();
-    ReadTask(top_, file_.parent_path(), scenario_, sections_);
+    ReadTask();
     scenario_.loop.seed = static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
     RejectUnknownKeys();
     return std::move(scenario_);
@@ -244,6 +244,40 @@ class ScenarioReader {
     } catch (const InputError& error) {
       throw map.Error(name, error.what());
     }
+  }
+
+  /// The sections path, controllers, control and fixtures.
+  void ReadTask() {
+    TipTask task;
+    TaskReader reader(file_.parent_path(), task, sections_);
+    reader.ReadPath(Section(top_, "path"));
+    ReadControllers();
+    std::optional<YamlMap> control;
+    if (top_.Has("control")) control = Section(top_, "control");
+    if (control) reader.ReadControl(*control);
+    reader.ReadFixtures(top_);
+    reader.FinishDirection(control ? *control : top_, top_, "controllers", scenario_.controllers);
+    LoopSetup& loop = scenario_.loop;
+    loop.path = std::move(task.path);
+    loop.controller = task.controller;
+    loop.direction = task.direction;
+    loop.direction_free_axis = task.direction_free_axis;
+    loop.fixtures = std::move(task.fixtures);
+  }
+
+  void ReadControllers() {
+    std::vector<ControllerKind>& kinds = scenario_.controllers;
+    if (top_.IsList("controllers")) {
+      for (const std::string& name : top_.Texts("controllers")) AddController(name);
+    } else if (top_.Text("controllers") == "all") {
+      for (int i = 0; i < kControllerKinds; ++i) kinds.push_back(static_cast<ControllerKind>(i));
+    } else {
+      AddController(top_.Text("controllers"));
+    }
+  }
+
+  void AddController(const std::string& name) {
+    scenario_.controllers.push_back(ReadControllerKind(top_, "controllers", name, "all"));
   }
 
   void CheckReach() const {

@@ -12,6 +12,7 @@ namespace {
 
 using Names = std::set<std::string>;
 const std::string kClosedLoop = "simulation/closed_loop";
+const std::string kServe = "live/serve";
 
 Names With(Names names, const Names& more) {
   names.insert(more.begin(), more.end());
@@ -19,13 +20,14 @@ Names With(Names names, const Names& more) {
 }
 
 /// Returns folder -> the folders whose headers it may include. A folder may always include its own.
-/// The closed loop is a folder of its own: it joins the plant with the controllers.
+/// The closed loop and the served robot are folders of their own: they join others.
 const std::map<std::string, Names>& Arrows() {
   static const Names models{"core", "kinematics", "estimation", "control", "vision", "recording"};
-  static const Names libraries{
-      "core",     "kinematics",   "estimation",  "control",    "vision",    "recording",
-      "pipeline", "plausibility", "calibration", "simulation", kClosedLoop, "diagnosis",
-      "report",   "workspace",    "targets",     "exchange",   "exports",   "batch"};
+  static const Names libraries{"core",        "kinematics", "estimation", "control",
+                               "vision",      "recording",  "pipeline",   "plausibility",
+                               "calibration", "simulation", kClosedLoop,  "diagnosis",
+                               "report",      "workspace",  "targets",    "exchange",
+                               "exports",     "batch",      "live",       kServe};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
@@ -38,6 +40,8 @@ const std::map<std::string, Names>& Arrows() {
       {"plausibility", {"core", "vision", "recording"}},
       {"exchange", {"core", "recording"}},
       {"pipeline", models},
+      {"live", With(models, {"pipeline", "diagnosis"})},
+      {kServe, {"core", "recording", "simulation", kClosedLoop, "live"}},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
       {kClosedLoop,
@@ -70,6 +74,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
       // The renderer draws the library's patterns.
       {"apriltag", {"vision", "simulation", "tests"}},
       {"ceres/", {"estimation", "calibration", "tests"}},
+      {"igtl", {"live", "tests"}},
       {"yaml-cpp/", {"recording"}},
       {"tbb/",
        {"simulation", kClosedLoop, "diagnosis", "workspace", "reproduction", "apps", "bench",
@@ -77,7 +82,8 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"geos", {"reproduction"}},
       {"boost/", {"workspace", "reproduction"}},
       {"nlohmann/",
-       {"exchange", "report", "exports", "reproduction", "apps", "bench", "testdata", "tests"}},
+       {"exchange", "live", "report", "exports", "reproduction", "apps", "bench", "testdata",
+        "tests"}},
       {"CLI/", {"reproduction", "apps", "bench", "testdata"}},
       {"pybind11/", {"python"}},
       {"mpi.h", {"batch"}},
@@ -105,7 +111,8 @@ std::vector<Include> IncludesOf(const std::string& text) {
 }
 
 std::string FolderOf(const std::string& path) {
-  if (path.starts_with(kClosedLoop + "/")) return kClosedLoop;
+  for (const std::string& folder : {kClosedLoop, kServe})
+    if (path.starts_with(folder + "/")) return folder;
   return path.substr(0, path.find('/'));
 }
 

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "control/tip_path.h"
 #include "core/error.h"
-#include "simulation/closed_loop/mesh_file.h"
-#include "simulation/closed_loop/tip_path.h"
+#include "pipeline/task/mesh_file.h"
 
 namespace flextip::simulation {
 namespace {

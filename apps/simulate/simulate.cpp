@@ -1,0 +1,228 @@
+// flextip simulate: a closed loop of plant, sensors, vision and controllers, written as recordings.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/common/commands.h"
+#include "apps/common/next_step.h"
+#include "apps/common/output.h"
+#include "apps/common/progress.h"
+#include "apps/simulate/frame_files.h"
+#include "apps/simulate/serve.h"
+#include "core/error.h"
+#include "diagnosis/model/extended_model.h"
+#include "recording/recording_writer.h"
+#include "recording/text/csv.h"
+#include "recording/text/text.h"
+#include "recording/truth.h"
+#include "report/pages.h"
+#include "simulation/closed_loop/scenario_run.h"
+
+namespace flextip {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNoController = "none";
+
+struct SimulateOptions {
+  fs::path scenario, model, out;
+  std::vector<std::string> frames_of;  ///< controllers whose frames are kept; empty: of all
+  bool render = false, force = false;
+  ServeCommand serve;
+};
+
+/// Progress of several runs at once.
+class SharedProgress {
+ public:
+  SharedProgress(std::size_t runs, bool quiet)
+      : progress_("simulate", kUnits * runs, quiet), done_(runs) {}
+  void Update(std::size_t run, int done, int total) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    done_[run] = std::min<std::size_t>(kUnits, kUnits * static_cast<std::size_t>(done) / total);
+    std::size_t sum = 0;
+    for (const std::size_t units : done_) sum += units;
+    progress_.Update(sum);
+  }
+
+ private:
+  static constexpr std::size_t kUnits = 1000;
+  std::mutex mutex_;
+  Progress progress_;
+  std::vector<std::size_t> done_;
+};
+
+void WriteDeviation(const fs::path& file, const simulation::LoopResult& result) {
+  CsvWriter csv({"timestamp [ns]", "p_desired_x [m]", "p_desired_y [m]", "p_desired_z [m]",
+                 "p_RE_x [m]", "p_RE_y [m]", "p_RE_z [m]", "deviation [m]"});
+  for (const simulation::LoopUpdate& update : result.updates) {
+    csv.Add(update.t_ns);
+    for (int i = 0; i < 3; ++i) csv.Add(update.p_RE_desired[i]);
+    for (int i = 0; i < 3; ++i) csv.Add(update.p_RE[i]);
+    csv.Add(update.deviation_m);
+    csv.EndRow();
+  }
+  WriteTextFile(file, csv.text());
+}
+
+nlohmann::json Figures(const simulation::LoopSetup& setup, const simulation::LoopResult& result) {
+  nlohmann::json figures = {
+      {"max_deviation_m", result.max_deviation_m},   {"rms_deviation_m", result.rms_deviation_m},
+      {"final_error_m", result.final_error_m},       {"updates", result.updates.size()},
+      {"control_statuses", result.control_statuses}, {"tip_statuses", result.tip_statuses},
+      {"steps_limited", result.steps_limited},       {"steps_damped", result.steps_damped}};
+  if (!setup.fixtures.list.empty()) figures["fixture_statuses"] = result.fixture_statuses;
+  if (!setup.path.directions.empty())
+    figures["final_direction_error_rad"] = result.final_direction_error_rad;
+  return figures;
+}
+
+/// One controller's run, written into `folder` as a recording; of rendered frames those that
+/// `keep_frames` asks for.
+simulation::LoopResult RunOne(const simulation::Scenario& scenario, ControllerKind kind,
+                              const simulation::Laparoscope* laparoscope, bool keep_frames,
+                              const fs::path& folder,
+                              const std::function<void(int, int)>& progress) {
+  fs::create_directories(folder);
+  std::optional<FrameFiles> frames;
+  if (laparoscope != nullptr) frames.emplace(folder, keep_frames);
+  simulation::LoopResult result = simulation::RunController(
+      scenario, kind, laparoscope,
+      [&frames](TimeNs t_ns, const Image& image) { frames->Add(t_ns, image); }, progress);
+  if (frames) frames->Finish(result.recording);
+  WriteRecording(folder, result.recording);
+  WriteTruth(folder, result.truth);
+  WriteDeviation(folder / "deviation.csv", result);
+  return result;
+}
+
+/// Throws InputError where --frames-of names a controller that does not run.
+void CheckFramesOf(const SimulateOptions& options, const simulation::Scenario& scenario) {
+  std::vector<std::string> run;
+  for (const ControllerKind kind : scenario.controllers) run.emplace_back(Name(kind));
+  for (const std::string& name : options.frames_of) {
+    if (name == kNoController || std::find(run.begin(), run.end(), name) != run.end()) continue;
+    throw InputError(fmt::format("--frames-of: found {}, expected none, or of the scenario's {}",
+                                 name, fmt::join(run, ", ")));
+  }
+}
+
+/// Returns whether the frames of a controller are written.
+bool KeepsFrames(const SimulateOptions& options, ControllerKind kind) {
+  const auto& names = options.frames_of;
+  return names.empty() || std::find(names.begin(), names.end(), Name(kind)) != names.end();
+}
+
+/// Hands over to --serve, or throws InputError where only it could do without an option.
+bool Serves(const SimulateOptions& options, bool quiet) {
+  if (options.serve.port) {
+    ServeCommand serve = options.serve;
+    serve.scenario = options.scenario;
+    serve.out = options.out;
+    serve.render = options.render;
+    serve.force = options.force;
+    RunServe(serve, quiet);
+    return true;
+  }
+  if (options.out.empty()) throw InputError("--output is required, or --serve PORT");
+  return false;
+}
+
+void RunSimulate(const SimulateOptions& options, bool quiet) {
+  if (Serves(options, quiet)) return;
+  simulation::Scenario scenario = simulation::ReadScenario(options.scenario);
+  simulation::RequireRunnable(scenario, options.scenario, options.render);
+  CheckFramesOf(options, scenario);
+  std::vector<fs::path> inputs = {options.scenario};
+  if (!options.model.empty()) {
+    inputs.push_back(options.model);
+    simulation::UseModel(diagnosis::ReadModel(options.model), scenario);
+  }
+  OutputFolder output(options.out, "simulate", {.force = options.force, .inputs = inputs});
+  output.Warn(scenario.warnings);
+  std::optional<simulation::Laparoscope> laparoscope;
+  if (options.render) laparoscope.emplace(simulation::LaparoscopeOf(scenario));
+  const std::size_t runs = scenario.controllers.size();
+  std::vector<simulation::LoopResult> results(runs);
+  {
+    SharedProgress progress(runs, quiet);
+    tbb::parallel_for(std::size_t(0), runs, [&](std::size_t i) {
+      const ControllerKind kind = scenario.controllers[i];
+      const fs::path folder = runs == 1 ? output.folder() : output.folder() / Name(kind);
+      results[i] =
+          RunOne(scenario, kind, laparoscope ? &*laparoscope : nullptr, KeepsFrames(options, kind),
+                 folder, [&](int done, int total) { progress.Update(i, done, total); });
+    });
+  }
+  nlohmann::json controllers;
+  for (std::size_t i = 0; i < runs; ++i)
+    controllers[Name(scenario.controllers[i])] = Figures(scenario.loop, results[i]);
+  nlohmann::json summary = {{"scenario", options.scenario.filename().string()},
+                            {"rendered", options.render},
+                            {"controllers", controllers}};
+  if (!options.model.empty()) summary["model"] = options.model.filename().string();
+  output.WriteSummary(summary);
+  report::WriteSimulateReport(output.folder());
+  output.Commit();
+  if (quiet) return;
+  fmt::print("{:<20} {:>12} {:>12}\n", "deviation (mm)", "max", "rms");
+  for (std::size_t i = 0; i < runs; ++i) {
+    fmt::print("{:<20} {:>12.3f} {:>12.3f}\n", Name(scenario.controllers[i]),
+               1e3 * results[i].max_deviation_m, 1e3 * results[i].rms_deviation_m);
+  }
+  PrintNextOf(output.folder());
+  fmt::print("report: {}\n", (options.out / "report.html").string());
+}
+
+}  // namespace
+
+void AddSimulate(CLI::App& app, AppContext& context) {
+  auto* command =
+      app.add_subcommand("simulate", "Run a closed loop and write it as recordings with truth");
+  auto options = std::make_shared<SimulateOptions>();
+  command->add_option("scenario", options->scenario, "What to run")
+      ->required()
+      ->type_name("SCENARIO.yaml");
+  command->add_option("-o,--output", options->out, "Folder for the recording")
+      ->type_name("RECORDING");
+  auto* model =
+      command
+          ->add_option("--model", options->model,
+                       "Estimator and controllers know of the effects in this model.yaml (the "
+                       "simulated instrument does not: its own are in the scenario)")
+          ->type_name("MODEL.yaml");
+  auto* render =
+      command->add_flag("--render", options->render,
+                        "Render laparoscope frames and run the loop on what vision sees in them");
+  auto* frames_of =
+      command
+          ->add_option(
+              "--frames-of", options->frames_of,
+              "Write the frames of these controllers alone (none: of no controller); without "
+              "it of all, some 1 MB each")
+          ->needs(render)
+          ->delimiter(',')
+          ->type_name("CONTROLLER");
+  auto* serve = AddServeOptions(*command, options->serve);
+  serve->excludes(model)->excludes(frames_of);
+  command->add_flag("--force", options->force, "Replace the folder of an earlier run");
+  command->footer(
+      "With several controllers each gets a folder of its name, a recording of its own.\n"
+      "Examples:\n  flextip simulate testdata/scenarios/press.yaml --render -o press\n"
+      "the same, with the frames of one controller of six\n"
+      "  flextip simulate testdata/scenarios/press.yaml --render --frames-of rod-track -o press\n"
+      "a robot that is not there, for flextip control and other clients\n"
+      "  flextip simulate testdata/scenarios/press.yaml --serve 18944\n");
+  OnRun(*command, context, [options, &context] { RunSimulate(*options, context.quiet); });
+}
+
+}  // namespace flextip

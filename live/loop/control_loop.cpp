@@ -1,0 +1,248 @@
+#include "live/loop/control_loop.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
+
+#include <utility>
+
+#include "live/camera/tip_camera.h"
+#include "live/loop/beat.h"
+#include "live/streams/streams.h"
+
+namespace flextip::live {
+namespace {
+
+constexpr double kPauseWait_s = 1.0;  // for the robot's word that it is paused
+constexpr int kPriority = 10;         // of a real-time thread, the least but nine
+
+/// Real-time priority for the calling thread while it lives, where the system gives it.
+class Priority {
+ public:
+  Priority() {
+    pthread_getschedparam(pthread_self(), &policy_, &before_);
+    sched_param wanted{};
+    wanted.sched_priority = kPriority;
+    given_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted) == 0;
+  }
+  ~Priority() {
+    if (given_) pthread_setschedparam(pthread_self(), policy_, &before_);
+  }
+  Priority(const Priority&) = delete;
+  Priority& operator=(const Priority&) = delete;
+  bool Given() const { return given_; }
+
+ private:
+  int policy_ = 0;
+  sched_param before_{};
+  bool given_ = false;
+};
+
+class Loop {
+ public:
+  Loop(const Session& session, const LoopOptions& options, Recorder* recorder)
+      : session_(session),
+        options_(options),
+        recorder_(recorder),
+        streams_(session,
+                 [this](StreamName stream, const Arrived<AnySample>& sample) {
+                   if (recorder_ != nullptr) recorder_->Take(stream, sample);
+                   if (camera_) camera_->Note(stream, sample);
+                 }),
+        cycle_(session, options.wait || options.only_timing) {
+    set_point_.device = session.robot.command.device;
+    if (session.robot.command_state) state_command_.device = session.robot.command_state->device;
+  }
+
+  LoopReport Run(const OpenPeers& open) {
+    PeerHandlers handlers;
+    handlers.message = [this](const Address& peer, WireMessage&& message) {
+      Dispatch(peer, message);
+    };
+    handlers.event = [this](const Address& peer, WireEvent&& event) { Note(peer, event); };
+    if (session_.camera) OpenCamera();
+    peers_ = open(session_, handlers);
+    begin_ns_ = Now_ns();
+    if (session_.robot.lockstep) {
+      RunInLockstep();
+    } else {
+      RunByClock();
+    }
+    peers_.reset();
+    if (camera_) report_.camera = camera_->Counts();
+    camera_.reset();
+    Finish();
+    return std::move(report_);
+  }
+
+ private:
+  void OpenCamera() {
+    camera_.emplace(
+        session_,
+        [this](TimeNs t_ns, const SeenTip& tip, TimeNs arrived_ns) {
+          streams_.TakeTip(t_ns, tip, arrived_ns);
+        },
+        [this](const std::string& what) {
+          if (recorder_ != nullptr) recorder_->TakeEvent(Now_ns(), what);
+        });
+  }
+
+  // From the peers' threads.
+
+  void Dispatch(const Address& peer, const WireMessage& message) {
+    const TimeNs now_ns = Now_ns();
+    const auto is_of = [&](const Address& address) {
+      return address.SamePeer(peer) && address.device == message.device;
+    };
+    for (int i = 0; i < kStreams; ++i) {
+      const auto& stream = session_.streams[static_cast<std::size_t>(i)];
+      if (stream && is_of(stream->address))
+        streams_.Take(static_cast<StreamName>(i), message, now_ns);
+    }
+    const auto* picture = std::get_if<WireImage>(&message.body);
+    const bool of_camera = session_.camera && session_.camera->address &&
+                           is_of(*session_.camera->address) && message.t_ns > 0;
+    if (of_camera && picture != nullptr) camera_->Take(message.t_ns, picture->image, now_ns);
+    const RobotSetup& robot = session_.robot;
+    const auto* text = std::get_if<WireText>(&message.body);
+    if (robot.state && is_of(*robot.state) && text != nullptr)
+      streams_.TakeState(text->text, message.t_ns, now_ns);
+    if (robot.lockstep && is_of(*robot.lockstep)) beats_.Give(message.t_ns, now_ns);
+  }
+
+  void Note(const Address& peer, const WireEvent& event) {
+    if (recorder_ != nullptr) recorder_->TakeEvent(Now_ns(), event.what);
+    if (event.kind == WireEvent::Kind::kRefused) return;
+    const bool there = event.kind == WireEvent::Kind::kConnected;
+    for (int i = 0; i < kStreams; ++i) {
+      const auto& stream = session_.streams[static_cast<std::size_t>(i)];
+      if (stream && stream->address.SamePeer(peer)) streams_.SetThere(i, there);
+    }
+    if (session_.robot.command.SamePeer(peer)) streams_.SetThere(kStreams, there);
+  }
+
+  // From the cycle's thread.
+
+  void RunByClock() {
+    const Priority priority;
+    report_.had_priority = priority.Given();
+    ClockBeats beats(session_.rate_hz);
+    while (!IsOver(Now_ns())) {
+      Step(beats.Next());
+      report_.missed = beats.Missed();
+    }
+  }
+
+  void RunInLockstep() {
+    while (!IsOver(Now_ns())) {
+      if (const auto beat = beats_.Next()) Step(*beat);
+    }
+  }
+
+  void Step(const Beat& beat) {
+    CycleRecord& record = record_;
+    record.due_ns = beat.due_ns;
+    record.woke_ns = beat.woke_ns;
+    record.inputs.t_ns = beat.t_ns;
+    record.inputs.streams = streams_.Look();
+    record.inputs.stop = stops_;
+    record.outputs = cycle_.Step(record.inputs);
+    record.sent_ns = Send(record) ? Now_ns() : 0;
+    if (recorder_ != nullptr) recorder_->Take(record);
+    Count(record);
+    if (options_.progress) options_.progress(record);
+  }
+
+  bool Send(const CycleRecord& record) {
+    const CycleOutputs& outputs = record.outputs;
+    const auto& state = record.inputs.streams.state;
+    const bool known_still = state && state->value.state != CrtkState::kEnabled;
+    // In lockstep the robot waits for a set-point, and one that it cannot use moves nothing.
+    const bool has_one = outputs.has_command || session_.robot.lockstep.has_value();
+    bool sent = false;
+    if (has_one && (!options_.only_timing || known_still)) {
+      WireTransform transform;
+      transform.T_RD = {outputs.R_RW, outputs.p_RW_command};
+      set_point_.t_ns = outputs.has_command ? outputs.t_ns : 0;
+      set_point_.body = transform;
+      sent = peers_->Send(session_.robot.command, set_point_);
+      report_.unsent += !sent;
+    }
+    if (outputs.state_command) {
+      state_command_.t_ns = outputs.t_ns;
+      state_command_.body = WireText{Name(*outputs.state_command)};
+      (void)peers_->Send(*session_.robot.command_state, state_command_);
+    }
+    return sent;
+  }
+
+  void Count(const CycleRecord& record) {
+    const CycleOutputs& outputs = record.outputs;
+    ++report_.cycles;
+    ++holds_[static_cast<std::size_t>(outputs.hold)];
+    report_.step_limited += outputs.step_limited;
+    report_.speed_limited += outputs.speed_limited;
+    report_.acceleration_limited += outputs.acceleration_limited;
+    report_.workspace_limited += outputs.workspace_limited;
+    report_.fixture_limited += outputs.fixture_limited;
+    report_.done |= outputs.done;
+    last_hold_ = outputs.hold;
+    const auto& state = record.inputs.streams.state;
+    enabled_ = state && state->value.state == CrtkState::kEnabled;
+    report_.wake.Add(record.woke_ns - record.due_ns);
+    if (record.sent_ns == 0) return;
+    report_.work.Add(record.sent_ns - record.woke_ns);
+    if (record.inputs.streams.wrist && !session_.robot.lockstep)
+      report_.sample_to_command.Add(record.sent_ns - record.inputs.streams.wrist->t_ns);
+  }
+
+  /// Whether the run is over. Before it is, the robot is paused and has said so.
+  bool IsOver(TimeNs now_ns) {
+    const auto since_s = [&](TimeNs t_ns) { return 1e-9 * static_cast<double>(now_ns - t_ns); };
+    if (!stops_) {
+      const bool too_long = options_.duration_s && since_s(begin_ns_) >= *options_.duration_s;
+      const bool wanted = options_.stop && options_.stop();
+      stops_ = too_long || wanted || report_.done;
+      if (!stops_) return false;
+      stop_ns_ = now_ns;
+    }
+    if (options_.only_timing || !session_.robot.command_state || !enabled_) return true;
+    return since_s(stop_ns_) >= kPauseWait_s;
+  }
+
+  void Finish() {
+    report_.seconds = 1e-9 * static_cast<double>(Now_ns() - begin_ns_);
+    report_.ends_paused = !enabled_;
+    report_.last_hold = Name(last_hold_);
+    for (std::size_t i = 0; i < holds_.size(); ++i)
+      if (holds_[i] > 0) report_.holds[Name(static_cast<Hold>(i))] = holds_[i];
+    for (int i = 0; i < kStreams; ++i)
+      report_.streams[static_cast<std::size_t>(i)] = streams_.Counts(static_cast<StreamName>(i));
+    report_.bad_states = streams_.BadStates();
+  }
+
+  const Session& session_;
+  const LoopOptions& options_;
+  Recorder* recorder_;
+  Streams streams_;
+  GivenBeats beats_;
+  Cycle cycle_;
+  std::optional<TipCamera> camera_;
+  std::unique_ptr<Peers> peers_;
+  WireMessage set_point_, state_command_;
+  CycleRecord record_;
+  LoopReport report_;
+  std::array<long, 16> holds_{};
+  Hold last_hold_ = Hold::kNone;
+  TimeNs begin_ns_ = 0, stop_ns_ = 0;
+  bool stops_ = false, enabled_ = false;
+};
+
+}  // namespace
+
+LoopReport RunLoop(const Session& session, const LoopOptions& options, Recorder* recorder,
+                   const OpenPeers& open) {
+  return Loop(session, options, recorder).Run(open);
+}
+
+}  // namespace flextip::live

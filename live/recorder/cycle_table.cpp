@@ -1,0 +1,54 @@
+#include "live/recorder/cycle_table.h"
+
+#include "live/recorder/cycle_fields.h"
+
+namespace flextip::live {
+namespace {
+
+std::vector<std::string> ColumnNames() {
+  fields::Names names;
+  CycleRecord record;
+  fields::VisitRecord(names, record, CycleRecord());
+  return names.names;
+}
+
+}  // namespace
+
+struct CycleTableWriter::Table {
+  CsvWriter csv{ColumnNames()};
+  CycleRecord before;
+};
+
+CycleTableWriter::CycleTableWriter() : table_(std::make_unique<Table>()) {}
+CycleTableWriter::~CycleTableWriter() = default;
+
+void CycleTableWriter::Add(const CycleRecord& record) {
+  CycleRecord row = record;
+  fields::Writing writing{table_->csv};
+  fields::VisitRecord(writing, row, table_->before);
+  table_->csv.EndRow();
+  table_->before = record;
+}
+
+std::string CycleTableWriter::TakeText() { return table_->csv.TakeText(); }
+
+struct CycleTableReader::Table {
+  Table(const std::filesystem::path& file, ReadLog& log) : csv(file, ColumnNames(), log) {}
+  CsvReader csv;
+  CycleRecord before;
+};
+
+CycleTableReader::CycleTableReader(const std::filesystem::path& file, ReadLog& log)
+    : table_(std::make_unique<Table>(file, log)) {}
+CycleTableReader::~CycleTableReader() = default;
+
+std::optional<CycleRecord> CycleTableReader::Next() {
+  if (!table_->csv.Next()) return {};
+  CycleRecord record;
+  fields::Reading reading{table_->csv};
+  fields::VisitRecord(reading, record, table_->before);
+  table_->before = record;
+  return record;
+}
+
+}  // namespace flextip::live

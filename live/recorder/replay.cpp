@@ -1,0 +1,65 @@
+#include "live/recorder/replay.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "live/recorder/cycle_table.h"
+#include "recording/text/yaml_map.h"
+
+namespace flextip::live {
+namespace {
+
+bool SameBits(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  for (int i = 0; i < 3; ++i)
+    if (std::bit_cast<std::uint64_t>(a[i]) != std::bit_cast<std::uint64_t>(b[i])) return false;
+  return true;
+}
+
+bool SameBits(const std::optional<Eigen::Vector3d>& a, const std::optional<Eigen::Vector3d>& b) {
+  return a.has_value() == b.has_value() && (!a || SameBits(*a, *b));
+}
+
+bool SameOutputs(const CycleOutputs& a, const CycleOutputs& b) {
+  return a.hold == b.hold && a.held_by == b.held_by && a.has_command == b.has_command &&
+         a.status == b.status && SameBits(a.p_RW_command, b.p_RW_command) &&
+         SameBits(a.p_RE, b.p_RE) && SameBits(a.p_RE_goal, b.p_RE_goal) &&
+         a.step_limited == b.step_limited && a.speed_limited == b.speed_limited &&
+         a.acceleration_limited == b.acceleration_limited &&
+         a.workspace_limited == b.workspace_limited && a.fixture_limited == b.fixture_limited &&
+         a.state_command == b.state_command && a.done == b.done;
+}
+
+}  // namespace
+
+bool HasSession(const std::filesystem::path& recording) {
+  return std::filesystem::exists(recording / "session0" / "cycles.csv");
+}
+
+Session RecordedSession(const std::filesystem::path& recording) {
+  const std::filesystem::path folder = recording / "session0";
+  return ReadSession(folder / "session.yaml", YamlMap::Load(folder / "run.yaml").Text("folder"));
+}
+
+ReplayedSession ReplaySession(const std::filesystem::path& recording, const Session& session) {
+  const std::filesystem::path folder = recording / "session0";
+  ReadLog log;
+  CycleTableReader table(folder / "cycles.csv", log);
+  Cycle cycle(session, YamlMap::Load(folder / "run.yaml").Integer("wait") != 0);
+  ReplayedSession replayed;
+  while (const auto record = table.Next()) {
+    const CycleOutputs& was = record->outputs;
+    const CycleOutputs again = cycle.Step(record->inputs);
+    ReplayedCycle row{record->inputs.t_ns,    was.hold,         again.hold,
+                      was.has_command,        was.p_RW_command, again.p_RW_command,
+                      SameOutputs(was, again)};
+    replayed.equal += row.equal;
+    replayed.largest_difference_m =
+        std::max(replayed.largest_difference_m, (row.p_RW - row.p_RW_again).norm());
+    replayed.cycles.push_back(row);
+  }
+  replayed.warnings = log.warnings;
+  return replayed;
+}
+
+}  // namespace flextip::live

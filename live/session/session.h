@@ -1,0 +1,122 @@
+// A session file: which streams a control run has, which robot, and what it is to do
+// (docs/usage/control.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diagnosis/model/extended_model.h"
+#include "pipeline/task/task_reader.h"
+#include "recording/calibrations/apply.h"
+#include "recording/recording.h"
+
+namespace flextip::live {
+
+/// The streams that a cycle takes its measurements from.
+enum class StreamName : std::uint8_t { kWrist, kTip, kEm0, kEm1, kStrain, kLoad };
+inline constexpr int kStreams = 6;
+/// Returns the name as in session files and recordings: "wrist0", "vision0", "em0", ...
+const char* Name(StreamName stream);
+
+enum class Transport : std::uint8_t { kOpenIgtLink, kUdp };
+
+/// Where messages come from or go to.
+struct Address {
+  Transport transport = Transport::kOpenIgtLink;
+  std::string host = "127.0.0.1";  ///< of a server; with UDP the address that is listened on
+  int port = 0;
+  std::string device;  ///< the message's name; with UDP the key of the JSON object
+
+  bool SamePeer(const Address& other) const {
+    return transport == other.transport && host == other.host && port == other.port;
+  }
+};
+
+/// How old a sample is when it arrives.
+struct Latency {
+  double value_s = 0.0, sd_s = 0.0;
+};
+
+struct StreamSetup {
+  Address address;
+  Latency latency;
+  double stale_s = 0.1;  ///< without a new sample for longer, the stream is stale
+};
+
+/// A camera whose pictures the tracker looks at: a device, file or URL, or a peer.
+struct CameraSetup {
+  std::string video;
+  std::optional<Address> address;
+  Latency latency;
+  double stale_s = 0.2;
+};
+
+struct RobotSetup {
+  Address command;
+  std::optional<Address> state, command_state;
+  std::optional<Address> lockstep;  ///< a cycle for each of its messages, in place of a clock
+};
+
+/// A box in R (m).
+struct Box {
+  Eigen::Vector3d lower_m = Eigen::Vector3d::Zero(), upper_m = Eigen::Vector3d::Zero();
+};
+
+struct LimitSetup {
+  double max_step_m = 0.0;             ///< of a command from the measured wrist
+  double max_speed_m_s = 0.0;          ///< of the commanded wrist
+  double max_acceleration_m_s2 = 0.0;  ///< of the commanded wrist
+  std::optional<Box> workspace;        ///< of the tip's goal
+  double resume_after_s = 0.1;         ///< a hold ends so long after its cause
+};
+
+enum class PathFrame : std::uint8_t {
+  kStart,  ///< waypoints count from where the tip is when motion is first allowed
+  kRobot,  ///< waypoints are places in R
+};
+
+struct PathPlace {
+  PathFrame frame = PathFrame::kStart;
+  std::optional<Eigen::Vector3d> p_start;  ///< kRobot: where the first leg starts (m, in R)
+  double average_s = 0.5;                  ///< the tip at the start is the mean over so long
+};
+
+struct Session {
+  std::filesystem::path file;
+  std::vector<std::filesystem::path> named_files;  ///< as written in it: calibrations, models, ...
+  /// Instrument, port, gravity, camera, collar, and the streams with their noises, without samples;
+  /// calibrated.
+  Recording base;
+  Recording uncalibrated;  ///< the same before the calibrations
+  std::vector<UsedCalibration> calibrations;
+  double port_prior_m = 0.0;
+  std::array<std::optional<StreamSetup>, kStreams> streams;
+  std::optional<CameraSetup> camera;
+  RobotSetup robot;
+  double rate_hz = 0.0;    ///< of the cycle
+  int window_samples = 0;  ///< of the window estimator; 0: each sample by itself
+  std::optional<diagnosis::ExtendedModel> model;
+  LimitSetup limits;
+  std::optional<PathPlace> path;  ///< of task.path; absent: the cycle only watches
+  TipTask task;
+  std::vector<std::string> warnings;
+
+  const std::optional<StreamSetup>& Of(StreamName stream) const {
+    return streams[static_cast<std::size_t>(stream)];
+  }
+  bool HasTip() const { return Of(StreamName::kTip).has_value() || camera.has_value(); }
+  /// Where nothing sees the tip, an EM sensor near it is its measurement.
+  bool EmIsTip() const { return !HasTip() && Of(StreamName::kEm0).has_value(); }
+};
+
+/// Throws InputError with file and line for keys that are missing, unknown or of the wrong kind,
+/// and values that are impossible or implausible (a shaft of 600 m). Files are named relative to
+/// the session's folder; those that are not there, relative to `other_folder`.
+Session ReadSession(const std::filesystem::path& file,
+                    const std::filesystem::path& other_folder = {});
+
+}  // namespace flextip::live

@@ -1,0 +1,137 @@
+#include "live/streams/streams.h"
+
+#include <cmath>
+#include <ctime>
+
+#include "live/streams/calibrate.h"
+
+namespace flextip::live {
+namespace {
+
+template <class T>
+void LookAt(Newest<Arrived<T>>& newest, std::optional<Arrived<T>>& sample) {
+  if (const Arrived<T>* value = newest.Look()) sample = *value;
+}
+
+std::uint32_t AllOf(const Session& session) {
+  std::uint32_t bits = 1U << kStreams;
+  for (int i = 0; i < kStreams; ++i)
+    if (session.streams[static_cast<std::size_t>(i)]) bits |= 1U << i;
+  return bits;
+}
+
+}  // namespace
+
+double StreamCounts::Rate_hz() const {
+  const TimeNs span = last_arrived_ns - first_arrived_ns;
+  return accepted > 1 && span > 0
+             ? static_cast<double>(accepted - 1) * 1e9 / static_cast<double>(span)
+             : 0.0;
+}
+
+Streams::Streams(const Session& session, Observer observer)
+    : session_(session), observer_(std::move(observer)), lost_(AllOf(session)) {}
+
+void Streams::Take(StreamName stream, const WireMessage& message, TimeNs arrived_ns) {
+  const auto i = static_cast<std::size_t>(stream);
+  Counters& counters = counters_[i];
+  ++counters.arrived;
+  if (message.t_ns <= 0) {
+    ++counters.invalid;
+    return;
+  }
+  const auto sample = SampleIn(stream, message);
+  if (!sample) {
+    ++counters.unusable;
+    return;
+  }
+  const double latency_s = session_.streams[i] ? session_.streams[i]->latency.value_s : 0.0;
+  const TimeNs t_ns = message.t_ns - std::llround(1e9 * latency_s);
+  Accept(stream, Calibrate(session_, stream, {t_ns, arrived_ns, *sample}));
+}
+
+void Streams::TakeTip(TimeNs t_ns, const SeenTip& tip, TimeNs arrived_ns) {
+  ++counters_[static_cast<std::size_t>(StreamName::kTip)].arrived;
+  Accept(StreamName::kTip, {t_ns, arrived_ns, tip});
+}
+
+void Streams::Accept(StreamName stream, const Arrived<AnySample>& sample) {
+  Counters& counters = counters_[static_cast<std::size_t>(stream)];
+  if (sample.t_ns <= counters.last_t_ns) {
+    ++counters.old;
+    return;
+  }
+  counters.last_t_ns = sample.t_ns;
+  if (counters.accepted.load() == 0) counters.first_arrived_ns = sample.arrived_ns;
+  counters.last_arrived_ns = sample.arrived_ns;
+  ++counters.accepted;
+  const auto put = [&](auto& newest) {
+    using Value = std::decay_t<decltype(newest.Look()->value)>;
+    newest.Put({sample.t_ns, sample.arrived_ns, std::get<Value>(sample.value)});
+  };
+  switch (stream) {
+    case StreamName::kWrist:
+      put(wrist_);
+      break;
+    case StreamName::kTip:
+      put(tip_);
+      break;
+    case StreamName::kEm0:
+      put(em0_);
+      break;
+    case StreamName::kEm1:
+      put(em1_);
+      break;
+    case StreamName::kStrain:
+      put(strain_);
+      break;
+    case StreamName::kLoad:
+      put(load_);
+      break;
+  }
+  if (observer_) observer_(stream, sample);
+}
+
+void Streams::TakeState(std::string_view text, TimeNs t_ns, TimeNs arrived_ns) {
+  if (const auto state = CrtkOperatingStateOf(text)) {
+    state_.Put({t_ns, arrived_ns, *state});
+  } else {
+    ++bad_states_;
+  }
+}
+
+void Streams::SetThere(int stream, bool there) {
+  const std::uint32_t bit = 1U << stream;
+  if (there) {
+    lost_.fetch_and(~bit);
+  } else {
+    lost_.fetch_or(bit);
+  }
+}
+
+StreamInputs Streams::Look() {
+  StreamInputs inputs;
+  LookAt(wrist_, inputs.wrist);
+  LookAt(tip_, inputs.tip);
+  LookAt(em0_, inputs.em0);
+  LookAt(em1_, inputs.em1);
+  LookAt(strain_, inputs.strain);
+  LookAt(load_, inputs.load);
+  LookAt(state_, inputs.state);
+  inputs.lost = lost_.load();
+  return inputs;
+}
+
+StreamCounts Streams::Counts(StreamName stream) const {
+  const Counters& c = counters_[static_cast<std::size_t>(stream)];
+  return {c.arrived,  c.accepted,         c.invalid,        c.old,
+          c.unusable, c.first_arrived_ns, c.last_arrived_ns};
+}
+
+TimeNs Now_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return TimeNs(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
+}
+
+}  // namespace flextip::live

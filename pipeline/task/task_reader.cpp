@@ -1,0 +1,163 @@
+#include "pipeline/task/task_reader.h"
+
+#include <fmt/ranges.h>
+
+#include "core/error.h"
+#include "pipeline/task/mesh_file.h"
+
+namespace flextip {
+namespace {
+
+bool IsOutsideForbidden(const YamlMap& map) {
+  return ReadChoice(map, "forbidden", {"inside", "outside"}) == 1;
+}
+
+}  // namespace
+
+Eigen::Vector3d ReadUnit(const YamlMap& map, const std::string& key) {
+  const Eigen::Vector3d v = map.Vector3(key);
+  if (v.norm() < 1e-9) throw map.Error(key, "found a zero vector, expected a direction");
+  return v.normalized();
+}
+
+std::size_t ReadChoice(const YamlMap& map, const std::string& key,
+                       const std::vector<std::string>& names) {
+  const std::string found = map.TextOr(key, names.front());
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == found) return i;
+  throw map.Error(key, fmt::format("found '{}', expected {}", found, fmt::join(names, " or ")));
+}
+
+ControllerKind ReadControllerKind(const YamlMap& map, const std::string& key,
+                                  const std::string& name, const std::string& other) {
+  if (const auto kind = ControllerKindNamed(name)) return *kind;
+  std::string known = other;
+  for (int i = 0; i < kControllerKinds; ++i) {
+    known += std::string(known.empty() ? "" : ", ") + Name(static_cast<ControllerKind>(i));
+  }
+  throw map.Error(key, fmt::format("found '{}', expected some of {}", name, known));
+}
+
+YamlMap TaskReader::Section(const YamlMap& map, const std::string& key) {
+  sections_.push_back(map.Map(key));
+  return sections_.back();
+}
+
+void TaskReader::ReadPath(const YamlMap& map) {
+  PathSetup& path = task_.path;
+  path.mode = ReadChoice(map, "mode", {"continuous", "steps"}) == 1 ? PathMode::kSteps
+                                                                    : PathMode::kContinuous;
+  for (const YamlMap& waypoint : map.Maps("waypoints")) {
+    sections_.push_back(waypoint);
+    path.waypoints_m.push_back(waypoint.Vector3("to_m"));
+    if (waypoint.Has("direction")) path.directions.push_back(ReadUnit(waypoint, "direction"));
+  }
+  if (path.waypoints_m.empty()) throw map.Error("waypoints", "found none, expected at least one");
+  if (!path.directions.empty() && path.directions.size() != path.waypoints_m.size()) {
+    throw map.Error("waypoints", fmt::format("found a direction at {} of {} waypoints, expected "
+                                             "one at each or none",
+                                             path.directions.size(), path.waypoints_m.size()));
+  }
+  path.speed_m_s = map.PositiveOr("speed_m_s", path.speed_m_s);
+  path.settle_s = map.NonNegativeOr("settle_s", path.settle_s);
+  path.step_m = map.PositiveOr("step_m", path.step_m);
+  path.reached_m = map.PositiveOr("reached_m", path.reached_m);
+}
+
+void TaskReader::ReadControl(const YamlMap& map) {
+  ControllerOptions& options = task_.controller;
+  options.gain = map.PositiveOr("gain", options.gain);
+  options.max_step_m = map.PositiveOr("max_step_m", options.max_step_m);
+  options.min_singular_value = map.PositiveOr("min_singular_value", options.min_singular_value);
+  options.beam_load_law = ReadChoice(map, "beam_load_law", {"tip_force", "port_force"}) == 1
+                              ? BeamLoadLaw::kPortForce
+                              : BeamLoadLaw::kTipForce;
+  task_.fixtures.margin_m = map.NonNegativeOr("fixture_margin_m", 0.0);
+  task_.fixtures.margin_sd = map.NonNegativeOr("fixture_margin_sd", 0.0);
+  if (map.Has("direction")) ReadDirection(Section(map, "direction"));
+}
+
+void TaskReader::ReadDirection(const YamlMap& map) {
+  DirectionOptions& direction = task_.direction.emplace();
+  direction.priority = ReadChoice(map, "priority", {"weighted", "position_first"}) == 1
+                           ? DirectionPriority::kPositionFirst
+                           : DirectionPriority::kWeighted;
+  direction.position_tolerance_m =
+      map.PositiveOr("position_tolerance_m", direction.position_tolerance_m);
+  direction.direction_tolerance_rad =
+      map.PositiveOr("direction_tolerance_rad", direction.direction_tolerance_rad);
+  if (map.Has("free_axis")) task_.direction_free_axis = ReadUnit(map, "free_axis");
+}
+
+void TaskReader::FinishDirection(const YamlMap& control, const YamlMap& controllers,
+                                 const std::string& controllers_key,
+                                 const std::vector<ControllerKind>& kinds) {
+  if (task_.path.directions.empty()) {
+    if (!task_.direction) return;
+    throw control.Error("direction", "needs a direction at every waypoint of path");
+  }
+  if (!task_.direction) task_.direction.emplace();
+  task_.direction->gain = task_.controller.gain;
+  task_.direction->max_step_m = task_.controller.max_step_m;
+  task_.direction->min_singular_value = task_.controller.min_singular_value;
+  for (const ControllerKind kind : kinds) {
+    if (kind == ControllerKind::kRodCalculate || kind == ControllerKind::kRodTrack) continue;
+    throw controllers.Error(
+        controllers_key,
+        fmt::format("found {}, but waypoints with a direction need rod-calculate or rod-track",
+                    Name(kind)));
+  }
+}
+
+void TaskReader::ReadFixtures(const YamlMap& map) {
+  if (!map.Has("fixtures")) return;
+  for (const YamlMap& fixture : map.Maps("fixtures")) ReadFixture(fixture);
+}
+
+void TaskReader::ReadFixture(const YamlMap& fixture) {
+  const std::vector<std::string> keys = fixture.Keys();
+  const std::string kind = keys.size() == 1 ? keys.front() : "";
+  std::vector<Fixture>& list = task_.fixtures.list;
+  if (kind == "half_space") {
+    const YamlMap map = Section(fixture, kind);
+    list.emplace_back(ForbiddenHalfSpace{map.Vector3("point_m"), ReadUnit(map, "normal")});
+  } else if (kind == "sphere") {
+    const YamlMap map = Section(fixture, kind);
+    list.emplace_back(ForbiddenSphere{map.Vector3("centre_m"), map.Positive("radius_m"),
+                                      IsOutsideForbidden(map)});
+  } else if (kind == "mesh") {
+    list.emplace_back(ReadForbiddenMesh(Section(fixture, kind)));
+  } else if (kind == "guidance") {
+    list.emplace_back(ReadGuidance(Section(fixture, kind)));
+  } else {
+    throw fixture.Error(kind,
+                        fmt::format("found {}, expected one of half_space, sphere, mesh, guidance",
+                                    fmt::join(keys, ", ")));
+  }
+}
+
+ForbiddenMesh TaskReader::ReadForbiddenMesh(const YamlMap& map) const {
+  const std::filesystem::path file = folder_ / map.Text("file");
+  TriangleMesh mesh = ReadMesh(file);
+  try {
+    return ForbiddenMesh(std::move(mesh), IsOutsideForbidden(map));
+  } catch (const InputError& error) {
+    throw map.Error("file", file.string() + ": " + error.what());
+  }
+}
+
+PathGuidance TaskReader::ReadGuidance(const YamlMap& map) {
+  std::vector<Eigen::Vector3d> points;
+  for (const YamlMap& point : map.Maps("points")) {
+    sections_.push_back(point);
+    points.push_back(point.Vector3("at_m"));
+  }
+  try {
+    return PathGuidance(std::move(points), map.NonNegativeOr("compliance", 0.0),
+                        map.NonNegativeOr("free_radius_m", 0.0));
+  } catch (const InputError& error) {
+    throw map.Error("points", error.what());
+  }
+}
+
+}  // namespace flextip

@@ -1,0 +1,28 @@
+// The controller of a recorded simulation run again on the recording.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "recording/frames/frame_source.h"
+#include "recording/truth.h"
+#include "simulation/closed_loop/scenario.h"
+
+namespace flextip::simulation {
+
+struct ReplayedCommand {
+  TimeNs t_ns = 0;
+  Eigen::Vector3d p_RW = Eigen::Vector3d::Zero(), p_RW_again = Eigen::Vector3d::Zero();  ///< m, R
+  bool equal = false;  ///< bit for bit
+};
+
+/// Steps the controller `kind` of `scenario` through a recording of simulate: at each command the
+/// newest sample of every stream, and the next of `frames` where the run was rendered (else null).
+/// `truth` tells where the path started. Throws InputError where the recording has no command or no
+/// truth, or fewer frames than commands.
+std::vector<ReplayedCommand> ReplayController(const Scenario& scenario, ControllerKind kind,
+                                              const Recording& recording,
+                                              const Series<TruthSample>& truth,
+                                              FrameSource* frames);
+
+}  // namespace flextip::simulation

@@ -1,0 +1,71 @@
+#include "live/session/session.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/live/session/sample_session.h"
+
+namespace flextip::live {
+namespace {
+
+using testing::HasSubstr;
+
+/// Returns the message of reading the session with `from` replaced by `to`; empty for none.
+std::string Complaint(const std::string& from, const std::string& to) {
+  std::string text = SessionText();
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  try {
+    ReadSession(WriteSession(text));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Session, SaysWhatTheFileSays) {
+  const Session session = ReadSession(WriteSession(SessionText()));
+  EXPECT_EQ(session.base.instrument.length_m, 0.6);
+  EXPECT_EQ(session.rate_hz, 100.0);
+  EXPECT_EQ(session.Of(StreamName::kStrain)->address.device, "strain0");
+  EXPECT_EQ(session.Of(StreamName::kWrist)->address.host, "127.0.0.1");
+  EXPECT_FALSE(session.Of(StreamName::kEm0));
+  EXPECT_TRUE(session.HasTip());
+  EXPECT_EQ(session.task.path.waypoints_m.size(), 1u);
+  EXPECT_EQ(session.limits.max_speed_m_s, 0.05);
+}
+
+TEST(Session, NumbersInAnotherUnitAreRefusedWithTheirLine) {
+  EXPECT_THAT(Complaint("length_m: 0.6", "length_m: 600"), HasSubstr("session.yaml:3: "));
+  EXPECT_THAT(Complaint("length_m: 0.6", "length_m: 600"), HasSubstr("found 600"));
+  EXPECT_THAT(Complaint("max_speed_m_s: 0.05", "max_speed_m_s: 50"), HasSubstr("found 50"));
+  EXPECT_THAT(Complaint("speed_m_s: 0.01", "speed_m_s: 10"), HasSubstr("path.speed_m_s"));
+  EXPECT_THAT(Complaint("to_m: [0, 0, -0.01]", "to_m: [0, 0, -2]"), HasSubstr("found 2"));
+  EXPECT_THAT(Complaint("0.17]", "170]"), HasSubstr("port.position_m"));
+  EXPECT_THAT(Complaint("position_noise_m: 0.00005", "position_noise_m: 0.05e3"),
+              HasSubstr("found 50"));
+}
+
+TEST(Session, UnknownKeysAreRefused) {
+  EXPECT_THAT(Complaint("rate_hz: 100", "rate_hz: 100, rat: 2"),
+              HasSubstr("unknown key \"controller.rat\""));
+  EXPECT_THAT(Complaint("device: strain0", "device: strain0, dev: 2"), HasSubstr("dev"));
+  EXPECT_THAT(Complaint("version: 1", "version: 1\nsauces: {}"), HasSubstr("sauces"));
+}
+
+TEST(Session, WhatIsMissingIsNamed) {
+  EXPECT_THAT(Complaint("wrist0:", "em1:"), HasSubstr("wrist0"));
+  EXPECT_THAT(Complaint("  command: {openigtlink: {port: 18944, device: PSM1/servo_cp}}\n", ""),
+              HasSubstr("command"));
+  EXPECT_THAT(Complaint("  vision0: {openigtlink: {port: 18944, device: vision0}}\n", ""),
+              HasSubstr("needs a tip"));
+  EXPECT_THAT(Complaint("kind: rod-track", "kind: rod-trak"), HasSubstr("rod-calculate"));
+  EXPECT_THAT(Complaint("flextip-session", "flextip-recording"), HasSubstr("session.yaml:1"));
+  EXPECT_THAT(Complaint("port: 18944, device: strain0", "port: 0, device: strain0"),
+              HasSubstr("found 0"));
+}
+
+}  // namespace
+}  // namespace flextip::live
