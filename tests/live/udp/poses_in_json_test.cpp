@@ -15,7 +15,8 @@ std::vector<WireMessage> Poses(const std::string& text, bool good = true) {
 TEST(PosesInJson, MetresRowsAndSeconds) {
   const auto poses = Poses(
       R"({"measured_cp": {"AutomaticTimestamp": false,
-         "Position": {"Rotation": [0,-1,0,1,0,0,0,0,1], "Translation": [0.1, -0.2, 0.3]}, "Timestamp": 1700000000.25, "Valid": true},
+         "Position": {"Rotation": [0,-1,0,1,0,0,0,0,1],
+                      "Translation": [0.1, -0.2, 0.3]}, "Timestamp": 1700000000.25, "Valid": true},
          "measured_js": {"Position": [1, 2]}})");
   ASSERT_EQ(poses.size(), 1u);
   EXPECT_EQ(poses[0].device, "measured_cp");
