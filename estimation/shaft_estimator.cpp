@@ -16,10 +16,10 @@ constexpr double kObservable = 0.3;  // posterior over prior sd of the force acr
 constexpr double kDoubtful = 0.005;  // sd of the tip over L past which a load has to stand out
 constexpr double kMisfit = 100.0;    // chi2 a measurement past which another start is tried
 
-// Gauss-Newton. Each step leaves far less than its own length, so that after a step of 1e-4 standard
-// deviations nothing that counts is left.
+// Gauss-Newton. Each step leaves far less than its own length, so that after a step of 1e-3
+// standard deviations nothing that counts is left (the rule of the damped fit is the same).
 constexpr int kMaxGaussNewton = 8;
-constexpr double kSettled = 1e-8;   // squared step in standard deviations
+constexpr double kSettled = 1e-6;   // squared step in standard deviations
 constexpr double kLeastGain = 0.1;  // of the gain that the linear model promises
 constexpr double kRounding = 1e-12;
 

@@ -16,10 +16,10 @@ constexpr double kNearlyThere = 1e-9;  // from here one linear correction reache
 constexpr double kMaxLinear = 1e-7;    // largest change of the unknowns such a correction may make
 constexpr int kMaxNewton = 20;
 constexpr double kExpected = 1e-10;   // a residual expected below this one is the last
-constexpr double kNearStart = 1e-2;  // largest residual that an older derivative may correct
-constexpr double kBetter = 0.03;     // by which what is learned from one step helps, at least
-constexpr double kSameWay = 0.7;     // least cosine between two steps that count as going one way
-constexpr double kGoodRate = 0.3;    // and the least that it has to take off each time
+constexpr double kNearStart = 1e-2;   // largest residual that an older derivative may correct
+constexpr double kBetter = 0.03;      // by which what is learned from one step helps, at least
+constexpr double kSameWay = 0.7;      // least cosine between two steps that count as going one way
+constexpr double kGoodRate = 0.3;     // and the least that it has to take off each time
 constexpr double kMaxTurn = 0.4;      // of the tip tangent in one Newton step (rad)
 constexpr double kMinStretch = 1e-6;  // shortest stretch on either side of the port, of the length
 

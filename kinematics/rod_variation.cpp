@@ -88,8 +88,8 @@ RodMap MapOfStep(const std::array<RodNode, N>& nodes, double h) {
   system.Fill(nodes, h);
   system.Solve();
 
-  Four u[2], v[2];                             // what the end adds to the start
-  std::array<std::array<Four, 3>, N> G;   // dP/ds of each start at the nodes
+  Four u[2], v[2];                       // what the end adds to the start
+  std::array<std::array<Four, 3>, N> G;  // dP/ds of each start at the nodes
   std::array<Four, 3> W;
   for (int i = 0; i < N; ++i) {
     const RodNode& node = nodes[i];

@@ -17,9 +17,9 @@ namespace flextip {
 
 /// The map of variations from the start of a stretch to its end.
 struct RodMap {
-  Eigen::Matrix4d flow = Eigen::Matrix4d::Identity();                      ///< of (u, v)
-  Eigen::Matrix<double, 3, 4> way = Eigen::Matrix<double, 3, 4>::Zero();   ///< of P by (u, v)
-  Eigen::Matrix3d way_by_force = Eigen::Matrix3d::Zero();                  ///< of P by dn
+  Eigen::Matrix4d flow = Eigen::Matrix4d::Identity();                     ///< of (u, v)
+  Eigen::Matrix<double, 3, 4> way = Eigen::Matrix<double, 3, 4>::Zero();  ///< of P by (u, v)
+  Eigen::Matrix3d way_by_force = Eigen::Matrix3d::Zero();                 ///< of P by dn
 
   /// Returns J way^T.
   Eigen::Matrix<double, 4, 3> Conjugate() const {
