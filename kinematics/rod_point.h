@@ -1,4 +1,5 @@
-// The rod at one place as its solver carries it, with its derivatives. Private to kinematics.
+// The rod at one place as its solver carries it, with its derivatives. Installed with rod.h; no
+// other folder uses it.
 //
 // Units: length L, force EI/L^2, moment EI/L. A variation of the rod has four numbers at a place:
 // (u, v) with dt = u0 y + u1 z and v the change of u by arc length from the tip. The moment's
