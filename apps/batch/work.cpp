@@ -54,6 +54,16 @@ std::string LastLine(const fs::path& log, bool ok) {
   return ours.empty() && !ok ? any : ours;
 }
 
+/// Whether a message tells of a file that the disk did not take. Elsewhere than below OUT a file
+/// may have another reason, which is the item's own.
+bool SaysTheDiskIsFull(const std::string& message, bool below_out) {
+  constexpr std::array<std::string_view, 3> kSays{"cannot be written", "could not be put there",
+                                                  "cannot make a folder there"};
+  const auto says = [&](std::string_view text) { return message.find(text) != std::string::npos; };
+  return says("No space left on device") ||
+         (below_out && std::any_of(kSays.begin(), kSays.end(), says));
+}
+
 /// The same wherever OUT is and whatever the process's number was.
 std::string WithoutPlace(std::string text, const fs::path& out) {
   for (const std::string& place :
@@ -104,12 +114,16 @@ void FinishItem(const fs::path& out, batch::Outcome& outcome) {
       outcome.status == batch::Status::kOk || outcome.status == batch::Status::kFailed;
   const fs::path log = ItemLog(out, outcome.name);
   Json payload = Json::parse(outcome.payload, nullptr, false);
-  std::string message = WithoutPlace(LastLine(log, outcome.status == batch::Status::kOk), out);
+  std::string line = LastLine(log, outcome.status == batch::Status::kOk);
   if (!payload.is_object()) {
-    if (message.empty()) message = outcome.payload;  // of an exception outside the program
+    if (line.empty()) line = outcome.payload;  // of an exception outside the program
     payload = Json::object();
   }
+  const std::string message = WithoutPlace(line, out);
   payload["message"] = message;
+  if (outcome.status == batch::Status::kFailed && SaysTheDiskIsFull(line, message != line)) {
+    payload["disk_refused"] = true;
+  }
   outcome.payload = payload.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::error_code error;
   if (fs::exists(log, error) && fs::file_size(log, error) == 0) fs::remove(log, error);
@@ -117,13 +131,8 @@ void FinishItem(const fs::path& out, batch::Outcome& outcome) {
 }
 
 bool DiskRefused(const batch::Outcome& outcome) {
-  constexpr std::array<std::string_view, 4> kSays{"cannot be written", "could not be put there",
-                                                  "cannot make a folder there",
-                                                  "No space left on device"};
-  if (outcome.status != batch::Status::kFailed) return false;
-  return std::any_of(kSays.begin(), kSays.end(), [&](std::string_view says) {
-    return outcome.payload.find(says) != std::string::npos;
-  });
+  const Json payload = Json::parse(outcome.payload, nullptr, false);
+  return payload.is_object() && payload.value("disk_refused", false);
 }
 
 }  // namespace flextip

@@ -31,7 +31,7 @@ int DoItem(const BatchWork& work, const batch::Item& item, std::string& payload)
 /// a crashed one left.
 void FinishItem(const std::filesystem::path& out, batch::Outcome& outcome);
 
-/// Whether an item failed because its results could not be written.
+/// Whether an item failed because the disk did not take its results.
 bool DiskRefused(const batch::Outcome& outcome);
 
 }  // namespace flextip

@@ -59,7 +59,7 @@ Replayed OfSession(const ReplayOptions& options) {
 
 nlohmann::json SummaryOf(const fs::path& recording) {
   // Of several controllers, the summary is one folder up.
-  for (const fs::path& folder : {recording, fs::absolute(recording).parent_path()}) {
+  for (const fs::path& folder : {recording, fs::weakly_canonical(recording).parent_path()}) {
     std::ifstream file(folder / "summary.json");
     if (file) return nlohmann::json::parse(file, nullptr, false);
   }
@@ -77,6 +77,11 @@ Replayed OfSimulation(const ReplayOptions& options) {
   const fs::path file = !options.session.empty() ? options.session
                         : inputs.empty()         ? fs::path()
                                                  : fs::path(inputs.front());
+  if (!fs::exists(file)) {
+    throw InputError::At(file.string(), 0,
+                         "is not there any more, expected the scenario of the run: name its place "
+                         "by --session SCENARIO.yaml");
+  }
   simulation::Scenario scenario = simulation::ReadScenario(file);
   if (inputs.size() > 1) simulation::UseModel(diagnosis::ReadModel(inputs[1]), scenario);
   const bool rendered = summary.value("rendered", false);
@@ -99,10 +104,9 @@ Replayed OfSimulation(const ReplayOptions& options) {
     }
     frames = OpenRecordedFrames(options.recording, "cam0", *cam0);
   }
-  const auto truth = ReadTruth(options.recording);
   Replayed replayed{{}, read.warnings, "simulation"};
-  for (const auto& command : simulation::ReplayController(
-           scenario, *kind, read.recording, truth.value_or(Series<TruthSample>()), frames.get())) {
+  for (const auto& command :
+       simulation::ReplayController(scenario, *kind, read.recording, frames.get())) {
     replayed.pairs.push_back(
         {command.t_ns, command.p_RW, command.p_RW_again, "", "", command.equal});
   }

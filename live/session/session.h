@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "diagnosis/model/extended_model.h"
-#include "pipeline/task/task_reader.h"
+#include "task/task_reader.h"
 #include "recording/calibrations/apply.h"
 #include "recording/recording.h"
 

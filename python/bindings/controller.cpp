@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
 #include "pipeline/instrument_controller.h"
-#include "pipeline/task/mesh_file.h"
+#include "task/mesh_file.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/long_call.h"

@@ -1,5 +1,7 @@
 #include "simulation/closed_loop/replay.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cstdint>
 
@@ -54,18 +56,18 @@ Frame NextFrame(FrameSource& frames, TimeNs t_ns) {
 }  // namespace
 
 std::vector<ReplayedCommand> ReplayController(const Scenario& scenario, ControllerKind kind,
-                                              const Recording& recording,
-                                              const Series<TruthSample>& truth,
-                                              FrameSource* frames) {
-  if (!recording.command0 || truth.empty())
-    throw InputError("the recording has no command0 or no truth0, expected one of simulate");
+                                              const Recording& recording, FrameSource* frames) {
+  if (!recording.command0)
+    throw InputError("the recording has no command0, expected one of simulate");
   LoopSetup setup = scenario.loop;
   setup.controller.kind = kind;
   InstrumentController controller(
       ControllerOptionsOf(setup), setup.model ? setup.model() : nullptr,
       TrackerOf(setup, frames != nullptr ? &scenario.tracker : nullptr));
-  const TruthSample& start = truth.front().value;
-  TipPath path(setup.path, Pose::FromQuaternion(start.q_RE, start.p_RE), setup.update_rate_hz);
+  const PlantShape start = Plant(setup.plant, setup.plant_options).Solve(setup.p_RW_start);
+  if (!start.IsUsable())
+    throw InputError(fmt::format("the shaft has no equilibrium at the start: {}", start.message));
+  TipPath path(setup.path, start.T_RE(), setup.update_rate_hz);
   NewestAt newest(recording);
   Eigen::Vector3d p_RE_known = Eigen::Vector3d::Zero();
   std::vector<ReplayedCommand> commands;

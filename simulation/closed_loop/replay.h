@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "recording/frames/frame_source.h"
-#include "recording/truth.h"
 #include "simulation/closed_loop/scenario.h"
 
 namespace flextip::simulation {
@@ -18,11 +17,9 @@ struct ReplayedCommand {
 
 /// Steps the controller `kind` of `scenario` through a recording of simulate: at each command the
 /// newest sample of every stream, and the next of `frames` where the run was rendered (else null).
-/// `truth` tells where the path started. Throws InputError where the recording has no command or no
-/// truth, or fewer frames than commands.
+/// The path starts where the scenario's plant has the tip. Throws InputError where the recording
+/// has no command, or fewer frames than commands.
 std::vector<ReplayedCommand> ReplayController(const Scenario& scenario, ControllerKind kind,
-                                              const Recording& recording,
-                                              const Series<TruthSample>& truth,
-                                              FrameSource* frames);
+                                              const Recording& recording, FrameSource* frames);
 
 }  // namespace flextip::simulation

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "pipeline/task/task_reader.h"
+#include "task/task_reader.h"
 #include "recording/cameras/camera_file.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/yaml_map.h"

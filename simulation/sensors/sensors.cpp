@@ -169,7 +169,9 @@ void Sensors::SampleTip(const Pose& T_RE, TimeNs t_ns, Recording& recording) {
   const Pose seen = SeenTip(T_RE, setup.T_RC, effects_);
   TipObservation tip;
   tip.status = TipStatus::kOk;
-  tip.covariance_m2 = square_root * square_root;
+  // A recording keeps one half of it: the loop must have the same numbers.
+  const Eigen::Matrix3d squared = square_root * square_root;
+  tip.covariance_m2 = squared.selfadjointView<Eigen::Upper>();
   tip.p_RE = seen.p + square_root * tip_.noise.Vector(1.0);
   tip.d_RE = ExpRotation(tip_.noise.Vector(setup.direction_noise_rad, 1)) * seen.R.col(0);
   recording.vision0->tips.push_back({t_ns, tip});

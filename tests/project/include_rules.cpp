@@ -23,11 +23,11 @@ Names With(Names names, const Names& more) {
 /// The closed loop and the served robot are folders of their own: they join others.
 const std::map<std::string, Names>& Arrows() {
   static const Names models{"core", "kinematics", "estimation", "control", "vision", "recording"};
-  static const Names libraries{"core",        "kinematics", "estimation", "control",
-                               "vision",      "recording",  "pipeline",   "plausibility",
-                               "calibration", "simulation", kClosedLoop,  "diagnosis",
-                               "report",      "workspace",  "targets",    "exchange",
-                               "exports",     "batch",      "live",       kServe};
+  static const Names libraries{
+      "core",     "kinematics",   "estimation",  "control",    "vision",    "recording",
+      "pipeline", "plausibility", "calibration", "simulation", kClosedLoop, "diagnosis",
+      "report",   "workspace",    "targets",     "exchange",   "exports",   "batch",
+      "live",     kServe,         "task"};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
@@ -40,12 +40,13 @@ const std::map<std::string, Names>& Arrows() {
       {"plausibility", {"core", "vision", "recording"}},
       {"exchange", {"core", "recording"}},
       {"pipeline", models},
-      {"live", With(models, {"pipeline", "diagnosis"})},
+      {"task", {"core", "control", "recording"}},
+      {"live", With(models, {"pipeline", "task", "diagnosis"})},
       {kServe, {"core", "recording", "simulation", kClosedLoop, "live"}},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
       {kClosedLoop,
-       {"core", "recording", "vision", "estimation", "control", "pipeline", "diagnosis",
+       {"core", "recording", "vision", "estimation", "control", "pipeline", "task", "diagnosis",
         "simulation"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core", "recording"}},

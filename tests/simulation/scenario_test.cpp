@@ -10,7 +10,7 @@
 
 #include "control/tip_path.h"
 #include "core/error.h"
-#include "pipeline/task/mesh_file.h"
+#include "task/mesh_file.h"
 
 namespace flextip::simulation {
 namespace {

@@ -86,6 +86,36 @@ TEST_F(BatchCommand, CalibratesCamerasByFoldersOfPictures) {
   EXPECT_NEAR(std::stod(RowOf(folder_ / "stereo", "pair").at("baseline_m")), 0.083, 0.002);
 }
 
+/// A file elsewhere that cannot be written is the item's own trouble, not a full disk.
+TEST_F(BatchCommand, GoesOnWhereAnItemCannotWriteElsewhere) {
+  const fs::path photos = "/usr/share/doc/opencv-doc/examples/data";
+  if (!fs::exists(photos / "left01.jpg")) GTEST_SKIP() << "Debian's opencv-doc is not installed";
+  const std::string file = (photos / "left01.jpg").string();
+  const std::string list = folder_.Write(
+      "list.txt", file + " name=bad --corners /proc/none/corners\n" + file + " name=other\n");
+  const ProgramResult run = RunProgram(
+      {"batch", "calibrate", "camera", list, "-o", Out(), "--", "--board", "chessboard:9x6:0.025"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, Not(HasSubstr("the disk takes no more")));
+  EXPECT_THAT(RowOf(folder_ / "out", "bad").at("message"), HasSubstr("cannot be written"));
+  EXPECT_EQ(RowOf(folder_ / "out", "other").at("status"), "failed");  // a view is too few
+}
+
+/// `replay` of simulations, in processes of their own as all.
+TEST_F(BatchCommand, ReplaysSimulations) {
+  const std::string scenario = std::string(FLEXTIP_SOURCE_DIR) + "/testdata/scenarios/press.yaml";
+  ASSERT_EQ(RunProgram({"simulate", scenario, "-o", Out("press")}).exit_code, 0);
+  const ProgramResult run =
+      RunProgram({"batch", "replay", Out("press") + "/*-track/", "-o", Out()});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  for (const char* name : {"straight-track", "flex-track", "rod-track"}) {
+    const auto row = RowOf(folder_ / "out", name);
+    EXPECT_EQ(row.at("status"), "ok") << name;
+    EXPECT_EQ(row.at("cycles"), row.at("equal_cycles")) << name;
+    EXPECT_EQ(row.at("cycles"), "60") << name;
+  }
+}
+
 TEST_F(BatchCommand, HasARowForEachItem) {
   ASSERT_EQ(
       RunProgram({"batch", "check", CheckList(), "-o", Out(), "--", "--no-pictures"}).exit_code, 1);

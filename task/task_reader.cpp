@@ -1,9 +1,9 @@
-#include "pipeline/task/task_reader.h"
+#include "task/task_reader.h"
 
 #include <fmt/ranges.h>
 
 #include "core/error.h"
-#include "pipeline/task/mesh_file.h"
+#include "task/mesh_file.h"
 
 namespace flextip {
 namespace {

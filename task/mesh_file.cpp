@@ -1,4 +1,4 @@
-#include "pipeline/task/mesh_file.h"
+#include "task/mesh_file.h"
 
 #include <sstream>
 
