@@ -159,9 +159,9 @@ std::vector<report::Figure> Figures(const std::vector<Pair>& pairs) {
 void RunReplay(const ReplayOptions& options, bool quiet) {
   std::vector<fs::path> inputs{options.recording};
   if (!options.session.empty()) inputs.push_back(options.session);
+  OutputFolder output(options.out, "replay", {.force = options.force, .inputs = inputs});
   const Replayed replayed =
       live::HasSession(options.recording) ? OfSession(options) : OfSimulation(options);
-  OutputFolder output(options.out, "replay", {.force = options.force, .inputs = inputs});
   output.Warn(replayed.warnings);
   long equal = 0;
   double largest_m = 0.0;

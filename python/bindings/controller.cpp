@@ -10,11 +10,11 @@
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
 #include "pipeline/instrument_controller.h"
-#include "task/mesh_file.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/long_call.h"
 #include "python/bindings/tracker.h"
+#include "task/mesh_file.h"
 
 namespace flextip::python {
 namespace {

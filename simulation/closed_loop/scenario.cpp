@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "task/task_reader.h"
 #include "recording/cameras/camera_file.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/yaml_map.h"
 #include "simulation/effects/catalogue.h"
+#include "task/task_reader.h"
 
 namespace flextip::simulation {
 namespace {

@@ -27,7 +27,7 @@ std::vector<Item> NotDone(const std::filesystem::path& records) {
   std::vector<Item> items;
   for (int i = 0; i < kItems; ++i) {
     const std::string name = "item" + std::to_string(i);
-    if (!done.contains(name)) items.push_back({name, {"sleep", "0.004"}});
+    if (!done.contains(name)) items.push_back({name, {"sleep", "0.02"}});
   }
   return items;
 }
