@@ -176,13 +176,15 @@ struct FlowForcing {
       Eigen::Matrix<double, 2, kMaxColumns, Eigen::RowMajor>::Zero();
 };
 
-/// Columns are carried in blocks whose sums stay in registers.
+/// Columns are carried in blocks whose sums stay in registers: the compiler's vectors, a number for
+/// each column of a block. (Arrays of Eigen do the same in release and take ten times as long where
+/// sanitizers check every access.)
 inline constexpr int kBlock = 2;
-using Lane = Eigen::Array<double, kBlock, 1>;
+using Lane [[gnu::vector_size(kBlock * sizeof(double))]] = double;
 
 /// A vector for each column of a block.
 struct Lanes {
-  Lane x = Lane::Zero(), y = Lane::Zero(), z = Lane::Zero();
+  Lane x{}, y{}, z{};
 
   static Lanes Load(const ColumnMatrix& from, int first) {
     Lanes v;
