@@ -1,4 +1,5 @@
-// What every controller does with its model and its step. Private to control.
+// What every controller does with its model and its step; carrying a late tip trusts the tissue the
+// same way. Not for users.
 #pragma once
 
 #include <Eigen/Dense>

@@ -19,6 +19,11 @@ struct Sample {
   bool operator==(const Sample&) const = default;
 };
 
+/// How much later than it was taken a sample is stamped, or arrives.
+struct Latency {
+  double value_s = 0.0, sd_s = 0.0;
+};
+
 /// Samples in strictly increasing time.
 template <class T>
 using Series = std::vector<Sample<T>>;

@@ -15,9 +15,30 @@ bool IsRod(ControllerKind kind) {
   return kind == ControllerKind::kRodCalculate || kind == ControllerKind::kRodTrack;
 }
 
+/// The instrument before anything was estimated: unloaded, through the port as registered.
+ShaftModel UnloadedShaft(const EstimatorOptions& options) {
+  ShaftModel model;
+  model.instrument = options.instrument;
+  model.p_RP = options.p_RP;
+  model.weight_N_m = options.instrument.mass_per_length_kg_m * options.gravity_m_s2;
+  return model;
+}
+
+ControllerOptions UnderDelay(ControllerOptions options, const DelayUncertainty& delay) {
+  if (UsesTipMeasurement(options.kind)) options.gain = GainUnderDelay(options.gain, delay);
+  return options;
+}
+
 EstimatorOptions OptionsFor(EstimatorOptions options, ControllerKind kind) {
   options.use_positions = UsesTipMeasurement(kind);
   return options;
+}
+
+/// Tissue is not learnt from a tip that is carried on by that tissue.
+EstimatorOptions BetweenTips(const InstrumentControllerOptions& options) {
+  EstimatorOptions between = OptionsFor(options.estimator, options.control.kind);
+  between.estimate_tissue = false;
+  return between;
 }
 
 }  // namespace
@@ -29,23 +50,30 @@ InstrumentController::InstrumentController(const InstrumentControllerOptions& op
       model_(std::move(model)),
       tracker_(std::move(tracker)),
       estimator_(OptionsFor(options.estimator, options.control.kind), options.window_samples),
-      place_(options.control) {
+      place_(UnderDelay(options.control, options.delay)),
+      between_(BetweenTips(options)),
+      without_tip_(BetweenTips(options)),
+      late_(options.late),
+      shaft_(UnloadedShaft(options.estimator)) {
   if (!options.direction) return;
   if (!IsRod(options.control.kind)) {
     throw InputError(std::string("the tip's direction needs a rod controller, not ") +
                      Name(options.control.kind));
   }
-  direction_.emplace(*options.direction);
+  DirectionOptions direction = *options.direction;
+  if (UsesTipMeasurement(options.control.kind))
+    direction.gain = GainUnderDelay(direction.gain, options.delay);
+  direction_.emplace(direction);
 }
 
 ControllerCommand InstrumentController::Step(const ControllerInputs& inputs) {
   ControllerCommand command;
   command.t_ns = inputs.t_ns;
-  const SensorReadings seen = See(inputs);
+  const SensorReadings seen = Carry(See(inputs));
   const std::optional<Measurements> gathered = Gather(seen);
   if (!gathered) return command;
   command.measurements = Correct(inputs.t_ns, *gathered);
-  command.estimate = Estimate(command.measurements);
+  command.estimate = Estimate(inputs.t_ns, command.measurements);
   command.p_RE_measured =
       FuseTip(options_.control.kind, command.measurements, command.estimate, options_.em_is_tip);
   command.goal = Keep(inputs, command.estimate);
@@ -54,20 +82,59 @@ ControllerCommand InstrumentController::Step(const ControllerInputs& inputs) {
 }
 
 /// Track. The pictures are seen with the sensors as they are: an effect of the camera is corrected
-/// in the tip, as in a recording.
+/// in the tip, as in a recording. A late picture is seen with the wrist as it was then.
 SensorReadings InstrumentController::See(const ControllerInputs& inputs) {
   SensorReadings seen = inputs.sensors;
+  late_.Note(seen);
   if (tracker_ && !inputs.pictures.empty()) {
-    track_ = tracker_->Follow(inputs.pictures, inputs.pictures_t_ns, inputs.sensors);
+    track_ = tracker_->Follow(inputs.pictures, inputs.pictures_t_ns,
+                              late_.ReadingsAt(inputs.pictures_t_ns, seen));
     seen.tip = {inputs.pictures_t_ns, {track_->tip, track_->direction_noise_rad}};
   }
-  if (!seen.tip) return seen;
-  if (tip_t_ns_ && seen.tip->t_ns <= *tip_t_ns_) {
-    seen.tip.reset();
-  } else {
-    tip_t_ns_ = seen.tip->t_ns;
-  }
+  const bool is_new = seen.tip && (!tip_t_ns_ || seen.tip->t_ns > *tip_t_ns_);
+  if (is_new) tip_t_ns_ = seen.tip->t_ns;
+  if (!is_new) seen.tip.reset();
   return seen;
+}
+
+/// Carries late samples on to the wrist's time, and the last tip between two tips.
+SensorReadings InstrumentController::Carry(SensorReadings seen) {
+  tip_is_carried_ = false;
+  if (!seen.wrist) return seen;
+  if (late_.HasLateTip(seen)) {
+    carries_ = true;
+    EstimateThen(seen);
+  }
+  if (carries_) SeeBySensors(seen);
+  tip_is_carried_ = late_.Carry(shaft_, seen);
+  carries_ |= tip_is_carried_;
+  return seen;
+}
+
+/// Learns load and tissue from what all sensors said when the late tip was seen.
+void InstrumentController::EstimateThen(const SensorReadings& seen) {
+  const auto then = Gather(late_.ReadingsAt(seen.tip->t_ns, seen));
+  const ShaftEstimate estimate = estimator_.Update(model_ ? model_->Correct(*then) : *then,
+                                                   model_ ? model_->Shaft() : ShaftChange());
+  Learn(seen.tip->t_ns, estimate);
+}
+
+void InstrumentController::SeeBySensors(const SensorReadings& seen) {
+  SensorReadings others = seen;
+  others.tip.reset();
+  if (!others.em0 && !others.strain && !others.load) return;
+  const auto z = Gather(others);
+  const ShaftEstimate estimate = without_tip_.Update(model_ ? model_->Correct(*z) : *z,
+                                                     model_ ? model_->Shaft() : ShaftChange());
+  if (estimate.status == EstimateStatus::kOk)
+    late_.NoteTipBySensors(seen.wrist->t_ns, estimate.p_RE, estimate.p_RE_covariance_m2);
+}
+
+void InstrumentController::Learn(TimeNs t_ns, const ShaftEstimate& estimate) {
+  if (estimate.status != EstimateStatus::kOk && estimate.status != EstimateStatus::kUnobservable)
+    return;
+  shaft_ = estimate.model;
+  late_.Learn(t_ns, shaft_);
 }
 
 /// Undoes what the found model says of the sensors.
@@ -77,11 +144,16 @@ Measurements InstrumentController::Correct(TimeNs t_ns, const Measurements& meas
   return model_->Correct(measured);
 }
 
-ShaftEstimate InstrumentController::Estimate(const Measurements& measurements) {
-  ShaftEstimate estimate =
-      estimator_.Update(measurements, model_ ? model_->Shaft() : ShaftChange());
+ShaftEstimate InstrumentController::Estimate(TimeNs t_ns, const Measurements& measurements) {
+  InstrumentEstimator& estimator = tip_is_carried_ ? between_ : estimator_;
+  ShaftEstimate estimate = estimator.Update(measurements, model_ ? model_->Shaft() : ShaftChange());
   if (model_) AddLengthDoubt(*model_, estimate);
   f_tip_N_ = estimate.model.f_tip_N;
+  if (tip_is_carried_) {
+    estimate.model.tissue_stiffness_N_m = shaft_.tissue_stiffness_N_m;
+  } else {
+    Learn(t_ns, estimate);
+  }
   if (IsStraight(options_.control.kind) && options_.straight_at_registered_port)
     estimate.model.p_RP = options_.estimator.p_RP;
   return estimate;

@@ -7,12 +7,14 @@
 #include <span>
 
 #include "control/controller.h"
+#include "control/delay_gain.h"
 #include "control/direction_controller.h"
 #include "control/fixtures.h"
 #include "core/image.h"
 #include "estimation/instrument_model.h"
 #include "pipeline/instrument_estimator.h"
 #include "pipeline/instrument_tracker.h"
+#include "pipeline/late_samples.h"
 #include "pipeline/sensor_readings.h"
 
 namespace flextip {
@@ -30,6 +32,9 @@ struct InstrumentControllerOptions {
   bool em_is_tip = false;  ///< without vision, em0 carried to the tip is the tip's measurement
   /// The straight kinds pivot at the port as registered, not as estimated.
   bool straight_at_registered_port = false;
+  LateSampleOptions late;  ///< how late samples are carried on to the cycle's wrist
+  /// Of the tip's latency. The controllers' gain is GainUnderDelay of it.
+  DelayUncertainty delay;
 };
 
 /// The inputs of a cycle. Fixed size but for the pictures, which stay the caller's.
@@ -71,13 +76,19 @@ class InstrumentController {
 
   /// Returns the tracker's result for the last pictures; empty before the first.
   const std::optional<TipTrack>& Track() const { return track_; }
+  /// Returns the gain that the controllers have, with the delay's part taken off.
+  double Gain() const { return place_.Options().gain; }
   /// Returns the window's last estimate; null without a window.
   const WindowEstimate* Window() const { return estimator_.Window(); }
 
  private:
   SensorReadings See(const ControllerInputs& inputs);
+  SensorReadings Carry(SensorReadings seen);
+  void EstimateThen(const SensorReadings& seen);
+  void SeeBySensors(const SensorReadings& seen);
+  void Learn(TimeNs t_ns, const ShaftEstimate& estimate);
   Measurements Correct(TimeNs t_ns, const Measurements& measured);
-  ShaftEstimate Estimate(const Measurements& measurements);
+  ShaftEstimate Estimate(TimeNs t_ns, const Measurements& measurements);
   FixturesOutput Keep(const ControllerInputs& inputs, const ShaftEstimate& estimate) const;
   void Control(const ControllerInputs& inputs, ControllerCommand& command);
   void ControlPlace(ControllerCommand& command);
@@ -90,7 +101,15 @@ class InstrumentController {
   TipController place_;
   std::optional<DirectionController> direction_;
   std::optional<TipTrack> track_;
-  std::optional<TimeNs> tip_t_ns_;                     // of the last tip that counted
+  std::optional<TimeNs> tip_t_ns_;  // of the last tip that counted
+  // Where tips are late, or come more seldom than cycles. Tissue and port are learnt from what was
+  // measured at one time, by estimator_; between_ fits the tip that is carried on.
+  InstrumentEstimator between_;
+  ShaftEstimator without_tip_;
+  LateSamples late_;
+  bool carries_ = false;                               // once a tip was carried on
+  bool tip_is_carried_ = false;                        // in this cycle
+  ShaftModel shaft_;                                   // as estimator_ said last
   Eigen::Vector3d f_tip_N_ = Eigen::Vector3d::Zero();  // as estimated last
 };
 

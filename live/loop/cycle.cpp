@@ -11,8 +11,7 @@
 namespace flextip::live {
 namespace {
 
-constexpr double kAskAgain_s = 0.2;      // a robot that did not change its state
-constexpr double kSpeedSmoothing = 0.1;  // of the tip's speed, a sample
+constexpr double kAskAgain_s = 0.2;  // a robot that did not change its state
 
 InstrumentControllerOptions OptionsOf(const Session& session) {
   InstrumentControllerOptions options;
@@ -25,6 +24,12 @@ InstrumentControllerOptions OptionsOf(const Session& session) {
   options.direction_free_axis = session.task.direction_free_axis;
   options.fixtures = session.task.fixtures;
   options.em_is_tip = session.EmIsTip();
+  const Latency& tip = LatencyOf(session, StreamName::kTip);
+  const Latency& em0 = LatencyOf(session, StreamName::kEm0);
+  options.late.tip_time_sd_s = tip.sd_s;
+  options.late.em0_time_sd_s = em0.sd_s;
+  options.late.carry_em0 = session.EmIsTip() || em0.value_s != 0.0 || em0.sd_s != 0.0;
+  options.delay = {session.rate_hz, session.EmIsTip() ? em0.sd_s : tip.sd_s};
   return options;
 }
 
@@ -37,14 +42,6 @@ double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 
 bool Acts(ControlStatus status) {
   return status == ControlStatus::kOk || status == ControlStatus::kStraightInstead;
-}
-
-const Latency kNoLatency;
-
-const Latency& LatencyOf(const Session& session, StreamName stream) {
-  if (const auto& setup = session.Of(stream)) return setup->latency;
-  if (stream == StreamName::kTip && session.camera) return session.camera->latency;
-  return kNoLatency;
 }
 
 }  // namespace
@@ -119,6 +116,7 @@ std::optional<CrtkCommand> Cycle::StartUp(const CycleInputs& inputs) {
     return {};
   }
   if (wait_ || !session_.robot.command_state || robot.is_busy) return {};
+  if (DelayIsUnknown(session_)) return {};
   if (robot.state == CrtkState::kFault) return {};
   if (Seconds(inputs.t_ns - asked_ns_) < kAskAgain_s) return {};
   asked_ns_ = inputs.t_ns;
@@ -141,13 +139,11 @@ std::optional<CrtkCommand> Cycle::Ending(const CycleInputs& inputs) {
 SensorReadings Cycle::Readings(const StreamInputs& streams) {
   const Recording& base = session_.base;
   SensorReadings readings;
-  const auto blur_m = [&](StreamName stream) {  // by the latency's uncertainty
-    return LatencyOf(session_, stream).sd_s * v_last_m_s_.norm();
-  };
   if (streams.wrist && base.wrist0) {
     readings.wrist = {streams.wrist->t_ns, Measured(*base.wrist0, streams.wrist->value)};
     double& noise_m = readings.wrist->value.position_noise_m;
-    noise_m = std::hypot(noise_m, blur_m(StreamName::kWrist));
+    const double time_sd_s = LatencyOf(session_, StreamName::kWrist).sd_s;
+    noise_m = std::hypot(noise_m, time_sd_s * v_last_m_s_.norm());
   }
   if (streams.tip && base.vision0) {
     const SeenTip& seen = streams.tip->value;
@@ -155,22 +151,9 @@ SensorReadings Cycle::Readings(const StreamInputs& streams) {
     TipMeasurement& tip = readings.tip->value;
     tip.direction_noise_rad =
         std::hypot(seen.direction_noise_rad, base.vision0->registration_noise_rad);
-    if (tip_before_ && streams.tip->t_ns > tip_before_->t_ns) {
-      const double dt_s = Seconds(streams.tip->t_ns - tip_before_->t_ns);
-      const Eigen::Vector3d v = (seen.tip.p_RE - tip_before_->value) / dt_s;
-      v_tip_m_s_ += kSpeedSmoothing * (v - v_tip_m_s_);
-    }
-    tip_before_ = {streams.tip->t_ns, seen.tip.p_RE};
-    const double sd_s = LatencyOf(session_, StreamName::kTip).sd_s;
-    if (sd_s > 0.0) {
-      tip.tip.covariance_m2 += sd_s * sd_s * (v_tip_m_s_ * v_tip_m_s_.transpose());
-    }
   }
-  if (streams.em0 && base.em0) {
+  if (streams.em0 && base.em0)
     readings.em0 = {streams.em0->t_ns, Measured(*base.em0, streams.em0->value)};
-    double& noise_m = readings.em0->value.position_noise_m;
-    noise_m = std::hypot(noise_m, blur_m(StreamName::kEm0));
-  }
   if (streams.em1 && base.em1)
     readings.em1 = {streams.em1->t_ns, Measured(*base.em1, streams.em1->value)};
   if (streams.strain && base.strain0)

@@ -74,9 +74,6 @@ class Cycle {
   std::optional<Eigen::Vector3d> p_held_;  // the wrist as measured when the hold began
   TimeNs asked_ns_ = 0;                    // when the robot was last told to change its state
   bool asked_home_ = false;
-  // For latencies' part of the noise: the tip's speed, smoothed.
-  std::optional<Sample<Eigen::Vector3d>> tip_before_;
-  Eigen::Vector3d v_tip_m_s_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace flextip::live

@@ -193,6 +193,7 @@ class SessionReader {
       throw sources.Error("cam0", "expected one source: video or openigtlink");
     }
     camera.latency = ReadLatency(map);
+    camera.latency_known = map.Has("latency_s");
     camera.stale_s = NumberInOr(map, "stale_s", kStale, camera.stale_s);
     ReadLog log;
     CameraStream& stream = session_.base.cam0.emplace();

@@ -36,15 +36,10 @@ struct Address {
   }
 };
 
-/// How old a sample is when it arrives.
-struct Latency {
-  double value_s = 0.0, sd_s = 0.0;
-};
-
 struct StreamSetup {
   Address address;
   Latency latency;
-  double stale_s = 0.1;  ///< without a new sample for longer, the stream is stale
+  double stale_s = 0.1;  ///< without a new sample for longer, and its latency, the stream is stale
 };
 
 /// A camera whose pictures the tracker looks at: a device, file or URL, or a peer.
@@ -52,6 +47,7 @@ struct CameraSetup {
   std::string video;
   std::optional<Address> address;
   Latency latency;
+  bool latency_known = false;  ///< it is stated in the session, or measured by a calibration
   double stale_s = 0.2;
 };
 

@@ -16,6 +16,12 @@ SensorSetup WithoutTipIf(bool camera, SensorSetup sensors) {
   return sensors;
 }
 
+/// Takes what is known of a latency off a sample's time.
+template <class T>
+void TakeOff(const Latency& latency, std::optional<Sample<T>>& sample) {
+  if (sample) sample->t_ns -= std::llround(1e9 * latency.value_s);
+}
+
 /// One run of the loop.
 class Loop {
  public:
@@ -65,10 +71,14 @@ class Loop {
     return kSimulationStart_ns + std::llround(update * 1e9 / setup_.update_rate_hz);
   }
 
+  TimeNs CameraTime(int number) const {
+    return kSimulationStart_ns + std::llround(number * 1e9 / setup_.base.cam0->calibration.rate_hz);
+  }
+
   void StartCamera() {
     result_.recording.vision0.emplace();
     result_.recording.vision0->comment = "tip by vision, as the loop saw it";
-    result_.recording.vision0->rate_hz = setup_.update_rate_hz;
+    result_.recording.vision0->rate_hz = setup_.base.cam0->calibration.rate_hz;
   }
 
   void MoveWrist(double dt_s) {
@@ -91,6 +101,7 @@ class Loop {
   /// The camera's frame, rendered and kept.
   Image TakePicture() {
     const int number = static_cast<int>(result_.recording.cam0->filenames.size());
+    next_picture_ns_ = CameraTime(number + 1);
     Image frame = camera_->laparoscope.Render(shape_.Curve(), number);
     result_.recording.cam0->filenames.push_back({t_ns_, fmt::format("{}.png", t_ns_)});
     if (camera_->save) camera_->save(t_ns_, frame);
@@ -108,10 +119,12 @@ class Loop {
     ControllerInputs inputs;
     inputs.t_ns = inputs.pictures_t_ns = t_ns_;
     inputs.sensors = NewestReadings(result_.recording);
+    TakeOff(setup_.tip_latency, inputs.sensors.tip);
+    TakeOff(setup_.em0_latency, inputs.sensors.em0);
     inputs.p_RE_desired = path_->Advance(p_RE_known_);
     inputs.d_RE_desired = path_->Direction();
     std::optional<Image> frame;
-    if (camera_ != nullptr) frame = TakePicture();
+    if (camera_ != nullptr && t_ns_ >= next_picture_ns_) frame = TakePicture();
     const Image* const pictures[] = {frame ? &*frame : nullptr};
     if (frame) inputs.pictures = pictures;
     const ControllerCommand command = controller_.Step(inputs);
@@ -154,6 +167,7 @@ class Loop {
   }
 
   void Finish() {
+    result_.gain = controller_.Gain();
     result_.rms_deviation_m = std::sqrt(squared_deviation_ / scored_);
     result_.final_error_m = (shape_.T_RE().p - result_.updates.back().p_RE_desired).norm();
     if (const auto d_RE = path_->Direction()) {
@@ -175,7 +189,7 @@ class Loop {
   PlantShape shape_;
   Eigen::Vector3d p_RW_, p_RW_command_;
   Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();  // by the controller
-  TimeNs t_ns_ = kSimulationStart_ns;
+  TimeNs t_ns_ = kSimulationStart_ns, next_picture_ns_ = kSimulationStart_ns;
   double squared_direction_noise_ = 0.0, squared_deviation_ = 0.0;
   int directions_ = 0, scored_ = 0;
   LoopResult result_;
@@ -192,6 +206,10 @@ InstrumentControllerOptions ControllerOptionsOf(const LoopSetup& setup) {
   options.direction = setup.direction;
   options.direction_free_axis = setup.direction_free_axis;
   options.fixtures = setup.fixtures;
+  options.late.tip_time_sd_s = setup.tip_latency.sd_s;
+  options.late.em0_time_sd_s = setup.em0_latency.sd_s;
+  options.late.carry_em0 = setup.em0_latency.value_s != 0.0;
+  options.delay = {setup.update_rate_hz, setup.tip_latency.sd_s};
   return options;
 }
 

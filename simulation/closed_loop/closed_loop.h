@@ -37,7 +37,9 @@ struct LoopSetup {
   /// Makes the found model that estimator and controller know of; empty: none. The plant does not
   /// know it. Called for each run, perhaps by several at once.
   std::function<std::unique_ptr<InstrumentModel>()> model;
-  double update_rate_hz = 30.0;  ///< of the controller: the camera's
+  double update_rate_hz = 30.0;  ///< of the controller
+  /// What the controller is told of the tip's and em0's latencies: `sensor_effects` makes them.
+  Latency tip_latency, em0_latency;
   PathSetup path;
   ControllerOptions controller;
   std::optional<DirectionOptions> direction;  ///< where the path's waypoints have directions
@@ -70,6 +72,7 @@ struct LoopResult {
   double max_deviation_m = 0.0, rms_deviation_m = 0.0;
   double final_error_m = 0.0;              ///< of the true tip from the last waypoint
   double final_direction_error_rad = 0.0;  ///< where the path has directions
+  double gain = 0.0;                       ///< of the controller, as far as latencies let it
   std::map<std::string, int> control_statuses, tip_statuses;
   std::map<std::string, int> fixture_statuses;  ///< empty without fixtures
   int steps_limited = 0, steps_damped = 0;

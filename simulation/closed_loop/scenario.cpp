@@ -254,7 +254,10 @@ class ScenarioReader {
     ReadControllers();
     std::optional<YamlMap> control;
     if (top_.Has("control")) control = Section(top_, "control");
-    if (control) reader.ReadControl(*control);
+    if (control) {
+      reader.ReadControl(*control);
+      ReadTimes(*control);
+    }
     reader.ReadFixtures(top_);
     reader.FinishDirection(control ? *control : top_, top_, "controllers", scenario_.controllers);
     LoopSetup& loop = scenario_.loop;
@@ -263,6 +266,19 @@ class ScenarioReader {
     loop.direction = task.direction;
     loop.direction_free_axis = task.direction_free_axis;
     loop.fixtures = std::move(task.fixtures);
+  }
+
+  /// The controller's rate, and the latencies that it is told of.
+  void ReadTimes(const YamlMap& control) {
+    LoopSetup& loop = scenario_.loop;
+    loop.update_rate_hz = control.PositiveOr("rate_hz", loop.update_rate_hz);
+    if (control.Has("tip_latency_s")) loop.tip_latency = ReadLatency(control, "tip_latency_s");
+    if (control.Has("em0_latency_s")) loop.em0_latency = ReadLatency(control, "em0_latency_s");
+  }
+
+  Latency ReadLatency(const YamlMap& map, const std::string& key) {
+    const YamlMap latency = Section(map, key);
+    return {latency.NonNegative("value"), latency.NonNegativeOr("sd", 0.0)};
   }
 
   void ReadControllers() {

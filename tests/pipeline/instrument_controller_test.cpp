@@ -161,14 +161,20 @@ TEST(InstrumentController, HasNoCommandWithoutTheWrist) {
 }
 
 // Control may run faster than the camera: a tip that was used is not used again.
-TEST(InstrumentController, ATipCountsOnce) {
+TEST(InstrumentController, ATipIsCarriedOnUntilItIsTooOld) {
   auto session = Session(2);
-  InstrumentController controller(Options(ControllerKind::kStraightTrack));
+  InstrumentControllerOptions options = Options(ControllerKind::kStraightTrack);
+  InstrumentController controller(options);
   EXPECT_NE(controller.Step(session[0]).status, ControlStatus::kNoTip);
   ControllerInputs between = session[0];
-  between.t_ns += kPeriod_ns / 4;
-  EXPECT_EQ(controller.Step(between).status, ControlStatus::kNoTip);
-  EXPECT_NE(controller.Step(session[1]).status, ControlStatus::kNoTip);
+  const auto later = [&](double seconds) {
+    const auto span_ns = std::llround(1e9 * seconds);
+    between.t_ns = session[0].t_ns + span_ns;
+    between.sensors.wrist->t_ns = session[0].sensors.wrist->t_ns + span_ns;
+    return controller.Step(between).status;
+  };
+  EXPECT_EQ(later(0.5 * options.late.keep_s), ControlStatus::kOk);
+  EXPECT_EQ(later(1.1 * options.late.keep_s), ControlStatus::kNoTip);
 }
 
 TEST(InstrumentController, AnEmSensorMayBeTheTip) {
