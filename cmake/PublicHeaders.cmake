@@ -36,6 +36,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   calibration/verdict/tip.h
   calibration/verdict/verdict.h
   control/controller.h
+  control/delay_gain.h
   control/direction_controller.h
   control/fixtures.h
   control/motion_error.h
@@ -99,6 +100,8 @@ set(FLEXTIP_PUBLIC_HEADERS
   pipeline/instrument_tracker.h
   pipeline/judge_estimates.h
   pipeline/judge_track.h pipeline/track_totals.h
+  pipeline/late_samples.h
+  pipeline/readings_history.h
   pipeline/sensor_readings.h
   pipeline/tip_predictor.h
   recording/calibrations/em_field.h
