@@ -72,6 +72,14 @@ BlurredPattern::BlurredPattern(const TagCells& tag)
       known_[at] = tag.At(k, l) != TagCells::kUnknown;
     }
   }
+  codes_.resize(white_.size());
+  for (int k = 1 - kPad; k < cells_ + kPad; ++k) {
+    for (int l = 1; l < stride_; ++l) {
+      const float *before = Column(k - 1) + l - 1, *after = Column(k) + l - 1;
+      codes_[static_cast<std::size_t>(k + kPad) * stride_ + l] =
+          static_cast<std::uint8_t>(before[0] + 2 * before[1] + 4 * after[0] + 8 * after[1]);
+    }
+  }
 }
 
 PatternValue BlurredPattern::AtMany(float at_u, float at_v, const PatternBlur& blur,

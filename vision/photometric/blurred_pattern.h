@@ -1,6 +1,7 @@
 // A tag's cells seen through a Gaussian blur: how white a point is, with derivatives.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "vision/photometric/normal_table.h"
@@ -53,6 +54,13 @@ class BlurredPattern {
                                                             : AtMany(u, v, blur, nearness);
   }
 
+  /// Returns the colours of the four cells that meet at line `k` of u and line `l` of v, each 1
+  /// where white: bit 0 before both lines, bit 1 before that of u, bit 2 before that of v, bit 3
+  /// after both. Lines from 5 before the pattern to 5 beyond it.
+  int CornerCode(int k, int l) const {
+    return codes_[static_cast<std::size_t>(k + kPad) * stride_ + l + kPad];
+  }
+
   /// Returns whether an edge between black and white lies within `reach_u`, `reach_v` cells (less
   /// than one) of the point, along either axis or both.
   bool NearEdge(float u, float v, float reach_u, float reach_v) const {
@@ -95,8 +103,9 @@ class BlurredPattern {
   int cells_, stride_;
   float last_;                // three cells beyond the pattern
   std::vector<float> white_;  // columns, padded
-  std::vector<bool> known_;   // columns, padded
-  bool all_known_;            // within the pattern
+  std::vector<std::uint8_t> codes_;
+  std::vector<bool> known_;  // columns, padded
+  bool all_known_;           // within the pattern
   const NormalTable* normal_ = &NormalTable::Get();
 };
 

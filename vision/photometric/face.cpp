@@ -13,7 +13,6 @@ constexpr double kMinCosine = 0.105;         // of the angle between normal and 
 constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
 constexpr float kReachOfUnknown = 3.2f;      // sigmas kept from what is not known
 constexpr float kEdgeReach = 2.9f;  // sigmas from an edge within which pixels say something
-constexpr float kSaturated_grey = 252.0f;
 constexpr double kMaxBlur_cells = 1.6;
 constexpr int kFewestPixels = 30;
 constexpr int kFlatEvery = 7;             // of flat pixels so many are left out for one taken
@@ -25,7 +24,6 @@ constexpr double kHiddenRim_cells = 0.5;  // of a tag's rim that a neighbour may
 struct PhotometricFace::Geometry {
   Eigen::Matrix3f to_tag;
   Eigen::Matrix2f m_of_px;  // derivative of the ray at the tag's centre
-  Eigen::Vector3f normal;   // into the tag
   PatternBlur blur;         // on the tag, in cells, at its centre
   Eigen::Vector3f bend;     // of the light: by fu^2, fu fv, fv^2
   float half = 0, depth = 0;
@@ -36,11 +34,6 @@ struct PhotometricFace::Geometry {
   struct Place {
     float u, v, z, nearness;  // z: depth; nearness: the middle's over it
   };
-  // The light of a matt surface, lit from the lens, bends over the tag. It falls with the square of
-  // the distance and aslant, |p|^-3 in all. The linear part is left to the slopes.
-  float Falloff(float fu, float fv) const {
-    return 1 + bend[0] * fu * fu + bend[1] * fu * fv + bend[2] * fv * fv;
-  }
   Place At(float mx, float my) const {
     const float w = to_tag(2, 0) * mx + to_tag(2, 1) * my + to_tag(2, 2);
     const float z = 1 / w;
@@ -89,9 +82,10 @@ PhotometricFace::Geometry PhotometricFace::Place(const CameraModel& camera, cons
   const Eigen::Matrix3d to_tag = from_tag.inverse();
   if (!to_tag.allFinite()) return g;
   g.to_tag = to_tag.cast<float>();
-  g.normal = T_CG.R.col(2).cast<float>();
   g.half = static_cast<float>(half);
   g.depth = static_cast<float>(T_CG.p.z());
+  // The light of a matt surface, lit from the lens, bends over the tag. It falls with the square of
+  // the distance and aslant, |p|^-3 in all. The linear part is left to the slopes.
   const double distance2 = T_CG.p.squaredNorm(), side2 = std::pow(half * cell_m_, 2) / distance2;
   const Eigen::Vector2d along = T_CG.R.leftCols<2>().transpose() * T_CG.p / std::sqrt(distance2);
   g.bend = (side2 * Eigen::Vector3d(7.5 * along[0] * along[0] - 1.5, 15 * along[0] * along[1],
@@ -123,7 +117,7 @@ bool PhotometricFace::IsSeen(const CameraModel& camera, const Pose& T_CE) const 
 void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& lens,
                                    const Image& image, const Pose& T_CE, const Optics& optics,
                                    int stride) {
-  pixels_.clear();
+  pixels_.Clear();
   const Geometry g = Place(camera, T_CE, optics);
   if (!g.valid) return;
   const Pose T_CG = T_CE * tag_.T_EG;
@@ -155,9 +149,11 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
           at.u > limits[0] && at.u < limits[1] && at.v > limits[2] && at.v < limits[3];
       if (!within || !pattern_.Known(at.u, at.v, reach_u, reach_v)) continue;
       if (!pattern_.NearEdge(at.u, at.v, edge_u, edge_v) && flat++ % kFlatEvery != 0) continue;
-      pixels_.push_back({ray.x, ray.y, GreyAt(image, x, y)});
+      pixels_.Add(ray.x, ray.y, GreyAt(image, x, y),
+                  FaceSums::PatchOf(at.u / g.half - 1, at.v / g.half - 1));
     }
   }
+  pixels_.Sort();
 }
 
 // A straight line through light against whiteness.
@@ -166,9 +162,11 @@ double PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE,
   const Geometry g = Place(camera, T_CE, optics);
   if (!g.valid || Pixels() < kFewestPixels) return 0;
   double n = 0, c1 = 0, c2 = 0, l1 = 0, l2 = 0, cl = 0;
-  for (const Pixel& pixel : pixels_) {
-    const auto at = g.At(pixel.mx, pixel.my);
-    const double c = pattern_.At(at.u, at.v, g.blur, at.nearness).c, light = tone.Light(pixel.grey);
+  for (std::size_t i = 0; i < pixels_.grey.size(); ++i) {
+    if (pixels_.part[i] == 0) continue;
+    const auto at = g.At(pixels_.mx[i], pixels_.my[i]);
+    const double c = pattern_.At(at.u, at.v, g.blur, at.nearness).c;
+    const double light = tone.Light(pixels_.grey[i]);
     n += 1, c1 += c, c2 += c * c, l1 += light, l2 += light * light, cl += c * light;
   }
   const double spread = c2 - c1 * c1 / n;
@@ -180,95 +178,18 @@ double PhotometricFace::GuessLevels(const CameraModel& camera, const Pose& T_CE,
   return contrast > 0 ? contrast * std::sqrt(spread / spread_light) : 0;
 }
 
-// Black and white at a place on the tag, in light.
-struct PhotometricFace::Light {
-  Eigen::Matrix<float, 6, 1> level;
-  float half;
-  float black, white, fu, fv;
-  Light(const FaceLevels& levels, int cells)
-      : level(levels.cast<float>()), half(0.5f * static_cast<float>(cells)) {}
-  float ContrastByU() const { return (level[4] - level[1]) / half; }
-  float ContrastByV() const { return (level[5] - level[2]) / half; }
-  void At(float u, float v) {
-    fu = u / half - 1;
-    fv = v / half - 1;
-    black = level[0] + level[1] * fu + level[2] * fv;
-    white = level[3] + level[4] * fu + level[5] * fv;
-  }
-};
-
-// Differentiates by pose, print offset and blur; `by_c` is the derivative of the grey value by the
-// pattern's whiteness.
-void PhotometricFace::DifferentiatePlace(const Pixel& pixel, const Geometry& g,
-                                         const PatternValue& p, const Eigen::Vector3f& pivot,
-                                         float by_c, Row& row) {
-  const auto at = g.At(pixel.mx, pixel.my);
-  // By the ray, and by the point of the tag that is seen there.
-  const Eigen::Matrix3f& T = g.to_tag;
-  Eigen::Matrix2f D;  // by the ray, over the depth
-  D << T(0, 0) - at.u * T(2, 0), T(0, 1) - at.u * T(2, 1), T(1, 0) - at.v * T(2, 0),
-      T(1, 1) - at.v * T(2, 1);
-  const float gx = by_c * (p.c_u * D(0, 0) + p.c_v * D(1, 0));
-  const float gy = by_c * (p.c_u * D(0, 1) + p.c_v * D(1, 1));
-  const Eigen::Vector3f h(-gx, -gy, gx * pixel.mx + gy * pixel.my);
-  const Eigen::Vector3f q = Eigen::Vector3f(pixel.mx * at.z, pixel.my * at.z, at.z) - pivot;
-  row.segment<3>(0) = q.cross(h);
-  row.segment<3>(3) = h;
-  row[FaceColumns::kOffset] = -h.dot(g.normal);
-  // Spreading is diffusion: the derivative by a variance is half the second derivative.
-  const Eigen::Matrix2f B = at.z * D * g.m_of_px;
-  const float a = B(0, 0), b = B(0, 1), c = B(1, 0), d = B(1, 1);
-  row[FaceColumns::kBlur] = 0.5f * by_c * (a * a * p.c_uu + 2 * a * c * p.c_uv + c * c * p.c_vv);
-  row[FaceColumns::kBlur + 1] = by_c * (a * b * p.c_uu + (a * d + c * b) * p.c_uv + c * d * p.c_vv);
-  row[FaceColumns::kBlur + 2] =
-      0.5f * by_c * (b * b * p.c_uu + 2 * b * d * p.c_uv + d * d * p.c_vv);
-}
-
 void PhotometricFace::Accumulate(const CameraModel& camera, const Pose& T_CE,
                                  const Eigen::Vector3d& pivot_C, const Optics& optics,
                                  const ToneCurve& tone, const RobustRule& rule,
                                  FaceSums& sums) const {
   const Geometry g = Place(camera, T_CE, optics);
   if (!g.valid) return;
-  const Eigen::Vector3f pivot = pivot_C.cast<float>();
-  Light light(levels, pattern_.Cells());
-  const float half_contrast = 0.5f * (tone.At(light.level[3]).grey - tone.At(light.level[0]).grey);
-  const float uu = g.blur.sigma_u * g.blur.sigma_u, vv = g.blur.sigma_v * g.blur.sigma_v,
-              uv = g.blur.rho * g.blur.sigma_u * g.blur.sigma_v;
-  Row row;
-  for (const Pixel& pixel : pixels_) {
-    const auto at = g.At(pixel.mx, pixel.my);
-    const PatternValue p = pattern_.At(at.u, at.v, g.blur, at.nearness);
-    light.At(at.u, at.v);
-    const float falloff = g.Falloff(light.fu, light.fv);
-    const float contrast = falloff * (light.white - light.black);
-    // The light is blurred with the pattern: where it rises, the brighter side counts for more.
-    const float from_u = uu * p.c_u + uv * p.c_v, from_v = uv * p.c_u + vv * p.c_v;
-    const float brighter = light.ContrastByU() * from_u + light.ContrastByV() * from_v;
-    const ToneCurve::Value film = tone.At(falloff * (light.black + brighter) + p.c * contrast);
-    const float residual = pixel.grey - film.grey;
-    if (film.by_light == 0 && pixel.grey > kSaturated_grey) continue;  // says nothing
-    sums.CountError(residual, half_contrast);
-    const float weight = rule.Weight(residual);
-    if (weight == 0) continue;
-    const float curvature = rule.Curvature(weight), root = std::sqrt(curvature);
-    const float by_light = root * film.by_light;
-    if (p.flat) {
-      row.head<FaceColumns::kLevels>().setZero();
-    } else {
-      DifferentiatePlace(pixel, g, p, pivot, by_light * contrast, row);
-    }
-    row[FaceColumns::kGamma] = root * film.by_gamma;
-    const float by_level = by_light * falloff;
-    const float by_black = by_level * (1 - p.c), by_white = by_level * p.c;
-    const float by_u = by_level * from_u / g.half, by_v = by_level * from_v / g.half;
-    row.segment<6>(FaceColumns::kLevels) << by_black, by_black * light.fu - by_u,
-        by_black * light.fv - by_v, by_white, by_white * light.fu + by_u,
-        by_white * light.fv + by_v;
-    row[FaceColumns::kResidual] = weight / root * residual;
-    sums.Add(row, {weight, curvature, pixel.grey, film.grey, light.fu, light.fv});
-  }
-  sums.Finish(SpreadOfTag(g.T_CG, pivot_C, g.m_of_px.cast<double>(), g.spread_px));
+  const FaceModel model{g.to_tag, g.m_of_px, pivot_C.cast<float>(), g.blur, g.depth,
+                        g.half,   g.bend,    levels.cast<float>()};
+  FaceSums::Rows rows;
+  AddFaceRows(pixels_, model, pattern_, tone, rule, rows, sums);
+  sums.Finish(rows, g.T_CG.R.col(2),
+              SpreadOfTag(g.T_CG, pivot_C, g.m_of_px.cast<double>(), g.spread_px));
 }
 
 }  // namespace flextip

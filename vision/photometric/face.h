@@ -11,6 +11,7 @@
 #include "core/tag_collar.h"
 #include "vision/camera_model.h"
 #include "vision/photometric/blurred_pattern.h"
+#include "vision/photometric/face_rows.h"
 #include "vision/photometric/lens_map.h"
 #include "vision/photometric/sums.h"
 #include "vision/photometric/tone_curve.h"
@@ -53,7 +54,7 @@ class PhotometricFace {
   /// directions.
   void SelectPixels(const CameraModel& camera, const LensMap& lens, const Image& image,
                     const Pose& T_CE, const Optics& optics, int stride);
-  int Pixels() const { return static_cast<int>(pixels_.size()); }
+  int Pixels() const { return pixels_.count; }
 
   /// Sets the levels that the pixels show at T_CE, without slopes. Returns their correlation with
   /// the pattern; 0 where the tag has no contrast there.
@@ -69,14 +70,7 @@ class PhotometricFace {
   FaceLevels levels = FaceLevels::Zero();  ///< in light
 
  private:
-  struct Pixel {
-    float mx, my, grey;
-  };
   struct Geometry;
-  struct Light;
-  using Row = FaceSums::Row;
-  static void DifferentiatePlace(const Pixel& pixel, const Geometry& g, const PatternValue& p,
-                                 const Eigen::Vector3f& pivot, float by_c, Row& row);
   Geometry Place(const CameraModel& camera, const Pose& T_CE, const Optics& optics) const;
 
   CollarTag tag_;
@@ -85,7 +79,7 @@ class PhotometricFace {
   Eigen::Vector4f Limits(const Pose& T_CE) const;
 
   std::array<Side, 4> sides_;
-  std::vector<Pixel> pixels_;
+  FacePixels pixels_;
 };
 
 }  // namespace flextip

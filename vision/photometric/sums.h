@@ -25,6 +25,11 @@ class RobustRule {
         inverse_cut2_(1 / (kCut * kCut * scale_ * scale_)),
         kind_(kind) {}
 
+  Robustness Kind() const { return kind_; }
+  float Scale() const { return scale_; }
+  float InverseCut2() const { return inverse_cut2_; }
+  static constexpr float kLeastCurvature = 0.1f;
+
   float Weight(float residual) const {
     if (kind_ != Robustness::kHuber) {
       const float t = 1 - residual * residual * inverse_cut2_;
@@ -43,7 +48,7 @@ class RobustRule {
   }
 
  private:
-  static constexpr float kCut = 4.7f, kLeastCurvature = 0.1f;
+  static constexpr float kCut = 4.7f;
   float scale_, inverse_cut2_;
   Robustness kind_;
 };
@@ -55,46 +60,42 @@ struct FaceColumns {
   static constexpr int kSize = 18;
 };
 
-/// Sums over a face's pixels, in grey values.
+/// Sums over a face's pixels, in grey values, as face_rows.h makes them.
 class FaceSums {
  public:
-  using Row = Eigen::Matrix<float, FaceColumns::kSize, 1>;
-
-  struct Pixel {
-    float weight, curvature;  ///< of RobustRule
-    float measured, predicted;
-    float fu, fv;  ///< the place on the tag, -1 to 1
-  };
-
-  /// Adds a pixel. `row` is multiplied by the root of `curvature` already, its residual by the
-  /// weight over that root.
-  void Add(const Row& row, const Pixel& pixel) {
-    rows_.col(filled_++) = row;
-    if (filled_ == kBlock) Flush();
-    scores_.col(PatchOf(pixel.fu, pixel.fv)) +=
-        row[FaceColumns::kResidual] * row.head<FaceColumns::kResidual>();
-    const float weight = pixel.weight, measured = pixel.measured, predicted = pixel.predicted;
-    squares_ += pixel.weight * pixel.weight * (measured - predicted) * (measured - predicted);
-    curvature_ += pixel.curvature;
-    moments_[0] += weight;
-    moments_[1] += weight * predicted;
-    moments_[2] += weight * measured;
-    moments_[3] += weight * predicted * predicted;
-    moments_[4] += weight * measured * measured;
-    moments_[5] += weight * predicted * measured;
+  static constexpr int kPatchesAcross = 4, kPatches = kPatchesAcross * kPatchesAcross;
+  /// Returns the patch at a place on the tag (-1 to 1 both ways).
+  static int PatchOf(float fu, float fv) {
+    const auto along = [](float f) {
+      return std::clamp(static_cast<int>((f + 1) * (0.5f * kPatchesAcross)), 0, kPatchesAcross - 1);
+    };
+    return kPatchesAcross * along(fu) + along(fv);
   }
-  /// Counts a pixel's residual. `half_contrast` is that of the face (grey values).
-  void CountError(float residual, float half_contrast) {
-    brighter_ += residual > half_contrast;
-    darker_ += residual < -half_contrast;
+
+  /// Counts a pixel's residual (grey values).
+  void CountError(float residual) {
     // A fit that goes astray may predict anything: the last bin takes it.
     const float last = kBins - 1;
     ++errors_[static_cast<int>(std::min(last, std::abs(residual) * kBinsPerGrey))];
     ++pixels_;
   }
-  /// Ends the sums after the last pixel. `spread` is the further part of the rows of pose and print
-  /// offset (tag_blur.h).
-  void Finish(const SpreadByMotion& spread);
+  /// Counts pixels whose residuals are off by more than half the contrast (grey
+  /// values).
+  void CountContradictions(int brighter, int darker) { brighter_ += brighter, darker_ += darker; }
+
+  /// The sums over the rows. A row has no entry for the print offset, which is the pose's
+  /// move along the face's normal.
+  struct Rows {
+    static constexpr int kSize = 16, kGamma = 9, kLevels = 10;
+    Eigen::Matrix<double, kSize, kSize> A = Eigen::Matrix<double, kSize, kSize>::Zero();
+    Eigen::Matrix<double, kSize, kPatches> scores = Eigen::Matrix<double, kSize, kPatches>::Zero();
+    /// Sums of weight, weight * predicted, * measured, * predicted^2, * measured^2, * both.
+    std::array<double, 6> moments{};
+    double squares = 0, curvature = 0;
+  };
+  /// Takes the sums after the last pixel. `normal_C` is the tag's; `spread` is the further part of
+  /// the rows of pose and print offset (tag_blur.h).
+  void Finish(const Rows& rows, const Eigen::Vector3d& normal_C, const SpreadByMotion& spread);
 
   const Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize>& A() const { return A_; }
   int Pixels() const { return pixels_; }
@@ -109,8 +110,7 @@ class FaceSums {
 
   /// The gradient of each patch of the tag. Their scatter shows residuals that go together, which
   /// the number of pixels does not.
-  static constexpr int kPatchesAcross = 4, kPatches = kPatchesAcross * kPatchesAcross;
-  using Scores = Eigen::Matrix<float, FaceColumns::kResidual, kPatches>;
+  using Scores = Eigen::Matrix<double, FaceColumns::kResidual, kPatches>;
   const Scores& PatchScores() const { return scores_; }
   /// Sums over the pixels of (weight residual)^2 and of the curvature.
   double WeightedSquares() const { return squares_; }
@@ -122,23 +122,12 @@ class FaceSums {
   void AddErrorsTo(Histogram& histogram) const;
 
  private:
-  static constexpr int kBlock = 64;  // rows are multiplied together, in single precision
-  void Flush();
-  static int PatchOf(float fu, float fv) {
-    const auto along = [](float f) {
-      return std::clamp(static_cast<int>((f + 1) * (0.5f * kPatchesAcross)), 0, kPatchesAcross - 1);
-    };
-    return kPatchesAcross * along(fu) + along(fv);
-  }
-
-  Eigen::Matrix<float, FaceColumns::kSize, kBlock> rows_ =
-      Eigen::Matrix<float, FaceColumns::kSize, kBlock>::Zero();
-  int filled_ = 0, pixels_ = 0, brighter_ = 0, darker_ = 0;
+  int pixels_ = 0, brighter_ = 0, darker_ = 0;
   Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize> A_ =
       Eigen::Matrix<double, FaceColumns::kSize, FaceColumns::kSize>::Zero();
-  std::array<float, 6> moments_{};
+  std::array<double, 6> moments_{};
   Scores scores_ = Scores::Zero();
-  float squares_ = 0, curvature_ = 0;
+  double squares_ = 0, curvature_ = 0;
   Histogram errors_{};
 };
 

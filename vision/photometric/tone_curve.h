@@ -12,6 +12,10 @@ class ToneCurve {
   explicit ToneCurve(double gamma = 2.2);
 
   double Gamma() const { return gamma_; }
+  /// The straight part: from `DarkLight` down, where the grey value is `DarkGrey`.
+  float DarkLight() const { return dark_light_; }
+  float DarkGrey() const { return dark_grey_; }
+  float DarkSlope() const { return dark_slope_; }
 
   struct Value {
     float grey, by_light, by_gamma;  ///< the grey value and its derivatives

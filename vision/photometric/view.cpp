@@ -198,8 +198,7 @@ Eigen::Matrix<double, 6, 6> PhotometricView::ScoreScatter(double& white) const {
     squares += s.sums.WeightedSquares();
     curvature += s.sums.Curvature();
     for (int i = 0; i < FaceSums::kPatches; ++i) {
-      const Eigen::Matrix<double, FaceColumns::kResidual, 1> all =
-          s.sums.PatchScores().col(i).cast<double>();
+      const Eigen::Matrix<double, FaceColumns::kResidual, 1> all = s.sums.PatchScores().col(i);
       const Vector11 rest = all.head<11>() - s.levels.by_rest.transpose() * all.tail<6>();
       const Eigen::Matrix<double, 6, 1> pose =
           rest.head<6>() - optics_elimination_.by_rest.transpose() * rest.tail<5>();
