@@ -95,7 +95,7 @@ class OnePixelAtATime {
     Image image(model_.Calibration().width_px, model_.Calibration().height_px, 1);
     if (at.x() >= 0) image.Row(at.y())[at.x()] = kGrey;
     PhotometricFace face = MakeFaces(OneTag()).at(0);
-    face.SelectPixels(model_, lens_, image, T_CE_, optics_, 1);
+    face.SelectPixels(model_, lens_, image, T_CE_, optics_, {});
     return face;
   }
   SumMatrix Sums(PhotometricFace face, const Parameters& x) const {

@@ -42,6 +42,10 @@ class BlurredPattern {
   explicit BlurredPattern(const TagCells& tag);
 
   int Cells() const { return cells_; }
+  /// Returns whether no cell within the pattern is unknown.
+  bool AllKnown() const { return all_known_; }
+  /// Returns the number of cells' sides between black and white.
+  int Edges() const { return edges_; }
 
   /// Returns the blurred pattern at (u, v), in cells from the pattern's top left corner; `nearness`
   /// as in PatternBlur.
@@ -100,7 +104,7 @@ class BlurredPattern {
   void AddCrossings(const Lines& u, const Lines& v, const PatternBlur& blur,
                     PatternValue& value) const;
 
-  int cells_, stride_;
+  int cells_, stride_, edges_ = 0;
   float last_;                // three cells beyond the pattern
   std::vector<float> white_;  // columns, padded
   std::vector<std::uint8_t> codes_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vision/grey.h"
+#include "vision/photometric/pixel_choice.h"
 #include "vision/photometric/tag_blur.h"
 
 namespace flextip {
@@ -12,10 +12,8 @@ namespace {
 constexpr double kMinCosine = 0.105;         // of the angle between normal and view: 84 degrees
 constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
 constexpr float kReachOfUnknown = 3.2f;      // sigmas kept from what is not known
-constexpr float kEdgeReach = 2.9f;  // sigmas from an edge within which pixels say something
 constexpr double kMaxBlur_cells = 1.6;
 constexpr int kFewestPixels = 30;
-constexpr int kFlatEvery = 7;             // of flat pixels so many are left out for one taken
 constexpr double kHiddenRim_cells = 0.5;  // of a tag's rim that a neighbour may hide
 
 }  // namespace
@@ -114,46 +112,49 @@ bool PhotometricFace::IsSeen(const CameraModel& camera, const Pose& T_CE) const 
   return px && px->x() > 0 && px->y() > 0 && px->x() < c.width_px - 1 && px->y() < c.height_px - 1;
 }
 
+double PhotometricFace::PixelsPerSigma(const CameraModel& camera, const Pose& T_CE,
+                                       const Optics& optics) const {
+  Eigen::Matrix<double, 2, 3> J;
+  if (!camera.Project(T_CE * tag_.T_EG.p, &J)) return 0;
+  const double cell_px = J(0, 0) * cell_m_ * 0.5 * (1 + Cosine(T_CE));
+  const double sigma_px =
+      std::sqrt(0.5 * (optics.blur_px2[0] + optics.blur_px2[2]) + kPixelVariance);
+  return 2 * sigma_px * cell_px * pattern_.Edges();
+}
+
 void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& lens,
                                    const Image& image, const Pose& T_CE, const Optics& optics,
-                                   int stride) {
+                                   const Choice& choice) {
   pixels_.Clear();
   const Geometry g = Place(camera, T_CE, optics);
   if (!g.valid) return;
   const Pose T_CG = T_CE * tag_.T_EG;
   const double reach = 0.5 * cell_m_ * pattern_.Cells();
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  TagRegion region;
+  int corner = 0;
   for (const auto& [x, y] :
        {std::pair{-1, -1}, std::pair{1, -1}, std::pair{1, 1}, std::pair{-1, 1}}) {
     const auto px = camera.Project(T_CG * Eigen::Vector3d(x * reach, y * reach, 0));
     if (!px) return;
+    region.outline_px[corner++] = *px;
     low = low.cwiseMin(*px);
     high = high.cwiseMax(*px);
   }
-  const int x0 = std::max(0, static_cast<int>(low.x())),
-            y0 = std::max(0, static_cast<int>(low.y()));
-  const int x1 = std::min(lens.WidthPx() - 1, static_cast<int>(high.x()) + 1);
-  const int y1 = std::min(lens.HeightPx() - 1, static_cast<int>(high.y()) + 1);
-  const float reach_u = kReachOfUnknown * g.blur.sigma_u,
-              reach_v = kReachOfUnknown * g.blur.sigma_v;
-  const Eigen::Vector4f limits =
-      Limits(T_CE) + Eigen::Vector4f(reach_u, -reach_u, reach_v, -reach_v);
-  const float edge_u = std::min(kEdgeReach * g.blur.sigma_u, 0.99f);
-  const float edge_v = std::min(kEdgeReach * g.blur.sigma_v, 0.99f);
-  int flat = 0;
-  for (int y = y0; y <= y1; y += stride) {
-    for (int x = x0 + (y / stride) % stride; x <= x1; x += stride) {
-      const LensMap::Ray& ray = lens.At(x, y);
-      const auto at = g.At(ray.x, ray.y);
-      const bool within =
-          at.u > limits[0] && at.u < limits[1] && at.v > limits[2] && at.v < limits[3];
-      if (!within || !pattern_.Known(at.u, at.v, reach_u, reach_v)) continue;
-      if (!pattern_.NearEdge(at.u, at.v, edge_u, edge_v) && flat++ % kFlatEvery != 0) continue;
-      pixels_.Add(ray.x, ray.y, GreyAt(image, x, y),
-                  FaceSums::PatchOf(at.u / g.half - 1, at.v / g.half - 1));
-    }
-  }
-  pixels_.Sort();
+  region.x0 = std::max(0, static_cast<int>(low.x()));
+  region.y0 = std::max(0, static_cast<int>(low.y()));
+  region.x1 = std::min(lens.WidthPx() - 1, static_cast<int>(high.x()) + 1);
+  region.y1 = std::min(lens.HeightPx() - 1, static_cast<int>(high.y()) + 1);
+  region.to_tag = g.to_tag;
+  region.unknown_u = kReachOfUnknown * g.blur.sigma_u;
+  region.unknown_v = kReachOfUnknown * g.blur.sigma_v;
+  region.limits = Limits(T_CE) + Eigen::Vector4f(region.unknown_u, -region.unknown_u,
+                                                 region.unknown_v, -region.unknown_v);
+  region.edge_u = std::min(choice.reach * g.blur.sigma_u, 0.99f);
+  region.edge_v = std::min(choice.reach * g.blur.sigma_v, 0.99f);
+  region.stride = choice.stride;
+  region.share = choice.share;
+  ChoosePixels(region, pattern_, lens, image, pixels_);
 }
 
 // A straight line through light against whiteness.

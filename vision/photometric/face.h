@@ -50,10 +50,17 @@ class PhotometricFace {
   /// Returns the cosine of the angle between the face's normal and the line of sight.
   double Cosine(const Pose& T_CE) const;
 
-  /// Chooses the pixels near the tag's edges, and a few others, at T_CE: every `stride`-th in both
-  /// directions.
+  /// Which of the pixels near the tag's edges take part.
+  struct Choice {
+    int stride = 1;      ///< every so many-th in both directions
+    float reach = 2.9f;  ///< sigmas of the blur from an edge
+    float share = 1.0f;  ///< of those, scattered evenly
+  };
+  /// Returns the number of pixels per sigma of reach, roughly, at T_CE.
+  double PixelsPerSigma(const CameraModel& camera, const Pose& T_CE, const Optics& optics) const;
+  /// Chooses pixels near the tag's edges, and a few others, at T_CE.
   void SelectPixels(const CameraModel& camera, const LensMap& lens, const Image& image,
-                    const Pose& T_CE, const Optics& optics, int stride);
+                    const Pose& T_CE, const Optics& optics, const Choice& choice);
   int Pixels() const { return pixels_.count; }
 
   /// Sets the levels that the pixels show at T_CE, without slopes. Returns their correlation with

@@ -23,7 +23,8 @@ constexpr double kLeastLikeness = 0.4;  // of a tag that is within reach
 constexpr double kLastStep = 1.0, kGoodStep = 3.0;  // the second: where the iterations run out
 constexpr double kNear_px = 6.0, kNearPart = 0.03, kNear_rad = 0.12;
 constexpr double kMaxTurn_rad = 0.2;
-constexpr double kParallel = 0.985;  // cosine of 10 degrees
+constexpr double kWorseNoise = 1.6, kWorseNoise_grey = 0.5;  // few pixels tell noise to some 5 %
+constexpr double kParallel = 0.985;                          // cosine of 10 degrees
 
 struct Camera {
   explicit Camera(const CameraCalibration& calibration)
@@ -57,10 +58,11 @@ struct PhotometricFit::Impl {
     }
   }
 
-  void Select(const Pose& T_RE, int pixels, double extra_blur_px2, double least_likeness = 0) {
+  void Select(const Pose& T_RE, int pixels, bool few, double extra_blur_px2,
+              double least_likeness = 0) {
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (!present[i]) continue;
-      views[i].Select(cameras[i]->T_CR * T_RE, pixels, extra_blur_px2, least_likeness);
+      views[i].Select(cameras[i]->T_CR * T_RE, pixels, few, extra_blur_px2, least_likeness);
     }
   }
 
@@ -158,6 +160,18 @@ struct PhotometricFit::Impl {
       if (small && (settled || !robust)) return true;
     }
     return last_size < kGoodStep;
+  }
+
+  // Whether the last pixels leave far more noise than a rival's in a picture.
+  bool IsClearlyWorse(const PhotometricResult& rival) const {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const double noise_grey = rival.views[i].noise_grey;
+      if (present[i] && noise_grey > 0 &&
+          views[i].NoiseGrey() > kWorseNoise * noise_grey + kWorseNoise_grey) {
+        return true;
+      }
+    }
+    return false;
   }
 
   bool OnePlane() const {
@@ -278,7 +292,8 @@ PhotometricFit& PhotometricFit::operator=(PhotometricFit&&) noexcept = default;
 
 PhotometricResult PhotometricFit::Fit(const std::vector<const Image*>& images,
                                       const Pose& start_T_RE,
-                                      const std::vector<OpticsPrior>& priors, bool coarse) {
+                                      const std::vector<OpticsPrior>& priors, bool coarse,
+                                      const PhotometricResult* rival) {
   Impl& f = *impl_;
   const PhotometricOptions& o = f.options;
   Pose T_RE = start_T_RE;
@@ -286,25 +301,24 @@ PhotometricResult PhotometricFit::Fit(const std::vector<const Image*>& images,
   f.Begin(images, T_RE, priors);
   if (f.Faces() == 0) return {};
   if (coarse) {
-    f.Select(T_RE, o.coarse_pixels, o.coarse_extra_blur_px2);
+    f.Select(T_RE, o.coarse_pixels, true, o.coarse_extra_blur_px2);
     f.Iterate(T_RE, sums, o.max_coarse_iterations, kCoarseStep_px, Robustness::kHuber,
               f.StayNear(T_RE));
   }
-  f.Select(T_RE, o.coarse_pixels, 0, kLeastLikeness);  // after the coarse steps all are known
+  f.Select(T_RE, o.coarse_pixels, true, 0, kLeastLikeness);  // after the coarse steps all are known
   if (f.Faces() == 0) return {};
   f.Iterate(T_RE, sums, o.max_coarse_iterations, kFineStep_px, Robustness::kTukey,
             f.StayNear(T_RE));
   f.DropFaces(0.6 * o.min_correlation, 1);
   if (f.Faces() == 0) return {};
-  f.Select(T_RE, 0, 0);
+  PhotometricResult poor;
+  poor.status = PhotometricStatus::kPoorFit;
+  if (rival != nullptr && f.IsClearlyWorse(*rival)) return poor;
+  f.Select(T_RE, o.max_pixels, false, 0);
   bool converged = f.Iterate(T_RE, sums, o.max_iterations, kLastStep_px, Robustness::kTukeyNewton);
   const int faces = f.Faces();
   f.DropFaces(o.min_correlation, o.max_contradicted);
-  if (f.Faces() == 0) {
-    PhotometricResult poor;
-    poor.status = PhotometricStatus::kPoorFit;
-    return poor;
-  }
+  if (f.Faces() == 0) return poor;
   if (f.Faces() < faces)
     converged = f.Iterate(T_RE, sums, o.max_iterations, kLastStep_px, Robustness::kTukeyNewton);
   return f.Report(T_RE, sums, converged);

@@ -22,7 +22,8 @@ enum class PhotometricStatus {
 };
 
 struct PhotometricOptions {
-  int coarse_pixels = 500;             ///< of all faces together, until the steps become small
+  int coarse_pixels = 500;  ///< of all faces together, until the steps become small
+  int max_pixels = 6000;    ///< of all faces together, near their edges, in the last steps
   double coarse_extra_blur_px2 = 2.0;  ///< widens the reach of the first steps
   int max_coarse_iterations = 8, max_iterations = 6;
   double min_correlation = 0.96;  ///< of a face's measured and predicted grey values
@@ -70,9 +71,11 @@ class PhotometricFit {
 
   /// Fits the pose by Gauss-Newton from `start_T_RE`, which must be right to about a cell of the
   /// tag. Takes one image (null: no picture) and one prior a camera. `coarse`: begins with a
-  /// widened blur. Failures are a status in the result.
+  /// widened blur. `rival`: a fit of the same images; one that a few pixels show to be clearly
+  /// worse is not gone on with (kPoorFit). Failures are a status in the result.
   PhotometricResult Fit(const std::vector<const Image*>& images, const Pose& start_T_RE,
-                        const std::vector<OpticsPrior>& priors, bool coarse = true);
+                        const std::vector<OpticsPrior>& priors, bool coarse = true,
+                        const PhotometricResult* rival = nullptr);
 
  private:
   struct Impl;

@@ -84,6 +84,21 @@ FLEXTIP_LANES_INLINE void CutNormal(const F& x, F& cdf, F& density) {
   Select(within, phi * kStretch, F{}, density);
 }
 
+/// Splits eight pairs into their first and their second parts.
+FLEXTIP_LANES_INLINE void LoadPairs(const float* from, F& first, F& second) {
+  F a, b;
+  Load(from, a);
+  Load(from + kLanes, b);
+  first = __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14);
+  second = __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15);
+}
+
+FLEXTIP_LANES_INLINE bool Any(const I& mask) {
+  std::uint64_t parts[4];
+  std::memcpy(parts, &mask, sizeof parts);
+  return (parts[0] | parts[1] | parts[2] | parts[3]) != 0;
+}
+
 FLEXTIP_LANES_INLINE double Sum(const F& value) {
   float x[kLanes];
   Store(value, x);

@@ -22,6 +22,10 @@ constexpr double kSettled = 0.1;                   // of the blur, in one step
 constexpr double kBlurChange = 0.4;                // of the blur, from one picture to the next
 constexpr double kKnown = 1e-6, kKnown_m = 1e-10;  // standard deviations of what is not fitted
 
+// Pixels this many sigmas from an edge say something; within the lesser reach lie nine tenths of
+// what they say of the pose.
+constexpr double kReach = 2.9, kLeastReach = 1.4;
+
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 
 }  // namespace
@@ -55,7 +59,26 @@ Optics PhotometricView::Widened() const {
   return wide;
 }
 
-void PhotometricView::Select(const Pose& T_CE, int pixels, double extra_blur_px2,
+// A few pixels lie evenly over all faces. With many, those that say least are left out first: far
+// from the edges.
+PhotometricFace::Choice PhotometricView::ChoiceOf(const Pose& T_CE, int pixels, bool few,
+                                                  double area_px2) const {
+  PhotometricFace::Choice choice;
+  if (few) {
+    choice.stride = std::max(1, static_cast<int>(std::lround(std::sqrt(area_px2 / pixels))));
+    return choice;
+  }
+  double per_sigma = 0;
+  for (const SeenFace& s : seen_) {
+    if (s.active) per_sigma += faces_[s.face].PixelsPerSigma(camera_, T_CE, Widened());
+  }
+  const double reach = std::clamp(pixels / std::max(1.0, per_sigma), kLeastReach, kReach);
+  choice.reach = static_cast<float>(reach);
+  choice.share = static_cast<float>(std::min(1.0, pixels / std::max(1.0, reach * per_sigma)));
+  return choice;
+}
+
+void PhotometricView::Select(const Pose& T_CE, int pixels, bool few, double extra_blur_px2,
                              double least_likeness) {
   const double before_px2 = extra_blur_px2_;
   extra_blur_px2_ = extra_blur_px2;
@@ -75,11 +98,10 @@ void PhotometricView::Select(const Pose& T_CE, int pixels, double extra_blur_px2
           std::max(kMinBlur_px2, optics_.blur_px2[i] + before_px2 - extra_blur_px2_);
     }
   }
-  const int stride =
-      pixels > 0 ? std::max(1, static_cast<int>(std::lround(std::sqrt(area / pixels)))) : 1;
+  const PhotometricFace::Choice choice = ChoiceOf(T_CE, pixels, few, area);
   for (SeenFace& s : seen_) {
     if (!s.active) continue;
-    faces_[s.face].SelectPixels(camera_, lens_, *image_, T_CE, Widened(), stride);
+    faces_[s.face].SelectPixels(camera_, lens_, *image_, T_CE, Widened(), choice);
     if (!s.has_levels) {
       const double likeness = faces_[s.face].GuessLevels(camera_, T_CE, Widened(), tone_);
       s.has_levels = s.active = likeness > least_likeness;

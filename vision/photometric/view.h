@@ -46,10 +46,12 @@ class PhotometricView {
   /// Starts a picture (grey or colour): the faces seen from T_CE take part.
   void Begin(const Image& image, const Pose& T_CE, const OpticsPrior& prior);
 
-  /// Chooses about `pixels` pixels anew (0: all). `extra_blur_px2` widens the model's blur, and
-  /// with that the reach of a step. The first time, faces whose light correlates less than
-  /// `least_likeness` with their pattern at T_CE are left out.
-  void Select(const Pose& T_CE, int pixels, double extra_blur_px2, double least_likeness = 0);
+  /// Chooses pixels anew: about `pixels` of them all over the faces where `few`, else all that say
+  /// something, or about `pixels` of those. `extra_blur_px2` widens the model's blur, and with that
+  /// the reach of a step. The first time, faces whose light correlates less than `least_likeness`
+  /// with their pattern at T_CE are left out.
+  void Select(const Pose& T_CE, int pixels, bool few, double extra_blur_px2,
+              double least_likeness = 0);
 
   /// Returns the scatter of the pose's gradient over the patches of the faces in the last
   /// Linearise, on (dw, dp), in grey values to the fourth. `white` gets its size for independent
@@ -104,6 +106,7 @@ class PhotometricView {
   };
   void EliminateLevels(SeenFace& seen, Matrix11& A, Vector11& b) const;
   PoseTerm EliminateOptics(Matrix11 A, Vector11 b);
+  PhotometricFace::Choice ChoiceOf(const Pose& T_CE, int pixels, bool few, double area_px2) const;
   Optics Widened() const;
   void LearnNoise();
 

@@ -111,9 +111,10 @@ bool CollarLocaliser::MightSee(const Pose& T_RE) const {
   return false;
 }
 
-Sight CollarLocaliser::FitPixels(const Images& images, const Pose& T_RE, bool coarse) {
+Sight CollarLocaliser::FitPixels(const Images& images, const Pose& T_RE, bool coarse,
+                                 const PhotometricResult* rival) {
   Sight sight;
-  sight.pixels = fit_.Fit(images, T_RE, priors_, coarse);
+  sight.pixels = fit_.Fit(images, T_RE, priors_, coarse, rival);
   if (!sight.pixels.IsUsable()) return sight;
   for (const ViewFit& view : sight.pixels.views) {
     sight.noise_grey = std::max(sight.noise_grey, view.noise_grey);
@@ -329,7 +330,7 @@ void CollarLocaliser::CheckOtherPlanarPose(const Images& images,
         [&](const CollarTag& t) { return t.id == sight.pixels.views[i].faces[0].tag_id; });
     const Pose& T_RC = models_[i]->Calibration().T_RC;
     const Pose other = T_RC * OtherPlanarPose(T_RC.Inverse() * sight.T_RE, tag->T_EG);
-    Sight second = FitPixels(images, other);
+    Sight second = FitPixels(images, other, true, &sight.pixels);
     if (!second.Found()) return;
     const double apart = PoseDifference(sight.T_RE, second.T_RE).head<3>().norm();
     if (apart < 0.02) return;  // the same minimum

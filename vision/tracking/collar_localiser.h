@@ -54,7 +54,8 @@ class CollarLocaliser {
   void Forget();
 
  private:
-  Sight FitPixels(const Images& images, const Pose& T_RE, bool coarse = true);
+  Sight FitPixels(const Images& images, const Pose& T_RE, bool coarse = true,
+                  const PhotometricResult* rival = nullptr);
   bool IsComplete(const Sight& sight) const;
   bool IsTrusted(const Sight& sight, const Pose& expected_T_RE) const;
   Sight Acquired(const Images& images, const Sight& corners, const std::optional<Pose>& near_T_RE);
