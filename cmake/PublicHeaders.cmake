@@ -144,6 +144,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   vision/outline/tube_geometry.h
   vision/photometric/blurred_pattern.h
   vision/photometric/face.h
+  vision/photometric/face_rows.h
   vision/photometric/fit.h
   vision/photometric/lens_map.h
   vision/photometric/normal_table.h
