@@ -248,7 +248,8 @@ Raises InputError.)doc")
            py::arg("pictures_t_ns") = std::nullopt,
            R"doc(Runs a cycle.
 
-t_ns: not before the last cycle. readings: the newest sample of each sensor; a tip counts once.
+t_ns: not before the last cycle. readings: the newest sample of each sensor, at its own time; a late
+tip, and the last one until 0.12 s after its first cycle, is carried on to the wrist's time.
 p_RE_desired: the tip's wished place in R, (3,), m; None: only watches. d_RE_desired: its wished
 direction, any length. pictures: one a camera, as Tracker.track takes them; pictures_t_ns: their
 time, the cycle's where None.

@@ -96,13 +96,16 @@ def test_direction_by_the_rod():
     assert np.linalg.norm(turned - wish) < 0.3 * np.linalg.norm(tip.t - wish)
 
 
-def test_only_watching_and_a_tip_that_counts_once():
+def test_only_watching_and_a_tip_that_grows_old():
     controller = flextip.Controller(setup())
     seen = readings(0, np.zeros(3), start())
     watching = controller.step(0, seen)
     assert watching.status == "no_goal"
     np.testing.assert_array_equal(watching.p_RW_command, np.zeros(3))
-    assert controller.step(1, seen, start()).status == "no_tip"
+    for t_ns, status in [(100_000_000, "ok"), (150_000_000, "no_tip")]:  # carried on for 0.12 s
+        wrist_alone = flextip.Readings(
+            wrist=flextip.WristReading(t_ns, np.zeros(3), position_noise_m=5e-5))
+        assert controller.step(t_ns, wrist_alone, start()).status == status
 
 
 def test_the_same_inputs_give_the_same_commands():
