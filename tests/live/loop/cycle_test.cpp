@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <tuple>
+#include <utility>
 
 #include "live/recorder/recorder.h"
 #include "live/recorder/replay.h"
@@ -99,6 +101,44 @@ class Peer {
   Eigen::Vector3d p_RW_{-0.2457, 0.0, 0.3421};
   TimeNs t_ns_ = simulation::kSimulationStart_ns;
 };
+
+/// Returns the session's cycle after 100 steps, and whether the robot was told anything.
+std::pair<CycleOutputs, bool> AfterOneSecond(const Session& session) {
+  Peer peer(session);
+  Cycle cycle(session);
+  CycleOutputs last;
+  bool told = false;
+  for (int i = 0; i < 100; ++i) {
+    last = cycle.Step(peer.Next());
+    peer.Do(last);
+    told |= last.state_command.has_value();
+  }
+  return {last, told};
+}
+
+TEST(Delay, UnknownKeepsTheRobotDisabled) {
+  Session session = ReadSession(WriteSession(SessionText()));
+  session.streams[static_cast<std::size_t>(StreamName::kTip)].reset();
+  session.camera.emplace().video = "0";  // stamps pictures as they arrive
+  auto [last, told] = AfterOneSecond(session);
+  EXPECT_FALSE(told);
+  EXPECT_EQ(last.hold, Hold::kDelayUnknown);
+  session.task.controller.kind = ControllerKind::kRodCalculate;  // does not follow the tip
+  EXPECT_TRUE(AfterOneSecond(session).second);
+  session.task.controller.kind = ControllerKind::kRodTrack;
+  session.camera->latency_known = true;
+  std::tie(last, told) = AfterOneSecond(session);
+  EXPECT_TRUE(told);
+  EXPECT_EQ(last.hold, Hold::kNone);
+}
+
+TEST(Delay, AKnownLatencyIsNotStale) {
+  std::string text = SessionText();
+  const std::string device = "device: vision0}";
+  text.replace(text.find(device), device.size(), device + ", latency_s: 0.25, stale_s: 0.1");
+  const Session session = ReadSession(WriteSession(text));
+  EXPECT_EQ(AfterOneSecond(session).first.hold, Hold::kNone);
+}
 
 struct Running : testing::Test {
   Session session = ReadSession(WriteSession(SessionText()));
