@@ -7,7 +7,7 @@
 #include <Eigen/Dense>
 #include <cstdint>
 
-#include "kinematics/rod_point.h"
+#include "kinematics/rod/point.h"
 
 namespace flextip {
 

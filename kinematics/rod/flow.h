@@ -10,8 +10,8 @@
 
 #include <Eigen/Dense>
 
-#include "kinematics/rod_point.h"
-#include "kinematics/rod_variation.h"
+#include "kinematics/rod/point.h"
+#include "kinematics/rod/variation.h"
 
 namespace flextip {
 

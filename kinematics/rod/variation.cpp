@@ -1,6 +1,6 @@
-#include "kinematics/rod_variation.h"
+#include "kinematics/rod/variation.h"
 
-#include "kinematics/gauss_collocation.h"
+#include "kinematics/rod/collocation.h"
 
 namespace flextip {
 namespace {

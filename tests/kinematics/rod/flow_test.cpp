@@ -1,6 +1,6 @@
 // The integrator of the rod and its variations against the same equations in fixed axes, by a
 // Runge-Kutta method of many steps.
-#include "kinematics/rod_flow.h"
+#include "kinematics/rod/flow.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "kinematics/rod_flow.h"
+#include "kinematics/rod/flow.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "kinematics/gauss_collocation.h"
+#include "kinematics/rod/collocation.h"
 
 namespace flextip {
 namespace {
