@@ -27,7 +27,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kLongestMessage = 512;  // of a watcher, bytes
 constexpr std::size_t kMostWatchers = 8, kMostConnections = 64;
-constexpr long kOnTheWay = 2;  // texts sent that a watcher has not yet seen
+constexpr long kOnTheWay = 3;  // sent, and the watcher has not said that it saw them
+constexpr std::size_t kMostWaiting = 1 << 15;  // bytes of a watcher, not yet with the system
 constexpr long kHandshake_ms = 5000;
 constexpr std::chrono::seconds kSilence(10);  // of a watcher that was sent something
 constexpr int kNice = 10;                     // the page gives way to everything else
@@ -97,7 +98,8 @@ class PageServer::Worker {
     for (auto& [to, watcher] : watchers_) {
       const Connection connection = endpoint_.get_con_from_hdl(to);
       if (Clock::now() - watcher.heard > kSilence && watcher.on_the_way > 0) silent.push_back(to);
-      if (watcher.on_the_way >= kOnTheWay || connection->get_buffered_amount() > 0) continue;
+      if (watcher.on_the_way >= kOnTheWay || connection->get_buffered_amount() > kMostWaiting)
+        continue;
       if (connection->send(payload, kind)) continue;  // it is going
       watcher.sent = n;
       ++watcher.on_the_way;

@@ -26,8 +26,8 @@ struct ServerHandlers {
   std::function<void()> tick;  ///< called at the server's rate
 };
 
-/// A watcher is given the newest text when it has said ({"seen": N}) that the last but two arrived,
-/// and nothing meanwhile: a slow one sees fewer, and none waits in a queue.
+/// A watcher says what it has seen ({"seen": N}). Three messages at most are on their way to it;
+/// what comes meanwhile it never gets: a slow watcher sees fewer, and no queue grows.
 class PageServer {
  public:
   /// Serves `files` at once, "/" as "/index.html". Throws WorkError where the port is taken, or

@@ -12,7 +12,7 @@ namespace flextip::live {
 
 struct PageSnapshot {
   CycleRecord record;
-  ControllerCommand command;  ///< the estimate behind the cycle; of an earlier one in bad time
+  ControllerCommand command;  ///< the last with a measured tip where the controller needs it
   bool on_path = false;       ///< the path is begun; the next two mean something
   Eigen::Vector3d p_RE_start = Eigen::Vector3d::Zero();  ///< of the path (m, in R)
   double deviation_m = 0.0;                              ///< of the known tip from the path so far

@@ -14,7 +14,7 @@
 
 namespace flextip::live {
 
-inline constexpr double kPageDeviations = 2.0;  ///< of the estimate, for the worst angle
+inline constexpr double kPageDeviations = 1.0;  ///< of the estimate, for the worst angle
 
 /// What the page's thread finds out beside the snapshot.
 struct PageFindings {

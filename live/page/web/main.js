@@ -81,6 +81,10 @@ function showFigures() {
   show($("sd"), mm(estimate.sd_m ?? NaN), estimate.sd_m ?? null);
   const angle = worst ? degrees(worst.angle_rad) : NaN;
   show($("worst"), Number.isFinite(angle) ? `${text(angle, angle < 10 ? 1 : 0)}°` : "–", worst ? worst.angle_rad : null);
+  if (worst) {
+    show($("worst-note"), worst.angle_rad > 3.1415 ? "a shaft within the doubt buckles or turns round"
+      : `between wished and actual motion, within ${worst.deviations} standard deviation${worst.deviations === 1 ? "" : "s"}`);
+  }
   $("worst-box").className = angle >= ANGLE_BAD ? "bad" : angle >= ANGLE_WARN ? "warn" : "";
   const force = estimate.force_N ? Math.hypot(...estimate.force_N) : NaN;
   show($("force"), Number.isFinite(force) ? `${text(force, 2)} N` : "–");

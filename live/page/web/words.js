@@ -57,8 +57,9 @@ export function stateWords(state, connected, seconds_without_news) {
   }
   if (state.hold === "source_lost" && state.held_by) reason = `Gone or late: ${streamWords(state.held_by)}.`;
   if (state.hold === "none" && state.limited.length) reason += ` Limited: ${state.limited.join(", ")}.`;
-  if (CONTROL[state.status] && (state.hold === "none" || state.hold === "no_command"))
-    reason += ` ${CONTROL[state.status]}`;
+  // Between two tips a moving controller waits for the next: that is no news.
+  const worth = state.hold === "no_command" || (state.hold === "none" && state.status !== "no_tip");
+  if (worth && CONTROL[state.status]) reason += ` ${CONTROL[state.status]}`;
   return { title, mood, reason };
 }
 
