@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <ros2.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -20,16 +21,25 @@ struct QosDeleter {
 };
 using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
-/// ROS 2's default but for the writer's patience: a full queue must not hold up a cycle.
-Qos QosOf(bool reliable, bool lockstep) {
+/// ROS 2's default but for the writer's patience: a full queue must not hold up a cycle. In
+/// lockstep what was sent before a reader was there is kept for it.
+Qos QosOf(bool reliable, bool durable, int kept) {
   Qos qos(dds_create_qos());
   dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        0);
-  dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
-  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, lockstep ? kLastInLockstep : kLast);
+  dds_qset_durability(qos.get(),
+                      durable ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kept);
+  dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, kept, DDS_LENGTH_UNLIMITED,
+                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
   dds_qset_data_representation(qos.get(), 1, &xcdr1);
   return qos;
+}
+
+/// Pictures are too large for more than the default.
+int KeptOf(const EndpointPlace& place, Ros2Type type) {
+  return place.lockstep && type != Ros2Type::kImage ? kLastInLockstep : kLast;
 }
 
 const dds_topic_descriptor_t& DescriptorOf(Ros2Type type) {
@@ -53,9 +63,8 @@ dds_entity_t Made(dds_entity_t made, const std::string& name) {
 }
 
 dds_entity_t NewTopic(const EndpointPlace& place, const std::string& name, Ros2Type type) {
-  const Qos qos = QosOf(true, place.lockstep);
   return Made(dds_create_topic(place.participant, &DescriptorOf(type), ("rt/" + name).c_str(),
-                               qos.get(), nullptr),
+                               nullptr, nullptr),
               name);
 }
 
@@ -63,15 +72,16 @@ dds_entity_t NewTopic(const EndpointPlace& place, const std::string& name, Ros2T
 
 Ros2Reader::Ros2Reader(const EndpointPlace& place, const std::string& name, Ros2Type type)
     : place_(place), type_(type), topic_(NewTopic(place, name, type)) {
-  Open(true);
+  Open(true, place.lockstep);
 }
 
-void Ros2Reader::Open(bool reliable) {
+void Ros2Reader::Open(bool reliable, bool durable) {
   reader_ = DdsEntity();
-  const Qos qos = QosOf(reliable, place_.lockstep);
+  const Qos qos = QosOf(reliable, durable, KeptOf(place_, type_));
   reader_ = DdsEntity(
       Made(dds_create_reader(place_.participant, topic_.get(), qos.get(), nullptr), Name(type_)));
   reliable_ = reliable;
+  durable_ = durable;
   writers_ = 0;
   participants_.clear();
   dds_set_status_mask(reader_.get(), DDS_DATA_AVAILABLE_STATUS | DDS_SUBSCRIPTION_MATCHED_STATUS |
@@ -102,9 +112,12 @@ void Ros2Reader::LookAtStatus() {
   if (dds_get_subscription_matched_status(reader_.get(), &matched) == DDS_RETCODE_OK)
     writers_ = static_cast<int>(matched.current_count);
   if (dds_get_requested_incompatible_qos_status(reader_.get(), &refused) != DDS_RETCODE_OK) return;
-  const bool asks_too_much =
-      refused.total_count_change > 0 && refused.last_policy_id == DDS_RELIABILITY_QOS_POLICY_ID;
-  if (asks_too_much && reliable_) Open(false);
+  if (refused.total_count_change == 0) return;
+  if (reliable_ && refused.last_policy_id == DDS_RELIABILITY_QOS_POLICY_ID) {
+    Open(false, durable_);
+  } else if (durable_ && refused.last_policy_id == DDS_DURABILITY_QOS_POLICY_ID) {
+    Open(reliable_, false);
+  }
 }
 
 bool Ros2Reader::IsWrittenBy(dds_instance_handle_t participant) const {
@@ -134,7 +147,7 @@ dds_instance_handle_t Ros2Reader::ParticipantOf(dds_instance_handle_t writer) {
 
 Ros2Writer::Ros2Writer(const EndpointPlace& place, const std::string& name, Ros2Type type)
     : type_(type), topic_(NewTopic(place, name, type)) {
-  const Qos qos = QosOf(true, place.lockstep);
+  const Qos qos = QosOf(true, place.lockstep, KeptOf(place, type));
   writer_ =
       DdsEntity(Made(dds_create_writer(place.participant, topic_.get(), qos.get(), nullptr), name));
   dds_set_status_mask(writer_.get(), DDS_PUBLICATION_MATCHED_STATUS);

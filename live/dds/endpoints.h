@@ -3,12 +3,11 @@
 
 #include <dds/dds.h>
 
-#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "live/dds/node.h"
 
@@ -38,7 +37,7 @@ struct EndpointPlace {
   bool lockstep = false;
 };
 
-/// Topic, reader or reader with best effort of one type.
+/// Reads one type.
 class Ros2Reader {
  public:
   Ros2Reader(const EndpointPlace& place, const std::string& name, Ros2Type type);
@@ -48,20 +47,21 @@ class Ros2Reader {
                                   dds_instance_handle_t participant)>;
   /// Gives all samples that are there.
   void TakeAll(const Take& take);
-  /// Looks at the changes since the last call: who is there, and whether reliability asks too much.
+  /// Looks at the changes since the last call: who is there, and whether the reader asks for more
+  /// than a writer offers; then it asks for less.
   void LookAtStatus();
   int Writers() const { return writers_; }
   /// Returns whether the participant has a writer here.
   bool IsWrittenBy(dds_instance_handle_t participant) const;
 
  private:
-  void Open(bool reliable);
+  void Open(bool reliable, bool durable);
   dds_instance_handle_t ParticipantOf(dds_instance_handle_t writer);
 
   EndpointPlace place_;
   Ros2Type type_;
   DdsEntity topic_, reader_;
-  bool reliable_ = true;
+  bool reliable_ = true, durable_ = false;
   int writers_ = 0;
   std::map<dds_instance_handle_t, dds_instance_handle_t> participants_;  // of writers
 };

@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <cerrno>
-#include <cstdlib>
 #include <deque>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -70,7 +67,6 @@ class Ros2Node::Worker {
     if (Out* const out = OutOf(message.device)) {
       WithRos2(out->writer->type(), message,
                [&](const void* sample) { sent = out->there && out->writer->Write(sample); });
-      if (setup_.last_in >= 0) Keep(*out, message);
     }
     if (!sent) counts_.Add(&WireCounts::unsent);
     return sent;
@@ -108,7 +104,6 @@ class Ros2Node::Worker {
     std::optional<Ros2Writer> writer;
     std::atomic<bool> there = false;
     bool told = false;
-    std::optional<WireMessage> last;  // with last_in
   };
 
   EndpointPlace Place() const { return {participant_.get(), waitset_.get(), setup_.lockstep}; }
@@ -207,9 +202,9 @@ class Ros2Node::Worker {
     }
     for (std::size_t i = 0; i < ins_.size(); ++i) {
       if (static_cast<int>(i) == setup_.last_in) continue;
-      TakeFrom(ins_[i], [&](WireMessage&& message) { Pass(std::move(message), false); });
+      TakeFrom(ins_[i], [&](WireMessage&& message) { Pass(std::move(message)); });
     }
-    for (WireMessage& message : held) Pass(std::move(message), true);
+    for (WireMessage& message : held) Pass(std::move(message));
   }
 
   template <class Give>
@@ -236,7 +231,7 @@ class Ros2Node::Worker {
     return false;
   }
 
-  void Pass(WireMessage&& message, bool is_last) {
+  void Pass(WireMessage&& message) {
     const StampVerdict verdict = filter_.Judge(message);
     if (verdict == StampVerdict::kPass) {
       counts_.Add(&WireCounts::passed);
@@ -251,10 +246,6 @@ class Ros2Node::Worker {
     }
     const bool repeated = verdict == StampVerdict::kRepeated;
     counts_.Add(repeated ? &WireCounts::repeated : &WireCounts::out_of_order);
-    if (is_last) {
-      if (repeated) SendAgain();
-      return;
-    }
     reports_.Tell(event_,
                   fmt::format("{}: {}: found the time {} after {}, expected a later one", name_,
                               message.device, message.t_ns, filter_.Last(message.device)),
@@ -264,21 +255,6 @@ class Ros2Node::Worker {
   void Refuse(const std::string& why, const std::string& topic) {
     counts_.Add(&WireCounts::refused);
     reports_.Tell(event_, fmt::format("{}: {}", name_, why), topic);
-  }
-
-  void Keep(Out& out, const WireMessage& message) {
-    const std::lock_guard lock(last_mutex_);
-    out.last = message;
-  }
-
-  /// The answer to what came twice was lost.
-  void SendAgain() {
-    const std::lock_guard lock(last_mutex_);
-    for (const Out& out : outs_) {
-      if (!out.last || out.last->t_ns == 0) continue;
-      WithRos2(out.writer->type(), *out.last,
-               [&](const void* sample) { (void)out.writer->Write(sample); });
-    }
   }
 
   const Ros2Setup setup_;
@@ -293,7 +269,6 @@ class Ros2Node::Worker {
   std::deque<In> ins_;
   std::deque<Out> outs_;
   std::atomic<dds_instance_handle_t> commander_ = 0;
-  std::mutex last_mutex_;
   std::atomic<bool> stop_ = false;
   std::thread thread_;
 };

@@ -25,11 +25,12 @@ struct Ros2Setup {
   std::string network =
       "lo";  ///< interface; "lo" keeps to this machine, empty: the library's choice
   std::vector<Ros2Topic> in, out;
-  /// Both sides wait for one another: nothing is left out, however many samples come at once, and
-  /// readers are asked soon what they have.
+  /// Both sides wait for one another: nothing is left out, however many samples come at once and
+  /// also before a reader is there (transient local, where both offer it), and readers are asked
+  /// soon what they have.
   bool lockstep = false;
   /// Of `in`: opened when somebody is there for all other topics, and given after what was sent
-  /// before. A repeated message of it makes the node repeat what it sent last. -1: none is so.
+  /// before. -1: none is so.
   int last_in = -1;
   bool one_commander = false;  ///< the first participant that sends is listened to until it is gone
   bool says_invalid = true;    ///< an event for a stamp of 0

@@ -22,7 +22,6 @@ using simulation::kSimulationStart_ns;
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLook{20};       // how often the end is looked for
-constexpr std::chrono::milliseconds kSettle{100};    // of a lockstep's start, with ROS 2
 constexpr std::chrono::milliseconds kAskAgain{500};  // in lockstep, where nobody answers
 
 simulation::VirtualRobotSetup RobotOf(const simulation::Scenario& scenario, bool pictures,
@@ -134,9 +133,6 @@ class Session {
 
   void RunLockstep() {
     while (!Stopped() && outlets_.Clients() == 0) TakeOne();
-    // Over DDS both sides may not have heard of all that the other has.
-    const SteadyClock::time_point settled = SteadyClock::now() + kSettle;
-    while (options_.ros2_domain && SteadyClock::now() < settled) TakeOne();
     while (!Stopped() && !Left() && !DurationOver()) {
       outlets_.ForgetKept();
       Send(robot_.Advance(kSimulationStart_ns + std::llround(figures_.cycles * 1e9 / rate_hz_)));
