@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "control/delay_gain.h"
 #include "core/error.h"
 #include "pipeline/tip_fusion.h"
 
@@ -24,9 +25,18 @@ ShaftModel UnloadedShaft(const EstimatorOptions& options) {
   return model;
 }
 
-ControllerOptions UnderDelay(ControllerOptions options, const DelayUncertainty& delay) {
-  if (UsesTipMeasurement(options.kind)) options.gain = GainUnderDelay(options.gain, delay);
-  return options;
+/// Returns the gain that the doubt in the tip's latency leaves.
+double GainOf(double gain, const InstrumentControllerOptions& options) {
+  if (!UsesTipMeasurement(options.control.kind)) return gain;
+  const LateSampleOptions& late = options.late;
+  const double sd_s = options.em_is_tip ? late.em0_time_sd_s : late.tip_time_sd_s;
+  return GainUnderDelay(gain, {options.rate_hz, sd_s});
+}
+
+ControllerOptions PlaceOptions(const InstrumentControllerOptions& options) {
+  ControllerOptions place = options.control;
+  place.gain = GainOf(place.gain, options);
+  return place;
 }
 
 EstimatorOptions OptionsFor(EstimatorOptions options, ControllerKind kind) {
@@ -50,10 +60,10 @@ InstrumentController::InstrumentController(const InstrumentControllerOptions& op
       model_(std::move(model)),
       tracker_(std::move(tracker)),
       estimator_(OptionsFor(options.estimator, options.control.kind), options.window_samples),
-      place_(UnderDelay(options.control, options.delay)),
+      place_(PlaceOptions(options)),
       between_(BetweenTips(options)),
       without_tip_(BetweenTips(options)),
-      late_(options.late),
+      late_(options.late, options.control.max_tissue_gain),
       shaft_(UnloadedShaft(options.estimator)) {
   if (!options.direction) return;
   if (!IsRod(options.control.kind)) {
@@ -61,8 +71,7 @@ InstrumentController::InstrumentController(const InstrumentControllerOptions& op
                      Name(options.control.kind));
   }
   DirectionOptions direction = *options.direction;
-  if (UsesTipMeasurement(options.control.kind))
-    direction.gain = GainUnderDelay(direction.gain, options.delay);
+  direction.gain = GainOf(direction.gain, options);
   direction_.emplace(direction);
 }
 
@@ -88,7 +97,7 @@ SensorReadings InstrumentController::See(const ControllerInputs& inputs) {
   late_.Note(seen);
   if (tracker_ && !inputs.pictures.empty()) {
     track_ = tracker_->Follow(inputs.pictures, inputs.pictures_t_ns,
-                              late_.ReadingsAt(inputs.pictures_t_ns, seen));
+                              late_.PastAt(inputs.pictures_t_ns, seen).value_or(seen));
     seen.tip = {inputs.pictures_t_ns, {track_->tip, track_->direction_noise_rad}};
   }
   const bool is_new = seen.tip && (!tip_t_ns_ || seen.tip->t_ns > *tip_t_ns_);
@@ -111,9 +120,12 @@ SensorReadings InstrumentController::Carry(SensorReadings seen) {
   return seen;
 }
 
-/// Learns load and tissue from what all sensors said when the late tip was seen.
+/// Learns load and tissue from what all sensors said when the late tip was seen, where that is
+/// known.
 void InstrumentController::EstimateThen(const SensorReadings& seen) {
-  const auto then = Gather(late_.ReadingsAt(seen.tip->t_ns, seen));
+  const auto past = late_.PastAt(seen.tip->t_ns, seen);
+  if (!past) return;
+  const auto then = Gather(*past);
   const ShaftEstimate estimate = estimator_.Update(model_ ? model_->Correct(*then) : *then,
                                                    model_ ? model_->Shaft() : ShaftChange());
   Learn(seen.tip->t_ns, estimate);

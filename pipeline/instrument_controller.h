@@ -7,7 +7,6 @@
 #include <span>
 
 #include "control/controller.h"
-#include "control/delay_gain.h"
 #include "control/direction_controller.h"
 #include "control/fixtures.h"
 #include "core/image.h"
@@ -33,8 +32,7 @@ struct InstrumentControllerOptions {
   /// The straight kinds pivot at the port as registered, not as estimated.
   bool straight_at_registered_port = false;
   LateSampleOptions late;  ///< how late samples are carried on to the cycle's wrist
-  /// Of the tip's latency. The controllers' gain is GainUnderDelay of it.
-  DelayUncertainty delay;
+  double rate_hz = 0.0;    ///< of the cycles, for GainUnderDelay; 0: the gain stays as it is
 };
 
 /// The inputs of a cycle. Fixed size but for the pictures, which stay the caller's.

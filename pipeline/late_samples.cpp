@@ -40,12 +40,12 @@ bool LateSamples::HasLateTip(const SensorReadings& readings) const {
          Seconds(readings.wrist->t_ns - readings.tip->t_ns) > options_.late_s;
 }
 
-SensorReadings LateSamples::ReadingsAt(TimeNs t_ns, const SensorReadings& readings) const {
+std::optional<SensorReadings> LateSamples::PastAt(TimeNs t_ns,
+                                                  const SensorReadings& readings) const {
   if (!readings.wrist || t_ns >= readings.wrist->t_ns) return readings;
   auto then = history_.At(t_ns);
-  if (!then) return readings;
-  then->tip = readings.tip;
-  return *then;
+  if (then) then->tip = readings.tip;
+  return then;
 }
 
 void LateSamples::NoteTipBySensors(TimeNs t_ns, const Eigen::Vector3d& p_RE,
@@ -102,8 +102,7 @@ std::optional<LateSamples::Motion> LateSamples::MotionByRod(TimeNs t_ns, double 
   if (!then.IsUsable() || !now.IsUsable()) return {};
 
   const Eigen::Matrix3d C = now.dp_RE.rightCols<3>();
-  const Eigen::Matrix3d K =
-      TrustedStiffness(model.tissue_stiffness_N_m, C, options_.max_tissue_gain);
+  const Eigen::Matrix3d K = TrustedStiffness(model.tissue_stiffness_N_m, C, max_tissue_gain_);
   const Eigen::Matrix3d yields = (Eigen::Matrix3d::Identity() - C * K).inverse();
   const Eigen::Vector3d df_N = K * (yields * (now.p_RE - then.p_RE));
   const Place a = PlaceOn(then, distance_from_tip_m), b = PlaceOn(now, distance_from_tip_m);

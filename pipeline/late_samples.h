@@ -21,8 +21,7 @@ struct LateSampleOptions {
   double late_s = 0.0005;  ///< a tip older than the wrist by more is late
   /// A seen tip is carried on for so long after its first cycle, where no newer one comes.
   double keep_s = 0.12;
-  double way_error = 0.05;       ///< sd of the carried way by the model's error, over the way
-  double max_tissue_gain = 1.7;  ///< as ControllerOptions
+  double way_error = 0.05;  ///< sd of the carried way by the model's error, over the way
   /// Least sd of the load's wandering in a second, in EI / L^2. The wandering that the estimates
   /// show is taken where it is larger.
   double force_drift_units = 0.03;
@@ -32,7 +31,9 @@ struct LateSampleOptions {
 /// joined by how far the other sensors saw the tip go. Fixed size, allocates nothing.
 class LateSamples {
  public:
-  explicit LateSamples(const LateSampleOptions& options) : options_(options) {}
+  /// Takes how far tissue is trusted, as ControllerOptions.
+  LateSamples(const LateSampleOptions& options, double max_tissue_gain)
+      : options_(options), max_tissue_gain_(max_tissue_gain) {}
 
   /// Takes a cycle's readings into the past. Call it once a cycle, first.
   void Note(const SensorReadings& readings);
@@ -40,9 +41,9 @@ class LateSamples {
   /// Returns whether `readings` have a new tip that is late.
   bool HasLateTip(const SensorReadings& readings) const;
 
-  /// Returns the readings as they were at `t_ns`, with the tip of `readings`: the newest ones for
-  /// later times, and before the past that is kept.
-  SensorReadings ReadingsAt(TimeNs t_ns, const SensorReadings& readings) const;
+  /// Returns the readings as they were at `t_ns`, with the tip of `readings`; `readings` themselves
+  /// from their wrist's time on. Empty before the past that is kept.
+  std::optional<SensorReadings> PastAt(TimeNs t_ns, const SensorReadings& readings) const;
 
   /// Takes where the sensors without the tip see it at the wrist's time `t_ns`, with its covariance
   /// in R. Call it in every cycle in which they do.
@@ -85,6 +86,7 @@ class LateSamples {
   void CarryEm0(const ShaftModel& model, SensorReadings& readings);
 
   LateSampleOptions options_;
+  double max_tissue_gain_;
   ReadingsHistory history_;
   std::array<TipBySensors, 1024> by_sensors_;  // a ring, the newest before `next_`
   std::size_t next_ = 0, by_sensors_count_ = 0;

@@ -35,7 +35,10 @@ LoadMeasurement Between(LoadMeasurement a, const LoadMeasurement& b, double u) {
 
 void ReadingsHistory::Add(const SensorReadings& readings) {
   if (!readings.wrist) return;
-  if (count_ > 0 && readings.wrist->t_ns < Of(count_ - 1).wrist->t_ns + kApart_ns) return;
+  const auto t_ns = [this](std::size_t i) { return Of(i).wrist->t_ns; };
+  if (count_ > 0 && readings.wrist->t_ns <= t_ns(count_ - 1)) return;
+  // The last ones make room where they are too near to those before them.
+  if (count_ > 1 && t_ns(count_ - 1) < t_ns(count_ - 2) + kApart_ns) --count_;
   if (count_ == kSize) {
     first_ = (first_ + 1) % kSize;
     --count_;

@@ -10,11 +10,11 @@
 
 namespace flextip {
 
-/// The readings of the last cycles, four milliseconds or more apart: a second or more. Fixed size.
+/// The readings of the last cycles, the newest always and the others four milliseconds or more
+/// apart: a second or more. Fixed size.
 class ReadingsHistory {
  public:
-  /// Adds the readings of a cycle, which has a wrist. Those less than four milliseconds after the
-  /// last ones are left out.
+  /// Adds the readings of a cycle; those without a wrist, or not after the last ones, are left out.
   void Add(const SensorReadings& readings);
 
   /// Returns the sensors but the tip at `t_ns`, each interpolated between its own neighbouring

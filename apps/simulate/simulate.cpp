@@ -75,11 +75,15 @@ void WriteDeviation(const fs::path& file, const simulation::LoopResult& result) 
 }
 
 nlohmann::json Figures(const simulation::LoopSetup& setup, const simulation::LoopResult& result) {
-  nlohmann::json figures = {
-      {"max_deviation_m", result.max_deviation_m},   {"rms_deviation_m", result.rms_deviation_m},
-      {"final_error_m", result.final_error_m},       {"updates", result.updates.size()},
-      {"control_statuses", result.control_statuses}, {"tip_statuses", result.tip_statuses},
-      {"steps_limited", result.steps_limited},       {"steps_damped", result.steps_damped}};
+  nlohmann::json figures = {{"max_deviation_m", result.max_deviation_m},
+                            {"rms_deviation_m", result.rms_deviation_m},
+                            {"final_error_m", result.final_error_m},
+                            {"updates", result.updates.size()},
+                            {"control_statuses", result.control_statuses},
+                            {"tip_statuses", result.tip_statuses},
+                            {"steps_limited", result.steps_limited},
+                            {"steps_damped", result.steps_damped},
+                            {"gain", result.gain}};
   if (!setup.fixtures.list.empty()) figures["fixture_statuses"] = result.fixture_statuses;
   if (!setup.path.directions.empty())
     figures["final_direction_error_rad"] = result.final_direction_error_rad;

@@ -24,12 +24,12 @@ InstrumentControllerOptions OptionsOf(const Session& session) {
   options.direction_free_axis = session.task.direction_free_axis;
   options.fixtures = session.task.fixtures;
   options.em_is_tip = session.EmIsTip();
-  const Latency& tip = LatencyOf(session, StreamName::kTip);
-  const Latency& em0 = LatencyOf(session, StreamName::kEm0);
+  const Latency tip = session.LatencyOf(StreamName::kTip);
+  const Latency em0 = session.LatencyOf(StreamName::kEm0);
   options.late.tip_time_sd_s = tip.sd_s;
   options.late.em0_time_sd_s = em0.sd_s;
   options.late.carry_em0 = session.EmIsTip() || em0.value_s != 0.0 || em0.sd_s != 0.0;
-  options.delay = {session.rate_hz, session.EmIsTip() ? em0.sd_s : tip.sd_s};
+  options.rate_hz = session.rate_hz;
   return options;
 }
 
@@ -116,7 +116,7 @@ std::optional<CrtkCommand> Cycle::StartUp(const CycleInputs& inputs) {
     return {};
   }
   if (wait_ || !session_.robot.command_state || robot.is_busy) return {};
-  if (DelayIsUnknown(session_)) return {};
+  if (session_.DelayIsUnknown()) return {};
   if (robot.state == CrtkState::kFault) return {};
   if (Seconds(inputs.t_ns - asked_ns_) < kAskAgain_s) return {};
   asked_ns_ = inputs.t_ns;
@@ -142,7 +142,7 @@ SensorReadings Cycle::Readings(const StreamInputs& streams) {
   if (streams.wrist && base.wrist0) {
     readings.wrist = {streams.wrist->t_ns, Measured(*base.wrist0, streams.wrist->value)};
     double& noise_m = readings.wrist->value.position_noise_m;
-    const double time_sd_s = LatencyOf(session_, StreamName::kWrist).sd_s;
+    const double time_sd_s = session_.LatencyOf(StreamName::kWrist).sd_s;
     noise_m = std::hypot(noise_m, time_sd_s * v_last_m_s_.norm());
   }
   if (streams.tip && base.vision0) {

@@ -23,29 +23,16 @@ bool IsStale(const Session& session, const CycleInputs& inputs, StreamName strea
   if (!times) return true;
   const auto& setup = session.Of(stream);
   const double stale_s = setup ? setup->stale_s : session.camera ? session.camera->stale_s : 0.0;
-  const double limit_s = stale_s + LatencyOf(session, stream).value_s;
+  const double limit_s = stale_s + session.LatencyOf(stream).value_s;
   return Age_s(session, inputs.t_ns, times->first, times->second) > limit_s;
 }
 
 }  // namespace
 
-bool DelayIsUnknown(const Session& session) {
-  if (!session.path || !UsesTipMeasurement(session.task.controller.kind)) return false;
-  return session.camera && !session.camera->address && !session.camera->latency_known;
-}
-
-const Latency& LatencyOf(const Session& session, StreamName stream) {
-  static const Latency kNone;
-  if (const auto& setup = session.Of(stream)) return setup->latency;
-  if (stream == StreamName::kTip && session.camera) return session.camera->latency;
-  return kNone;
-}
-
 const char* Name(Hold hold) {
-  constexpr std::array names{"none",      "bad_time",      "source_lost", "stale_wrist",
-                             "stale_tip", "delay_unknown", "not_enabled", "resuming",
-                             "starting",  "no_goal",       "no_command",  "not_finite",
-                             "stopped"};
+  constexpr std::array names{"none",        "bad_time", "source_lost",  "stale_wrist", "stale_tip",
+                             "not_enabled", "resuming", "starting",     "no_goal",     "no_command",
+                             "not_finite",  "stopped",  "delay_unknown"};
   return names[static_cast<std::size_t>(hold)];
 }
 
@@ -96,7 +83,7 @@ Hold FindHold(const Session& session, const CycleInputs& inputs, bool waits, int
   held_by = -1;
   if (IsStale(session, inputs, StreamName::kWrist)) return Hold::kStaleWrist;
   if (tracks && IsStale(session, inputs, tip)) return Hold::kStaleTip;
-  if (DelayIsUnknown(session)) return Hold::kDelayUnknown;
+  if (session.DelayIsUnknown()) return Hold::kDelayUnknown;
   if (session.robot.state) {
     const auto& state = inputs.streams.state;
     if (!state || state->value.state != CrtkState::kEnabled || !state->value.is_homed)

@@ -11,14 +11,14 @@
 
 namespace flextip::live {
 
-/// Why the robot is held where it is. The first that applies, in this order.
+/// Why the robot is held where it is. The first that applies, in this order but for the last.
+/// Recordings have the numbers: new names go to the end.
 enum class Hold : std::uint8_t {
   kNone,
   kBadTime,     ///< the cycle's time stands, or a sample is from the future
   kSourceLost,  ///< the peer of a stream is gone, or it has no new sample for longer than its limit
   kStaleWrist,
   kStaleTip,
-  kDelayUnknown,  ///< how old the tip is when it arrives is not stated: the robot is not enabled
   kNotEnabled,    ///< the robot is not enabled and homed
   kResuming,      ///< the cause is gone, but not for long enough
   kStarting,      ///< the tip's place is being averaged before the path starts
@@ -26,6 +26,7 @@ enum class Hold : std::uint8_t {
   kNoCommand,     ///< the controller has none: its status says why
   kNotFinite,     ///< the controller's command is no number
   kStopped,       ///< the operator said stop, or the path is done
+  kDelayUnknown,  ///< before kNotEnabled: how old the tip is on arrival is not stated
 };
 /// Returns the name as in recordings and summaries: "stale_wrist".
 const char* Name(Hold hold);
@@ -40,13 +41,6 @@ struct CycleInputs {
 /// state; kNone where there is none. `waits`: the path is not begun, so a busy robot counts as not
 /// enabled. `held_by` becomes the stream, with kSourceLost.
 Hold FindHold(const Session& session, const CycleInputs& inputs, bool waits, int& held_by);
-
-/// Returns whether the controller follows a tip whose age on arrival nobody knows: pictures of a
-/// camera that stamps them as they arrive, without a stated latency.
-bool DelayIsUnknown(const Session& session);
-
-/// Returns the latency of a stream, with the camera's for the tip.
-const Latency& LatencyOf(const Session& session, StreamName stream);
 
 /// Returns the times of the stream's sample and of its arrival, nothing where there is none.
 std::optional<std::pair<TimeNs, TimeNs>> TimesIn(const StreamInputs& streams, StreamName stream);

@@ -35,6 +35,14 @@ class SessionReader {
     ReadCalibrations();
     ReadModel();
     RejectUnknownKeys();
+    if (session_.DelayIsUnknown()) {
+      session_.warnings.push_back(
+          top_.Map("sources")
+              .Error("cam0",
+                     "has no latency_s: the robot will not be enabled; state how old a "
+                     "picture is on arrival, latency_s: {value: ..., sd: ...}")
+              .what());
+    }
     return std::move(session_);
   }
 
@@ -327,6 +335,17 @@ class SessionReader {
 const char* Name(StreamName stream) {
   constexpr std::array names{"wrist0", "vision0", "em0", "em1", "strain0", "load0"};
   return names[static_cast<std::size_t>(stream)];
+}
+
+Latency Session::LatencyOf(StreamName stream) const {
+  if (const auto& setup = Of(stream)) return setup->latency;
+  if (stream == StreamName::kTip && camera) return camera->latency;
+  return {};
+}
+
+bool Session::DelayIsUnknown() const {
+  if (!path || !UsesTipMeasurement(task.controller.kind)) return false;
+  return camera && !camera->address && !camera->latency_known;
 }
 
 Session ReadSession(const std::filesystem::path& file, const std::filesystem::path& other_folder) {

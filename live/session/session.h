@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "diagnosis/model/extended_model.h"
-#include "task/task_reader.h"
 #include "recording/calibrations/apply.h"
 #include "recording/recording.h"
+#include "task/task_reader.h"
 
 namespace flextip::live {
 
@@ -47,7 +47,7 @@ struct CameraSetup {
   std::string video;
   std::optional<Address> address;
   Latency latency;
-  bool latency_known = false;  ///< it is stated in the session, or measured by a calibration
+  bool latency_known = false;  ///< it is stated in the session
   double stale_s = 0.2;
 };
 
@@ -105,6 +105,11 @@ struct Session {
     return streams[static_cast<std::size_t>(stream)];
   }
   bool HasTip() const { return Of(StreamName::kTip).has_value() || camera.has_value(); }
+  /// Returns the latency of a stream, with the camera's for the tip.
+  Latency LatencyOf(StreamName stream) const;
+  /// Returns whether the controller follows a tip whose age on arrival nobody knows: pictures of a
+  /// camera that stamps them as they arrive, without a stated latency.
+  bool DelayIsUnknown() const;
   /// Where nothing sees the tip, an EM sensor near it is its measurement.
   bool EmIsTip() const { return !HasTip() && Of(StreamName::kEm0).has_value(); }
 };

@@ -16,12 +16,6 @@ SensorSetup WithoutTipIf(bool camera, SensorSetup sensors) {
   return sensors;
 }
 
-/// Takes what is known of a latency off a sample's time.
-template <class T>
-void TakeOff(const Latency& latency, std::optional<Sample<T>>& sample) {
-  if (sample) sample->t_ns -= std::llround(1e9 * latency.value_s);
-}
-
 /// One run of the loop.
 class Loop {
  public:
@@ -119,8 +113,7 @@ class Loop {
     ControllerInputs inputs;
     inputs.t_ns = inputs.pictures_t_ns = t_ns_;
     inputs.sensors = NewestReadings(result_.recording);
-    TakeOff(setup_.tip_latency, inputs.sensors.tip);
-    TakeOff(setup_.em0_latency, inputs.sensors.em0);
+    TakeOffLatencies(setup_, inputs);
     inputs.p_RE_desired = path_->Advance(p_RE_known_);
     inputs.d_RE_desired = path_->Direction();
     std::optional<Image> frame;
@@ -208,8 +201,8 @@ InstrumentControllerOptions ControllerOptionsOf(const LoopSetup& setup) {
   options.fixtures = setup.fixtures;
   options.late.tip_time_sd_s = setup.tip_latency.sd_s;
   options.late.em0_time_sd_s = setup.em0_latency.sd_s;
-  options.late.carry_em0 = setup.em0_latency.value_s != 0.0;
-  options.delay = {setup.update_rate_hz, setup.tip_latency.sd_s};
+  options.late.carry_em0 = setup.em0_latency.value_s != 0.0 || setup.em0_latency.sd_s != 0.0;
+  options.rate_hz = setup.update_rate_hz;
   return options;
 }
 
@@ -218,6 +211,13 @@ std::unique_ptr<InstrumentTracker> TrackerOf(const LoopSetup& setup, const Track
   InstrumentTrackerSetup tracker = TrackerSetupOf(setup.base, *camera);
   tracker.with_model = true;
   return std::make_unique<InstrumentTracker>(tracker);
+}
+
+void TakeOffLatencies(const LoopSetup& setup, ControllerInputs& inputs) {
+  const TimeNs tip_ns = std::llround(1e9 * setup.tip_latency.value_s);
+  inputs.pictures_t_ns -= tip_ns;
+  if (inputs.sensors.tip) inputs.sensors.tip->t_ns -= tip_ns;
+  if (inputs.sensors.em0) inputs.sensors.em0->t_ns -= std::llround(1e9 * setup.em0_latency.value_s);
 }
 
 LoopResult RunClosedLoop(const LoopSetup& setup, const LoopCamera* camera,

@@ -83,6 +83,10 @@ struct LoopResult {
 InstrumentControllerOptions ControllerOptionsOf(const LoopSetup& setup);
 std::unique_ptr<InstrumentTracker> TrackerOf(const LoopSetup& setup, const TrackerOptions* camera);
 
+/// Takes the latencies that the controller is told of off the times of its inputs, pictures
+/// included.
+void TakeOffLatencies(const LoopSetup& setup, ControllerInputs& inputs);
+
 /// Runs one controller along the path. `camera` null: the tip comes from `sensors.tip` instead.
 /// Throws InputError where the plant has no equilibrium at the start and WorkError where it loses
 /// it on the way.

@@ -47,6 +47,13 @@ bool SameBits(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return true;
 }
 
+/// Whether the recording has a picture of `t_ns`; a camera may be slower than the commands.
+bool HasPicture(const Recording& recording, TimeNs t_ns) {
+  if (!recording.cam0) return false;
+  const auto bracket = FindBracket(recording.cam0->filenames, t_ns);
+  return bracket && bracket->fraction == 0.0;
+}
+
 Frame NextFrame(FrameSource& frames, TimeNs t_ns) {
   auto frame = frames.Next();
   if (frame && frame->t_ns == t_ns) return std::move(*frame);
@@ -75,11 +82,12 @@ std::vector<ReplayedCommand> ReplayController(const Scenario& scenario, Controll
     ControllerInputs inputs;
     inputs.t_ns = inputs.pictures_t_ns = t_ns;
     inputs.sensors = newest.At(t_ns);
+    TakeOffLatencies(setup, inputs);
     inputs.p_RE_desired = path.Advance(p_RE_known);
     inputs.d_RE_desired = path.Direction();
     Frame frame;
     const Image* pictures[] = {nullptr};
-    if (frames != nullptr) {
+    if (frames != nullptr && HasPicture(recording, t_ns)) {
       // The loop had the tips of earlier frames; that of this one it saw in the picture.
       frame = NextFrame(*frames, t_ns);
       pictures[0] = &frame.image;

@@ -16,9 +16,10 @@ struct ReplayedCommand {
 };
 
 /// Steps the controller `kind` of `scenario` through a recording of simulate: at each command the
-/// newest sample of every stream, and the next of `frames` where the run was rendered (else null).
+/// newest sample of every stream, and its picture of `frames` where the run was rendered (else
+/// null).
 /// The path starts where the scenario's plant has the tip. Throws InputError where the recording
-/// has no command, or fewer frames than commands.
+/// has no command, or lacks a picture that it names.
 std::vector<ReplayedCommand> ReplayController(const Scenario& scenario, ControllerKind kind,
                                               const Recording& recording, FrameSource* frames);
 

@@ -161,6 +161,30 @@ TEST(InstrumentController, HasNoCommandWithoutTheWrist) {
 }
 
 // Control may run faster than the camera: a tip that was used is not used again.
+/// The same session with each tip three cycles late, at its own time.
+std::vector<ControllerInputs> LateSession(int cycles) {
+  const auto session = Session(cycles);
+  auto late = session;
+  for (std::size_t i = 0; i < late.size(); ++i) {
+    late[i].sensors.tip.reset();
+    if (i >= 3) late[i].sensors.tip = session[i - 3].sensors.tip;
+  }
+  return late;
+}
+
+TEST_P(EveryController, RepeatsItselfAndAllocatesNothingWithLateTips) {
+  const auto session = LateSession(60);
+  const auto first = Replay(Options(GetParam()), session);
+  const auto again = Replay(Options(GetParam()), session);
+  for (std::size_t i = 0; i < session.size(); ++i)
+    ExpectSameBits(first[i].p_RW_command, again[i].p_RW_command);
+  InstrumentController controller(Options(GetParam()));
+  for (std::size_t i = 0; i < 20; ++i) controller.Step(session[i]);
+  const long before = AllocationCount();
+  for (std::size_t i = 20; i < session.size(); ++i) controller.Step(session[i]);
+  EXPECT_EQ(AllocationCount(), before);
+}
+
 TEST(InstrumentController, ATipIsCarriedOnUntilItIsTooOld) {
   auto session = Session(2);
   InstrumentControllerOptions options = Options(ControllerKind::kStraightTrack);

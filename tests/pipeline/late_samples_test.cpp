@@ -13,6 +13,7 @@ namespace {
 const Instrument kInstrument{0.6, 0.00238, 0.304, 0.0};
 const Eigen::Vector3d kPort(0.0, 0.0, 0.17), kWrist(-0.2457, 0.0, 0.3421);
 const Eigen::Vector3d kForce(0.2, -0.15, 0.4);
+constexpr double kTissueGain = 1.7;
 constexpr TimeNs kStart_ns = 1'700'000'000'000'000'000, kPeriod_ns = 8'333'333;
 
 Eigen::Vector3d WristAt(int cycle) {
@@ -59,7 +60,7 @@ class LateTip : public ::testing::Test {
 
 TEST_F(LateTip, IsWhereThePlantPutsIt) {
   for (const int late : {4, 8, 30}) {
-    LateSamples samples({});
+    LateSamples samples({}, kTissueGain);
     for (int i = 0; i < 100; ++i) samples.Note(WristOnly(i));
     SensorReadings now = WristOnly(99);
     const Pose then = TrueTip(99 - late), truth = TrueTip(99);
@@ -75,7 +76,7 @@ TEST_F(LateTip, IsWhereThePlantPutsIt) {
 }
 
 TEST_F(LateTip, OfTheWristsTimeStaysAsItIs) {
-  LateSamples samples({});
+  LateSamples samples({}, kTissueGain);
   SensorReadings now = WristOnly(0);
   samples.Note(now);
   const Pose T_RE = TrueTip(0);
@@ -87,7 +88,7 @@ TEST_F(LateTip, OfTheWristsTimeStaysAsItIs) {
 }
 
 TEST_F(LateTip, IsDroppedWhereThePastIsNotKnown) {
-  LateSamples samples({});
+  LateSamples samples({}, kTissueGain);
   for (int i = 50; i < 60; ++i) samples.Note(WristOnly(i));
   SensorReadings now = WristOnly(59);
   now.tip = Tip(kStart_ns, TrueTip(0));
@@ -98,7 +99,7 @@ TEST_F(LateTip, IsDroppedWhereThePastIsNotKnown) {
 TEST_F(LateTip, TheTimesDeviationCountsByTheSpeed) {
   LateSampleOptions options;
   options.tip_time_sd_s = 0.004;
-  LateSamples sharp({}), blurred(options);
+  LateSamples sharp({}, kTissueGain), blurred(options, kTissueGain);
   for (int i = 0; i < 40; ++i) {
     sharp.Note(WristOnly(i));
     blurred.Note(WristOnly(i));
@@ -123,7 +124,7 @@ TEST_F(LateTip, OtherSensorsTakeOverWhereTheLoadChanges) {
   simulation::Plant free(unloaded, {60, 60});
   LateSampleOptions options;
   options.force_drift_units = 2.0;  // it was seen to wander
-  LateSamples samples(options);
+  LateSamples samples(options, kTissueGain);
   const Eigen::Matrix3d seen_m2 = 4e-8 * Eigen::Matrix3d::Identity();
   const Eigen::Vector3d bias_m(0.001, -0.002, 0.001);  // of their port: the same then and now
   for (int i = 0; i < 40; ++i) {
@@ -156,6 +157,23 @@ TEST(ReadingsHistory, InterpolatesEachSensorByItsOwnTimes) {
   const Eigen::Vector3d expected =
       (WristAt(352) - WristAt(349)) / (3e-9 * static_cast<double>(kPeriod_ns));
   EXPECT_LT((v - expected).norm(), 5e-3 * expected.norm());
+}
+
+TEST(ReadingsHistory, KeepsTheNewestOfAFastCycle) {
+  ReadingsHistory history;
+  constexpr TimeNs kFast_ns = 1'000'000;
+  for (int i = 0; i < 2000; ++i) {
+    SensorReadings readings;
+    readings.wrist = {kStart_ns + i * kFast_ns, {Eigen::Vector3d(1e-6 * i * i, 0, 0), {}, 0, 0}};
+    history.Add(readings);
+    if (i == 0) continue;
+    ASSERT_NEAR(history.WristAt(readings.wrist->t_ns)->p_RW.x(), 1e-6 * i * i, 1e-12) << i;
+  }
+  // A parabola between samples 4 ms apart is off by a quarter of 4^2 at most.
+  const TimeNs second_ns = 1'000'000'000;
+  const auto wrist = history.WristAt(kStart_ns + 1999 * kFast_ns - second_ns);
+  ASSERT_TRUE(wrist);
+  EXPECT_NEAR(wrist->p_RW.x(), 1e-6 * 999 * 999, 4.1e-6);
 }
 
 }  // namespace

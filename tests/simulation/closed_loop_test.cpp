@@ -8,6 +8,7 @@
 #include <string>
 
 #include "pipeline/instrument_tracker.h"
+#include "simulation/closed_loop/replay.h"
 #include "simulation/closed_loop/scenario.h"
 
 namespace flextip::simulation {
@@ -200,6 +201,43 @@ TEST(ClosedLoop, ThroughTheLaparoscope) {
     EXPECT_EQ(track.tip.status, tips[i].value.status);
     EXPECT_LT((track.tip.p_RE - tips[i].value.p_RE).norm(), 1e-9);
   }
+}
+
+TEST(ClosedLoop, AToldLatencyCostsLittle) {
+  Scenario scenario = ReadScenario(kScenarios + "press.yaml");
+  scenario.loop.seed = 77;
+  const auto rms_m = [&](double latency_s, bool told) {
+    scenario.loop.sensor_effects.camera_latency_s = latency_s;
+    scenario.loop.tip_latency = {told ? latency_s : 0.0, 0.0};
+    return RunLoop(scenario, ControllerKind::kStraightTrack).rms_deviation_m;
+  };
+  const double prompt_m = rms_m(0.0, true);
+  EXPECT_LT(rms_m(0.062, true), 1.3 * prompt_m);
+  EXPECT_LT(rms_m(0.25, true), 2.5 * prompt_m);
+  EXPECT_GT(rms_m(0.062, false), 3.0 * prompt_m);
+}
+
+TEST(ClosedLoop, ADoubtfulLatencyTakesGain) {
+  Scenario scenario = ReadScenario(kScenarios + "press.yaml");
+  scenario.loop.tip_latency = {0.0, 0.02};
+  const LoopResult doubtful = RunLoop(scenario, ControllerKind::kRodTrack);
+  EXPECT_LT(doubtful.gain, 0.6);
+  EXPECT_LT(doubtful.max_deviation_m, 0.005);
+  EXPECT_EQ(RunLoop(scenario, ControllerKind::kRodCalculate).gain, 1.0);
+}
+
+// Replay has the told latency, the faster cycle and the pictures in between.
+TEST(ClosedLoop, ReplaysWithLatenciesAndAFasterCycle) {
+  Scenario scenario = ReadScenario(kScenarios + "press.yaml");
+  scenario.loop.sensor_effects.camera_latency_s = 0.062;
+  scenario.loop.tip_latency = {0.062, 0.004};
+  scenario.loop.update_rate_hz = 120.0;
+  scenario.loop.path.waypoints_m = {{0.0, 0.0, -0.003}};
+  scenario.loop.controller.kind = ControllerKind::kRodTrack;
+  const LoopResult run = RunClosedLoop(scenario.loop, nullptr);
+  const auto again = ReplayController(scenario, ControllerKind::kRodTrack, run.recording, nullptr);
+  ASSERT_EQ(again.size(), run.updates.size());
+  for (const ReplayedCommand& command : again) ASSERT_TRUE(command.equal) << command.t_ns;
 }
 
 }  // namespace

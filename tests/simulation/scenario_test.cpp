@@ -52,6 +52,25 @@ std::string Complaint(const std::string& from, const std::string& to,
   return "";
 }
 
+TEST(Scenario, SaysWhatTheControllerIsToldOfTimes) {
+  std::string text = PressText();
+  const std::string control = "control: {";
+  text.replace(text.find(control), control.size(),
+               control +
+                   "rate_hz: 120, tip_latency_s: {value: 0.062, sd: 0.004}, "
+                   "em0_latency_s: {value: 0.02}, ");
+  const fs::path file =
+      fs::path(testing::TempDir()) / ("scenario_times_" + std::to_string(::getpid()) + ".yaml");
+  std::ofstream(file) << text;
+  const LoopSetup loop = ReadScenario(file).loop;
+  EXPECT_EQ(loop.update_rate_hz, 120.0);
+  EXPECT_EQ(loop.sensors.tip->rate_hz, 30.0);
+  EXPECT_EQ(loop.tip_latency.value_s, 0.062);
+  EXPECT_EQ(loop.tip_latency.sd_s, 0.004);
+  EXPECT_EQ(loop.em0_latency.value_s, 0.02);
+  EXPECT_THAT(Complaint(control, control + "tip_latency_s: {sd: 0.1}, "), HasSubstr("value"));
+}
+
 TEST(Scenario, PressReads) {
   const Scenario scenario = ReadScenario(kPress);
   EXPECT_EQ(scenario.controllers.size(), 6u);
