@@ -132,7 +132,7 @@ TEST(OpenIgtLinkConnection, MessagesGoBothWays) {
   EXPECT_EQ(server.Send({"cam0", 8, WireImage{image}}), 1);
   ASSERT_TRUE(at_server.Await(1));
   ASSERT_TRUE(at_client.Await(2));
-  const auto& sent = std::get<WireTransform>(at_server.Messages()[0].body);
+  const auto sent = std::get<WireTransform>(at_server.Messages()[0].body);
   EXPECT_LT((sent.T_RD.p - pose.p).norm(), 1e-8);
   EXPECT_EQ(std::get<WireNumbers>(at_client.Messages()[0].body).values[0], 0.25);
   EXPECT_EQ(std::get<WireImage>(at_client.Messages()[1].body).image.data, image.data);
