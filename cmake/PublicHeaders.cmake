@@ -92,6 +92,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   kinematics/effect_rod.h
   kinematics/plane_beam.h
   kinematics/rod.h
+  kinematics/rod/point.h
   kinematics/straight.h
   kinematics/tip_bending.h
   pipeline/estimate_recording.h

@@ -16,6 +16,13 @@ constexpr double kObservable = 0.3;  // posterior over prior sd of the force acr
 constexpr double kDoubtful = 0.005;  // sd of the tip over L past which a load has to stand out
 constexpr double kMisfit = 100.0;    // chi2 a measurement past which another start is tried
 
+// Gauss-Newton. Each step leaves far less than its own length, so that after a step of 1e-3
+// standard deviations nothing that counts is left (the rule of the damped fit is the same).
+constexpr int kMaxGaussNewton = 8;
+constexpr double kSettled = 1e-6;   // squared step in standard deviations
+constexpr double kLeastGain = 0.1;  // of the gain that the linear model promises
+constexpr double kRounding = 1e-12;
+
 bool AllFinite(const Measurements& z) {
   bool ok = z.p_RW.allFinite();
   if (z.R_RW) ok &= z.R_RW->allFinite();
@@ -54,6 +61,41 @@ ShaftModel StraightModel(const EstimatorOptions& options, const ShaftChange& cha
   model.wrist_play_m = change.wrist_play_m;
   model.beam.status = BeamStatus::kStraight;
   return model;
+}
+
+/// Returns J^T J.
+Matrix9d Information(const RodFit::Jacobian& jacobian) {
+  Matrix9d information;
+  for (int i = 0; i < 9; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      information(i, j) = information(j, i) = jacobian.col(i).dot(jacobian.col(j));
+    }
+  }
+  return information;
+}
+
+/// Goes from `x` to the least squares by steps without damping. Returns false where the sum of
+/// squares does not fall, as far from the end; `x` is then what it was.
+bool GaussNewton(const RodFit& fit, RodParameters& x) {
+  RodFit::Residuals r;
+  RodFit::Jacobian J;
+  RodParameters at = x;
+  if (!fit(at.data(), r.data(), J.data())) return false;
+  for (int i = 0; i < kMaxGaussNewton; ++i) {
+    const RodParameters gradient = J.transpose() * r;
+    const RodParameters step = -Ldlt(Information(J)).Solve(gradient);
+    const double cost = r.squaredNorm(), gain = -step.dot(gradient);
+    if (!(gain >= 0.0)) return false;
+    const RodParameters next = at + step;
+    if (!fit(next.data(), r.data(), J.data())) return false;
+    if (!(r.squaredNorm() <= cost - kLeastGain * gain + kRounding * (1.0 + cost))) return false;
+    at = next;
+    if (gain < kSettled) {
+      x = at;
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -155,17 +197,16 @@ bool ShaftEstimator::Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate)
     x.tail<3>().setZero();
     if (!fit(x.data(), residuals.data(), nullptr)) return false;
   }
-  solver.Solve(fit, &x);
+  if (!GaussNewton(fit, x)) solver.Solve(fit, &x);
   if (!x.allFinite() || !fit(x.data(), residuals.data(), jacobian.data())) return false;
   estimate.chi2 = residuals.squaredNorm();
   estimate.measurements = fit.MeasurementCount();
-  const Matrix9d information = jacobian.transpose() * jacobian;
-  estimate.covariance = Ldlt(information).Inverse();
+  estimate.covariance = Ldlt(Information(jacobian)).Inverse();
   return estimate.covariance.allFinite();
 }
 
 void ShaftEstimator::Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate) {
-  const ShaftRodState rod = solver_.Solve(fit.ProblemAt(x));
+  const ShaftRodState& rod = fit.RodAt(x);
   estimate.p_RE = rod.p_RE;
   estimate.d_RE = rod.end.t;
   estimate.s_port_m = rod.s_port_m;
