@@ -91,7 +91,7 @@ int RodSolver::SolveWarm(const RodProblem& problem, const Scaled& scaled, Unknow
   Vector6 dx = dx_ * moved, first = dx;
   Start start;
   start.moved = dx.norm();
-  start.same = start.moved == 0.0 && moved.isZero(0.0);
+  start.same = start.moved == 0.0;  // as where wrist and port move together
   const double last = predicted_.norm(), along = dx.dot(predicted_);
   if (along > kSameWay * last * start.moved) {
     const double part = along / (last * last);

@@ -35,7 +35,7 @@ TipCamera::~TipCamera() {
 
 void TipCamera::Take(TimeNs t_ns, const Image& image, TimeNs arrived_ns) {
   const CameraCalibration& camera = session_.base.cam0->calibration;
-  const TimeNs late_ns = std::llround(1e9 * session_.camera->latency.value_s);
+  const TimeNs taken_ns = session_.camera->TimeOf(t_ns);
   {
     const std::lock_guard lock(mutex_);
     ++counts_.pictures;
@@ -48,11 +48,11 @@ void TipCamera::Take(TimeNs t_ns, const Image& image, TimeNs arrived_ns) {
     }
     if (!session_.robot.lockstep) {
       counts_.left_out += newest_.has_value();
-      newest_ = Picture{t_ns - late_ns, arrived_ns, image};
+      newest_ = Picture{taken_ns, arrived_ns, image};
     }
   }
   if (session_.robot.lockstep) {
-    Look({t_ns - late_ns, arrived_ns, image});
+    Look({taken_ns, arrived_ns, image});
   } else {
     changed_.notify_one();
   }

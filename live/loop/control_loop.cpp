@@ -49,7 +49,8 @@ class Loop {
                    if (recorder_ != nullptr) recorder_->Take(stream, sample);
                    if (camera_) camera_->Note(stream, sample);
                  }),
-        cycle_(session, options.wait || options.only_timing) {
+        cycle_(session, options.wait || options.only_timing),
+        T_BR_(session.robot.T_RB.Inverse()) {
     set_point_.device = session.robot.command.device;
     if (session.robot.command_state) state_command_.device = session.robot.command_state->device;
   }
@@ -162,7 +163,7 @@ class Loop {
     bool sent = false;
     if (has_one && (!options_.only_timing || known_still)) {
       WireTransform transform;
-      transform.T_RD = {outputs.R_RW, outputs.p_RW_command};
+      transform.T_RD = T_BR_ * Pose{outputs.R_RW, outputs.p_RW_command};
       set_point_.t_ns = outputs.has_command ? outputs.t_ns : 0;
       set_point_.body = transform;
       sent = peers_->Send(session_.robot.command, set_point_);
@@ -229,6 +230,7 @@ class Loop {
   Cycle cycle_;
   std::optional<TipCamera> camera_;
   std::unique_ptr<Peers> peers_;
+  const Pose T_BR_;
   WireMessage set_point_, state_command_;
   CycleRecord record_;
   LoopReport report_;

@@ -24,11 +24,10 @@ InstrumentControllerOptions OptionsOf(const Session& session) {
   options.direction_free_axis = session.task.direction_free_axis;
   options.fixtures = session.task.fixtures;
   options.em_is_tip = session.EmIsTip();
-  const Latency tip = session.LatencyOf(StreamName::kTip);
   const Latency em0 = session.LatencyOf(StreamName::kEm0);
-  options.late.tip_time_sd_s = tip.sd_s;
-  options.late.em0_time_sd_s = em0.sd_s;
-  options.late.carry_em0 = session.EmIsTip() || em0.value_s != 0.0 || em0.sd_s != 0.0;
+  const bool em0_has_clock = session.base.em0 && !session.base.em0->clock.covariance.isZero(0.0);
+  options.late.carry_em0 =
+      session.EmIsTip() || em0.value_s != 0.0 || em0.sd_s != 0.0 || em0_has_clock;
   options.rate_hz = session.rate_hz;
   return options;
 }
@@ -48,6 +47,21 @@ bool Acts(ControlStatus status) {
 
 Cycle::Cycle(const Session& session, bool wait)
     : session_(session), wait_(wait), controller_(OptionsOf(session), ModelOf(session)) {}
+
+/// The doubt in a clock grows with the time since it was found. The gain is found anew where it has
+/// grown by a tenth.
+void Cycle::KnowTimes(TimeNs t_ns) {
+  constexpr double kGrown = 1.1;
+  const double tip_s = session_.TimeSdOf(StreamName::kTip, t_ns);
+  const double em0_s = session_.TimeSdOf(StreamName::kEm0, t_ns);
+  const auto same = [](double sd_s, double before_s) {
+    return sd_s <= kGrown * before_s && before_s <= kGrown * sd_s;
+  };
+  if (same(tip_s, tip_time_sd_s_) && same(em0_s, em0_time_sd_s_)) return;
+  tip_time_sd_s_ = tip_s;
+  em0_time_sd_s_ = em0_s;
+  controller_.SetTimeDeviations(tip_s, em0_s);
+}
 
 CycleOutputs Cycle::Step(const CycleInputs& inputs) {
   CycleOutputs outputs;
@@ -75,6 +89,7 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
     return outputs;
   }
   t_ns_ = inputs.t_ns;
+  KnowTimes(t_ns_);
 
   const auto tip_times = TimesIn(inputs.streams, StreamName::kTip);
   const bool new_tip = tip_times && tip_times->first > tip_t_ns_;
@@ -142,7 +157,7 @@ SensorReadings Cycle::Readings(const StreamInputs& streams) {
   if (streams.wrist && base.wrist0) {
     readings.wrist = {streams.wrist->t_ns, Measured(*base.wrist0, streams.wrist->value)};
     double& noise_m = readings.wrist->value.position_noise_m;
-    const double time_sd_s = session_.LatencyOf(StreamName::kWrist).sd_s;
+    const double time_sd_s = session_.TimeSdOf(StreamName::kWrist, t_ns_);
     noise_m = std::hypot(noise_m, time_sd_s * v_last_m_s_.norm());
   }
   if (streams.tip && base.vision0) {

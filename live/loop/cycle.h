@@ -44,6 +44,7 @@ class Cycle {
  private:
   enum class Phase : std::uint8_t { kWaiting, kAveraging, kMoving, kDone };
 
+  void KnowTimes(TimeNs t_ns);
   SensorReadings Readings(const StreamInputs& streams);
   std::optional<CrtkCommand> StartUp(const CycleInputs& inputs);
   std::optional<CrtkCommand> Ending(const CycleInputs& inputs);
@@ -64,8 +65,9 @@ class Cycle {
   TimeNs average_from_ns_ = 0;  // of the start
   Eigen::Vector3d sum_p_ = Eigen::Vector3d::Zero(), sum_d_ = Eigen::Vector3d::Zero();
   int averaged_ = 0;
-  TimeNs tip_t_ns_ = 0;                    // of the last tip that a cycle had
-  std::optional<Eigen::Vector3d> p_goal_;  // the path's, last
+  double tip_time_sd_s_ = 0.0, em0_time_sd_s_ = 0.0;  // as the controller was told
+  TimeNs tip_t_ns_ = 0;                               // of the last tip that a cycle had
+  std::optional<Eigen::Vector3d> p_goal_;             // the path's, last
   Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> p_target_;           // of the controller, not yet limited
   Eigen::Vector3d p_last_ = Eigen::Vector3d::Zero();  // commanded

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "core/error.h"
 #include "estimation/shaft_estimator.h"
 #include "live/session/address.h"
@@ -231,6 +233,10 @@ class SessionReader {
     session_.robot.state = RobotAddress(map, "state");
     session_.robot.command_state = RobotAddress(map, "command_state");
     session_.robot.lockstep = RobotAddress(map, "lockstep");
+    if (map.Has("T_RB")) {
+      session_.robot.T_RB = map.Transform("T_RB");
+      RequireIn(map, "T_RB", kPlace, session_.robot.T_RB.p.norm());
+    }
     if (session_.robot.command_state && !session_.robot.state) {
       throw map.Error("command_state", "needs state: nobody commands a robot that is not seen");
     }
@@ -308,6 +314,16 @@ class SessionReader {
     std::vector<std::filesystem::path> files;
     for (const std::string& name : top_.Texts("calibrations")) files.push_back(Beside(name));
     session_.calibrations = ApplyCalibrations(files, session_.base, session_.warnings);
+    if (session_.camera) ReadCameraClocks(*session_.camera);
+  }
+
+  void ReadCameraClocks(CameraSetup& camera) {
+    for (const UsedCalibration& used : session_.calibrations) {
+      const auto clock = ClockIn(used.calibration, "cam0");
+      if (!clock) continue;
+      camera.clocks.push_back(*clock);
+      camera.latency_known = true;
+    }
   }
 
   void ReadModel() {
@@ -337,10 +353,31 @@ const char* Name(StreamName stream) {
   return names[static_cast<std::size_t>(stream)];
 }
 
+TimeNs CameraSetup::TimeOf(TimeNs t_ns) const {
+  t_ns -= std::llround(1e9 * latency.value_s);
+  for (const FoundClock& clock : clocks) t_ns = clock.TimeOf(t_ns);
+  return t_ns;
+}
+
 Latency Session::LatencyOf(StreamName stream) const {
   if (const auto& setup = Of(stream)) return setup->latency;
-  if (stream == StreamName::kTip && camera) return camera->latency;
-  return {};
+  if (stream != StreamName::kTip || !camera) return {};
+  Latency latency = camera->latency;
+  if (camera->address) return latency;
+  for (const FoundClock& clock : camera->clocks)
+    latency.value_s -= 1e-9 * static_cast<double>(clock.offset_ns);
+  return latency;
+}
+
+double Session::TimeSdOf(StreamName stream, TimeNs t_ns) const {
+  const double sd_s = LatencyOf(stream).sd_s;
+  const auto with = [&](const auto& of) {
+    return of ? std::hypot(sd_s, of->clock.SdAt(t_ns)) : sd_s;
+  };
+  if (stream == StreamName::kWrist) return with(base.wrist0);
+  if (stream == StreamName::kTip) return with(base.vision0);
+  if (stream == StreamName::kEm0) return with(base.em0);
+  return sd_s;
 }
 
 bool Session::DelayIsUnknown() const {

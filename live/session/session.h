@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "core/pose.h"
 #include "diagnosis/model/extended_model.h"
 #include "recording/calibrations/apply.h"
+#include "recording/calibrations/clock.h"
 #include "recording/recording.h"
 #include "task/task_reader.h"
 
@@ -47,13 +49,18 @@ struct CameraSetup {
   std::string video;
   std::optional<Address> address;
   Latency latency;
-  bool latency_known = false;  ///< it is stated in the session
+  bool latency_known = false;  ///< it is stated in the session, or a calibration found its clock
+  std::vector<FoundClock> clocks;  ///< of the calibrations, one after the other
+
+  /// Returns when a picture that came with the stamp `t_ns` was taken.
+  TimeNs TimeOf(TimeNs t_ns) const;
   double stale_s = 0.2;
 };
 
 struct RobotSetup {
   Address command;
   std::optional<Address> state, command_state;
+  Pose T_RB;                        ///< R from the frame in which wrist0 and commands stand
   std::optional<Address> lockstep;  ///< a cycle for each of its messages, in place of a clock
 };
 
@@ -105,8 +112,12 @@ struct Session {
     return streams[static_cast<std::size_t>(stream)];
   }
   bool HasTip() const { return Of(StreamName::kTip).has_value() || camera.has_value(); }
-  /// Returns the latency of a stream, with the camera's for the tip.
+  /// Returns the latency of a stream as the session states it, with the camera's for the tip. By a
+  /// clock that was found, a camera of this machine is later by so much.
   Latency LatencyOf(StreamName stream) const;
+  /// Returns the deviation of the times of a stream's samples near `t_ns`, by its latency and, for
+  /// wrist, tip and EM sensor, its clock (s).
+  double TimeSdOf(StreamName stream, TimeNs t_ns) const;
   /// Returns whether the controller follows a tip whose age on arrival nobody knows: pictures of a
   /// camera that stamps them as they arrive, without a stated latency.
   bool DelayIsUnknown() const;

@@ -13,6 +13,11 @@ void LookAt(Newest<Arrived<T>>& newest, std::optional<Arrived<T>>& sample) {
   if (const Arrived<T>* value = newest.Look()) sample = *value;
 }
 
+void PlaceInR(const Pose& T_RB, WristSample& wrist) {
+  wrist.p_RW = T_RB * wrist.p_RW;
+  if (wrist.q_RW) wrist.q_RW = Eigen::Quaterniond(T_RB.R) * *wrist.q_RW;
+}
+
 std::uint32_t AllOf(const Session& session) {
   std::uint32_t bits = 1U << kStreams;
   for (int i = 0; i < kStreams; ++i)
@@ -40,11 +45,12 @@ void Streams::Take(StreamName stream, const WireMessage& message, TimeNs arrived
     ++counters.invalid;
     return;
   }
-  const auto sample = SampleIn(stream, message);
+  auto sample = SampleIn(stream, message);
   if (!sample) {
     ++counters.unusable;
     return;
   }
+  if (stream == StreamName::kWrist) PlaceInR(session_.robot.T_RB, std::get<WristSample>(*sample));
   const double latency_s = session_.streams[i] ? session_.streams[i]->latency.value_s : 0.0;
   const TimeNs t_ns = message.t_ns - std::llround(1e9 * latency_s);
   Accept(stream, Calibrate(session_, stream, {t_ns, arrived_ns, *sample}));

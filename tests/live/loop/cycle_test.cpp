@@ -53,7 +53,7 @@ class Peer {
       for (int i = 0; i < 9; ++i) v.push_back(1e6 * tip.covariance_m2(i / 3, i % 3));
       for (int i = 0; i < 3; ++i) v.push_back((*tip.d_RE)[i]);
       v.push_back(0.003);
-      Give(StreamName::kTip, WireNumbers{v});
+      streams_.Take(StreamName::kTip, {"", t_ns_ + tip_clock_ns, WireNumbers{v}}, t_ns_);
     }
     streams_.TakeState(Text(state), t_ns_, t_ns_);
     return {t_ns_, streams_.Look(), false};
@@ -72,6 +72,7 @@ class Peer {
 
   CrtkOperatingState state;
   bool wrist_there = true, tip_there = true, strain_there = true;
+  TimeNs tip_clock_ns = 0;  // how far the tip's clock is ahead
 
  private:
   static simulation::PlantSetup SetupOf(const Session& session) {
@@ -103,8 +104,9 @@ class Peer {
 };
 
 /// Returns the session's cycle after 100 steps, and whether the robot was told anything.
-std::pair<CycleOutputs, bool> AfterOneSecond(const Session& session) {
+std::pair<CycleOutputs, bool> AfterOneSecond(const Session& session, TimeNs tip_clock_ns = 0) {
   Peer peer(session);
+  peer.tip_clock_ns = tip_clock_ns;
   Cycle cycle(session);
   CycleOutputs last;
   bool told = false;
@@ -138,6 +140,47 @@ TEST(Delay, AKnownLatencyIsNotStale) {
   text.replace(text.find(device), device.size(), device + ", latency_s: 0.25, stale_s: 0.1");
   const Session session = ReadSession(WriteSession(text));
   EXPECT_EQ(AfterOneSecond(session).first.hold, Hold::kNone);
+}
+
+/// Writes a clock of the tip's camera, as align finds it, beside a session that takes it.
+Session WithClock(double offset_s, double rate, double sd_s, double rate_sd) {
+  Calibration clocks;
+  clocks.kind = "clocks";
+  clocks.numbers["cam0.time_offset_s"] = {offset_s};
+  clocks.numbers["cam0.time_origin_s"] = {1e-9 * simulation::kSimulationStart_ns};
+  clocks.numbers["cam0.time_rate"] = {rate};
+  clocks.covariance = Eigen::Vector3d(sd_s * sd_s, 0.0, rate_sd * rate_sd).asDiagonal();
+  const auto file = WriteSession(SessionText() + "calibrations: [clocks.yaml]\n");
+  WriteCalibration(file.parent_path() / "clocks.yaml", clocks);
+  return ReadSession(file);
+}
+
+TEST(Clock, ThatAlignFoundIsTakenOff) {
+  const TimeNs ahead_ns = 2'500'000'000;
+  const Session without = ReadSession(WriteSession(SessionText()));
+  EXPECT_EQ(AfterOneSecond(without, ahead_ns).first.hold, Hold::kBadTime);
+  const Session with = WithClock(-2.5, 0.0, 3e-4, 0.0);
+  EXPECT_EQ(AfterOneSecond(with, ahead_ns).first.hold, Hold::kNone);
+}
+
+TEST(Clock, DeviationGrowsWithTheTimeSinceItWasFound) {
+  const Session session = WithClock(-2.5, 1e-4, 3e-4, 5e-6);
+  const TimeNs origin_ns = simulation::kSimulationStart_ns;
+  EXPECT_NEAR(session.TimeSdOf(StreamName::kTip, origin_ns), 3e-4, 1e-12);
+  EXPECT_NEAR(session.TimeSdOf(StreamName::kTip, origin_ns + 3'600'000'000'000),
+              std::hypot(3e-4, 3600 * 5e-6), 1e-9);
+  EXPECT_EQ(session.TimeSdOf(StreamName::kWrist, origin_ns), 0.0);
+}
+
+TEST(Clock, IsTheLatencyOfACameraOfThisMachine) {
+  Session session = WithClock(-0.062, 0.0, 0.002, 0.0);
+  session.streams[static_cast<std::size_t>(StreamName::kTip)].reset();
+  CameraSetup& camera = session.camera.emplace();
+  camera.video = "0";
+  camera.clocks = {*ClockIn(session.calibrations[0].calibration, "cam0")};
+  EXPECT_NEAR(session.LatencyOf(StreamName::kTip).value_s, 0.062, 1e-9);
+  EXPECT_EQ(camera.TimeOf(1'000'000'000), 938'000'000);
+  EXPECT_NEAR(session.TimeSdOf(StreamName::kTip, 0), 0.002, 1e-12);
 }
 
 struct Running : testing::Test {
