@@ -1,42 +1,17 @@
 #include "live/loop/control_loop.h"
 
 #include <fmt/format.h>
-#include <pthread.h>
-#include <sched.h>
-
 #include <utility>
 
 #include "live/camera/tip_camera.h"
 #include "live/loop/beat.h"
+#include "live/loop/real_time.h"
 #include "live/streams/streams.h"
 
 namespace flextip::live {
 namespace {
 
 constexpr double kPauseWait_s = 1.0;  // for the robot's word that it is paused
-constexpr int kPriority = 10;         // of a real-time thread, the least but nine
-
-/// Real-time priority for the calling thread while it lives, where the system gives it.
-class Priority {
- public:
-  Priority() {
-    pthread_getschedparam(pthread_self(), &policy_, &before_);
-    sched_param wanted{};
-    wanted.sched_priority = kPriority;
-    given_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted) == 0;
-  }
-  ~Priority() {
-    if (given_) pthread_setschedparam(pthread_self(), policy_, &before_);
-  }
-  Priority(const Priority&) = delete;
-  Priority& operator=(const Priority&) = delete;
-  bool Given() const { return given_; }
-
- private:
-  int policy_ = 0;
-  sched_param before_{};
-  bool given_ = false;
-};
 
 class Loop {
  public:
@@ -125,8 +100,9 @@ class Loop {
   // From the cycle's thread.
 
   void RunByClock() {
-    const Priority priority;
-    report_.had_priority = priority.Given();
+    const RealTime real_time;
+    report_.had_priority = real_time.HasPriority();
+    report_.had_locked_memory = real_time.HasLockedMemory();
     ClockBeats beats(session_.rate_hz);
     while (!IsOver(Now_ns())) {
       Step(beats.Next());

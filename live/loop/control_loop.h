@@ -33,6 +33,7 @@ struct LoopReport {
   bool done = false;                  ///< the path was run to its end
   bool ends_paused = false;           ///< the robot said at the end that it is not enabled
   bool had_priority = false;          ///< the system gave the cycle real-time priority
+  bool had_locked_memory = false;     ///< and kept its memory in place
   Spread sample_to_command;           ///< from the newest wrist's time to the command sent
   Spread wake;                        ///< from the cycle's due time to its begin
   Spread work;                        ///< from the cycle's begin to the command sent
