@@ -31,7 +31,7 @@ simulation::VirtualRobotSetup RobotOf(const simulation::Scenario& scenario, bool
   setup.plant = loop.plant;
   setup.plant_options = loop.plant_options;
   setup.p_RW_start = loop.p_RW_start;
-  setup.max_wrist_speed_m_s = loop.max_wrist_speed_m_s;
+  setup.servo = loop.servo;
   setup.sensors = loop.sensors;
   setup.sensor_effects = loop.sensor_effects;
   setup.seed = loop.seed;
