@@ -6,6 +6,7 @@
 #include "live/camera/tip_camera.h"
 #include "live/loop/beat.h"
 #include "live/loop/real_time.h"
+#include "live/publish/publisher.h"
 #include "live/streams/streams.h"
 
 namespace flextip::live {
@@ -36,6 +37,7 @@ class Loop {
       Dispatch(peer, message);
     };
     handlers.event = [this](const Address& peer, WireEvent&& event) { Note(peer, event); };
+    if (session_.publish) publisher_.emplace(session_);
     if (session_.camera) OpenCamera();
     peers_ = open(session_, handlers);
     begin_ns_ = Now_ns();
@@ -60,6 +62,9 @@ class Loop {
         },
         [this](const std::string& what) {
           if (recorder_ != nullptr) recorder_->TakeEvent(Now_ns(), what);
+        },
+        [this](TimeNs t_ns, const Image& picture, const TipTrack& /*track*/) {
+          if (publisher_) publisher_->TakePicture(t_ns, picture);
         });
   }
 
@@ -127,6 +132,7 @@ class Loop {
     record.sent_ns = Send(record) ? Now_ns() : 0;
     if (recorder_ != nullptr) recorder_->Take(record);
     Count(record);
+    if (publisher_) publisher_->Take(cycle_.LastCommand());
     if (options_.progress) options_.progress(record);
   }
 
@@ -204,6 +210,7 @@ class Loop {
   Streams streams_;
   GivenBeats beats_;
   Cycle cycle_;
+  std::optional<Publisher> publisher_;
   std::optional<TipCamera> camera_;
   std::unique_ptr<Peers> peers_;
   const Pose T_BR_;

@@ -41,6 +41,9 @@ class Cycle {
   /// once the path has begun.
   CycleOutputs Step(const CycleInputs& inputs);
 
+  /// The controller's result behind the last step, with the estimate; kNoWrist before the first.
+  const ControllerCommand& LastCommand() const { return command_; }
+
  private:
   enum class Phase : std::uint8_t { kWaiting, kAveraging, kMoving, kDone };
 
@@ -57,6 +60,7 @@ class Cycle {
   const Session session_;
   bool wait_;
   InstrumentController controller_;
+  ControllerCommand command_;
   std::optional<TipPath> path_;
   Phase phase_ = Phase::kWaiting;
   bool enabled_once_ = false;

@@ -33,6 +33,7 @@ class SessionReader {
     ReadRobot();
     ReadController();
     ReadLimits();
+    ReadPublish();
     ReadPath();
     ReadCalibrations();
     ReadModel();
@@ -279,6 +280,18 @@ class SessionReader {
     TaskReader(other_folder_.empty() ? file_.parent_path() : other_folder_, session_.task,
                sections_)
         .ReadFixtures(map);
+  }
+
+  void ReadPublish() {
+    if (!top_.Has("publish")) return;
+    const YamlMap map = Section(Section(top_, "publish"), "openigtlink");
+    PublishSetup& publish = session_.publish.emplace();
+    const std::int64_t port = map.Integer("port");
+    if (port < 1 || port > 65535)
+      throw map.Error("port", fmt::format("found {}, expected 1 to 65535", port));
+    publish.port = static_cast<int>(port);
+    publish.any_address = ReadChoice(map, "address", {"127.0.0.1", "any"}) == 1;
+    publish.rate_hz = NumberInOr(map, "rate_hz", kRate, publish.rate_hz);
   }
 
   void ReadPath() {

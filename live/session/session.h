@@ -64,6 +64,13 @@ struct RobotSetup {
   std::optional<Address> lockstep;  ///< a cycle for each of its messages, in place of a clock
 };
 
+/// Where viewers see the run, by OpenIGTLink.
+struct PublishSetup {
+  int port = 0;              ///< 0: a free one
+  bool any_address = false;  ///< of other machines, too
+  double rate_hz = 30.0;
+};
+
 /// A box in R (m).
 struct Box {
   Eigen::Vector3d lower_m = Eigen::Vector3d::Zero(), upper_m = Eigen::Vector3d::Zero();
@@ -104,6 +111,7 @@ struct Session {
   int window_samples = 0;  ///< of the window estimator; 0: each sample by itself
   std::optional<diagnosis::ExtendedModel> model;
   LimitSetup limits;
+  std::optional<PublishSetup> publish;
   std::optional<PathPlace> path;  ///< of task.path; absent: the cycle only watches
   TipTask task;
   std::vector<std::string> warnings;
