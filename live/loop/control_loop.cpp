@@ -88,6 +88,7 @@ class Loop {
     const auto* text = std::get_if<WireText>(&message.body);
     if (robot.state && is_of(*robot.state) && text != nullptr)
       streams_.TakeState(text->text, message.t_ns, now_ns);
+    if (session_.goal && is_of(*session_.goal)) streams_.TakeGoal(message, now_ns);
     if (robot.lockstep && is_of(*robot.lockstep)) beats_.Give(message.t_ns, now_ns);
   }
 
@@ -99,7 +100,8 @@ class Loop {
       const auto& stream = session_.streams[static_cast<std::size_t>(i)];
       if (stream && stream->address.SamePeer(peer)) streams_.SetThere(i, there);
     }
-    if (session_.robot.command.SamePeer(peer)) streams_.SetThere(kStreams, there);
+    if (session_.robot.command.SamePeer(peer)) streams_.SetThere(kRobot, there);
+    if (session_.goal && session_.goal->SamePeer(peer)) streams_.SetThere(kGoal, there);
   }
 
   // From the cycle's thread.

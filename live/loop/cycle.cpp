@@ -98,7 +98,7 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
   if (clear && session_.path && phase_ == Phase::kWaiting) phase_ = Phase::kAveraging;
   if (!clear && phase_ == Phase::kAveraging) average_from_ns_ = 0;
   const bool moves = clear && phase_ == Phase::kMoving;
-  const ControllerInputs wish = Wish(inputs, moves, new_tip, outputs);
+  const ControllerInputs wish = Wish(inputs, moves, new_tip, dt_s, outputs);
   if (new_tip) tip_t_ns_ = tip_times->first;
   command_ = controller_.Step(wish);
   const ControllerCommand& command = command_;
@@ -112,7 +112,7 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
     outputs.p_RE_goal = command.goal.p_RE_desired;
     outputs.fixture_limited = command.goal.status != FixtureStatus::kFree;
     Command(command, dt_s, outputs);
-    if (path_->Done()) {
+    if (path_ && path_->Done()) {
       outputs.done = true;
       phase_ = Phase::kDone;
     }
@@ -181,7 +181,7 @@ SensorReadings Cycle::Readings(const StreamInputs& streams) {
 
 /// The controller's inputs. While the start is averaged, the goal is the tip itself: the controller
 /// then says where it takes the tip to be, and its command is not used.
-ControllerInputs Cycle::Wish(const CycleInputs& inputs, bool moves, bool new_tip,
+ControllerInputs Cycle::Wish(const CycleInputs& inputs, bool moves, bool new_tip, double dt_s,
                              CycleOutputs& outputs) {
   ControllerInputs wish;
   wish.t_ns = inputs.t_ns;
@@ -192,13 +192,25 @@ ControllerInputs Cycle::Wish(const CycleInputs& inputs, bool moves, bool new_tip
   if (!moves) return wish;
   const bool waits_for_tip = session_.task.path.mode == PathMode::kSteps && session_.HasTip() &&
                              UsesTipMeasurement(session_.task.controller.kind) && !new_tip;
-  if (!p_goal_ || !waits_for_tip) p_goal_ = path_->Advance(p_RE_known_);
+  if (session_.goal) {
+    GoToGoal(inputs, dt_s);
+  } else if (!p_goal_ || !waits_for_tip) {
+    p_goal_ = path_->Advance(p_RE_known_);
+  }
   Limited goal{*p_goal_, false};
   if (session_.limits.workspace) goal = KeepInBox(*session_.limits.workspace, *p_goal_);
   outputs.workspace_limited = goal.limited;
   wish.p_RE_desired = goal.p;
-  wish.d_RE_desired = path_->Direction();
+  if (path_) wish.d_RE_desired = path_->Direction();
   return wish;
+}
+
+/// The wish goes to the peer's newest goal at the session's speed; before the first it stays.
+void Cycle::GoToGoal(const CycleInputs& inputs, double dt_s) {
+  if (!p_goal_) p_goal_ = p_RE_known_;
+  if (!inputs.streams.goal) return;
+  const Eigen::Vector3d& p_RE = inputs.streams.goal->value.p_RE;
+  p_goal_ = LimitSpeed(*p_goal_, p_RE, dt_s, session_.task.path.speed_m_s).p;
 }
 
 void Cycle::Average(const CycleInputs& inputs, const ControllerCommand& command, bool new_tip) {
@@ -223,13 +235,14 @@ void Cycle::StartPath() {
   T_RE.p = sum_p_ / averaged_;
   p_RE_known_ = T_RE.p;
   T_RE.R = RotationWithoutTwist(Eigen::Vector3d::UnitX(), sum_d_.normalized());
+  phase_ = Phase::kMoving;
+  if (session_.goal) return;
   PathSetup setup = session_.task.path;
   if (session_.path->frame == PathFrame::kRobot) {
     if (session_.path->p_start) T_RE.p = *session_.path->p_start;
     for (auto& waypoint : setup.waypoints_m) waypoint -= T_RE.p;
   }
   path_.emplace(setup, T_RE, session_.rate_hz);
-  phase_ = Phase::kMoving;
 }
 
 void Cycle::Command(const ControllerCommand& command, double dt_s, CycleOutputs& outputs) {

@@ -18,7 +18,7 @@ namespace flextip::live {
 struct CycleOutputs {
   TimeNs t_ns = 0;
   Hold hold = Hold::kStaleWrist;
-  int held_by = -1;          ///< the stream, with kSourceLost; kStreams: the robot
+  int held_by = -1;          ///< the stream, with kSourceLost; kRobot, kGoal
   bool has_command = false;  ///< false before the wrist was ever measured
   Eigen::Vector3d p_RW_command = Eigen::Vector3d::Zero();
   Eigen::Matrix3d R_RW = Eigen::Matrix3d::Identity();  ///< as measured
@@ -53,7 +53,9 @@ class Cycle {
   std::optional<CrtkCommand> Ending(const CycleInputs& inputs);
   void Average(const CycleInputs& inputs, const ControllerCommand& command, bool new_tip);
   void StartPath();
-  ControllerInputs Wish(const CycleInputs& inputs, bool moves, bool new_tip, CycleOutputs& outputs);
+  ControllerInputs Wish(const CycleInputs& inputs, bool moves, bool new_tip, double dt_s,
+                        CycleOutputs& outputs);
+  void GoToGoal(const CycleInputs& inputs, double dt_s);
   void Command(const ControllerCommand& command, double dt_s, CycleOutputs& outputs);
   void HoldStill(const CycleInputs& inputs, CycleOutputs& outputs);
 

@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kFuture_s = 0.1;      // a sample may be so far ahead of the cycle's clock
 constexpr double kStateStale_s = 3.0;  // states come once a second
-constexpr int kRobot = kStreams;       // in `held_by`
 
 double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 
@@ -75,6 +74,8 @@ Hold FindHold(const Session& session, const CycleInputs& inputs, bool waits, int
                           stream == StreamName::kTip || (tracks && stream == tip);
     if (!has_name && IsStale(session, inputs, stream)) return Hold::kSourceLost;
   }
+  held_by = kGoal;
+  if (session.goal && (inputs.streams.lost >> kGoal & 1U) != 0) return Hold::kSourceLost;
   held_by = kRobot;
   if (const auto& state = inputs.streams.state) {
     if (Age_s(session, inputs.t_ns, state->t_ns, state->arrived_ns) > kStateStale_s)

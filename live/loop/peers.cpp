@@ -15,6 +15,7 @@ class AllPeers : public Peers {
       if (stream) Open(stream->address);
     if (session.camera && session.camera->address) Open(*session.camera->address);
     Open(session.robot.command);
+    if (session.goal) Open(*session.goal);
     for (const auto& address :
          {session.robot.state, session.robot.command_state, session.robot.lockstep})
       if (address) Open(*address);

@@ -312,6 +312,11 @@ class SessionReader {
       }
       place.p_start = VectorIn(map, "start_m", kPlace);
     }
+    if (map.Has("goal")) {
+      ReadGoal(map);
+      reader.FinishDirection(controller, controller, "kind", {session_.task.controller.kind});
+      return;
+    }
     reader.ReadPath(map);
     const Plausible& range = place.frame == PathFrame::kRobot ? kPlace : kWay;
     for (const auto& waypoint : session_.task.path.waypoints_m) {
@@ -319,6 +324,14 @@ class SessionReader {
     }
     RequireIn(map, "speed_m_s", kSpeed, session_.task.path.speed_m_s);
     reader.FinishDirection(controller, controller, "kind", {session_.task.controller.kind});
+  }
+
+  void ReadGoal(const YamlMap& map) {
+    session_.goal = ReadAddress(Section(map, "goal"), sections_);
+    if (!session_.goal) throw map.Error("goal", "found no peer, expected openigtlink");
+    PathSetup& path = session_.task.path;
+    path.speed_m_s = map.PositiveOr("speed_m_s", path.speed_m_s);
+    RequireIn(map, "speed_m_s", kSpeed, path.speed_m_s);
   }
 
   void ReadCalibrations() {

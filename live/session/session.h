@@ -21,6 +21,8 @@ namespace flextip::live {
 /// The streams that a cycle takes its measurements from.
 enum class StreamName : std::uint8_t { kWrist, kTip, kEm0, kEm1, kStrain, kLoad };
 inline constexpr int kStreams = 6;
+/// Beside the streams: the robot, and who says where the tip is to go.
+inline constexpr int kRobot = kStreams, kGoal = kStreams + 1;
 /// Returns the name as in session files and recordings: "wrist0", "vision0", "em0", ...
 const char* Name(StreamName stream);
 
@@ -113,6 +115,7 @@ struct Session {
   LimitSetup limits;
   std::optional<PublishSetup> publish;
   std::optional<PathPlace> path;  ///< of task.path; absent: the cycle only watches
+  std::optional<Address> goal;    ///< in place of task.path's waypoints: goals of a peer
   TipTask task;
   std::vector<std::string> warnings;
 

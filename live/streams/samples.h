@@ -36,6 +36,11 @@ struct SeenTip {
   double direction_noise_rad = 0.0;
 };
 
+/// Where the tip is to go (m, in R), as a peer says.
+struct GoalSample {
+  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();
+};
+
 /// A sample of any stream.
 using AnySample = std::variant<WristSample, SeenTip, EmSample, Eigen::Vector4d, Eigen::Vector3d>;
 

@@ -19,7 +19,8 @@ void PlaceInR(const Pose& T_RB, WristSample& wrist) {
 }
 
 std::uint32_t AllOf(const Session& session) {
-  std::uint32_t bits = 1U << kStreams;
+  std::uint32_t bits = 1U << kRobot;
+  if (session.goal) bits |= 1U << kGoal;
   for (int i = 0; i < kStreams; ++i)
     if (session.streams[static_cast<std::size_t>(i)]) bits |= 1U << i;
   return bits;
@@ -106,6 +107,18 @@ void Streams::TakeState(std::string_view text, TimeNs t_ns, TimeNs arrived_ns) {
   }
 }
 
+void Streams::TakeGoal(const WireMessage& message, TimeNs arrived_ns) {
+  const auto* transform = std::get_if<WireTransform>(&message.body);
+  const bool usable = transform != nullptr && transform->T_RD.p.allFinite() &&
+                      message.t_ns > goal_t_ns_ && message.t_ns > 0;
+  if (!usable) {
+    ++bad_goals_;
+    return;
+  }
+  goal_t_ns_ = message.t_ns;
+  goal_.Put({message.t_ns, arrived_ns, {transform->T_RD.p}});
+}
+
 void Streams::SetThere(int stream, bool there) {
   const std::uint32_t bit = 1U << stream;
   if (there) {
@@ -124,6 +137,7 @@ StreamInputs Streams::Look() {
   LookAt(strain_, inputs.strain);
   LookAt(load_, inputs.load);
   LookAt(state_, inputs.state);
+  LookAt(goal_, inputs.goal);
   inputs.lost = lost_.load();
   return inputs;
 }
