@@ -100,8 +100,8 @@ class Loop {
       const auto& stream = session_.streams[static_cast<std::size_t>(i)];
       if (stream && stream->address.SamePeer(peer)) streams_.SetThere(i, there);
     }
-    if (session_.robot.command.SamePeer(peer)) streams_.SetThere(kRobot, there);
-    if (session_.goal && session_.goal->SamePeer(peer)) streams_.SetThere(kGoal, there);
+    if (session_.robot.command.SamePeer(peer)) streams_.SetThere(kRobotPeer, there);
+    if (session_.goal && session_.goal->SamePeer(peer)) streams_.SetThere(kGoalPeer, there);
   }
 
   // From the cycle's thread.

@@ -18,7 +18,7 @@ namespace flextip::live {
 struct CycleOutputs {
   TimeNs t_ns = 0;
   Hold hold = Hold::kStaleWrist;
-  int held_by = -1;          ///< the stream, with kSourceLost; kRobot, kGoal
+  int held_by = -1;          ///< the stream, with kSourceLost; kRobotPeer, kGoalPeer
   bool has_command = false;  ///< false before the wrist was ever measured
   Eigen::Vector3d p_RW_command = Eigen::Vector3d::Zero();
   Eigen::Matrix3d R_RW = Eigen::Matrix3d::Identity();  ///< as measured

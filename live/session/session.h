@@ -22,7 +22,7 @@ namespace flextip::live {
 enum class StreamName : std::uint8_t { kWrist, kTip, kEm0, kEm1, kStrain, kLoad };
 inline constexpr int kStreams = 6;
 /// Beside the streams: the robot, and who says where the tip is to go.
-inline constexpr int kRobot = kStreams, kGoal = kStreams + 1;
+inline constexpr int kRobotPeer = kStreams, kGoalPeer = kStreams + 1;
 /// Returns the name as in session files and recordings: "wrist0", "vision0", "em0", ...
 const char* Name(StreamName stream);
 

@@ -19,8 +19,8 @@ void PlaceInR(const Pose& T_RB, WristSample& wrist) {
 }
 
 std::uint32_t AllOf(const Session& session) {
-  std::uint32_t bits = 1U << kRobot;
-  if (session.goal) bits |= 1U << kGoal;
+  std::uint32_t bits = 1U << kRobotPeer;
+  if (session.goal) bits |= 1U << kGoalPeer;
   for (int i = 0; i < kStreams; ++i)
     if (session.streams[static_cast<std::size_t>(i)]) bits |= 1U << i;
   return bits;

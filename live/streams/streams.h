@@ -34,7 +34,8 @@ struct StreamInputs {
   std::optional<Arrived<Eigen::Vector3d>> load;
   std::optional<Arrived<CrtkOperatingState>> state;
   std::optional<Arrived<GoalSample>> goal;
-  /// Bit by bit: the stream's peer is gone; bit kRobot: the robot's, kGoal: that of the goals.
+  /// Bit by bit: the stream's peer is gone; bit kRobotPeer: the robot's, kGoalPeer: that of the
+  /// goals.
   std::uint32_t lost = 0;
 };
 
@@ -56,7 +57,7 @@ class Streams {
   void TakeState(std::string_view text, TimeNs t_ns, TimeNs arrived_ns);
   /// Takes a goal: a pose or position in R of which the place counts. Others are counted.
   void TakeGoal(const WireMessage& message, TimeNs arrived_ns);
-  /// Notes whether the peer of a stream (kRobot, kGoal) is there. At first it is not.
+  /// Notes whether the peer of a stream (kRobotPeer, kGoalPeer) is there. At first it is not.
   void SetThere(int stream, bool there);
 
   StreamInputs Look();

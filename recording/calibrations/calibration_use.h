@@ -51,6 +51,7 @@ class CalibrationUse {
   void SetDistortion(const std::string& name);
   void SetClock(const std::string& name);
   void CheckClock(const std::string& name) const;
+  void RetimeTips(const FoundClock& clock);
   void ShiftFrames(const std::string& name, const FoundClock& clock);
   void MoveTip();
   void MoveTipOnCollar();

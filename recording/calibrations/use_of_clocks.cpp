@@ -58,6 +58,12 @@ void CalibrationUse::SetClock(const std::string& name) {
 }
 
 void CalibrationUse::ShiftFrames(const std::string& name, const FoundClock& clock) {
+  const bool has_camera =
+      name.starts_with("cam0.") ? recording_.cam0.has_value() : recording_.cam1.has_value();
+  if (!has_camera && SeenBy(name)) {  // the tips alone
+    RetimeTips(clock);
+    return;
+  }
   CameraStream& camera = Camera(name);
   const auto shift = [&](CameraStream& eye) {
     Retime(clock, eye.filenames);
@@ -70,7 +76,10 @@ void CalibrationUse::ShiftFrames(const std::string& name, const FoundClock& cloc
   if (name == "cam0.time_offset_s" && recording_.cam1 && !Finds("cam1.time_offset_s")) {
     shift(*recording_.cam1);  // both eyes have one clock
   }
-  if (!SeenBy(name)) return;
+  if (SeenBy(name)) RetimeTips(clock);
+}
+
+void CalibrationUse::RetimeTips(const FoundClock& clock) {
   Retime(clock, recording_.vision0->tips);
   recording_.vision0->clock.Add(clock.noise);
 }

@@ -11,11 +11,13 @@
 
 namespace flextip {
 
-inline constexpr double kL = 0.6, kEI = 0.304;
-inline const Eigen::Vector3d kPort(0.28, 0.0, 0.0);
-inline const Eigen::Vector3d kForce(0.3, -1.2, 0.5);
+inline constexpr double kBenchLength = 0.6, kBenchStiffness = 0.304;
+inline const Eigen::Vector3d kBenchPort(0.28, 0.0, 0.0);
+inline const Eigen::Vector3d kBenchForce(0.3, -1.2, 0.5);
 
-inline RodProblem Shaft() { return {kL, kEI, {0, 0, 0}, kPort, kForce, {0, 0, 0}}; }
+inline RodProblem BenchShaft() {
+  return {kBenchLength, kBenchStiffness, {0, 0, 0}, kBenchPort, kBenchForce, {0, 0, 0}};
+}
 
 enum Sensors {
   kWristDirection = 1,
@@ -29,7 +31,7 @@ enum Sensors {
 
 /// Measurements of the rod itself (the estimator's own model: what is tested here is the fit, its
 /// covariance and its status; models against another physics meet in the closed loop's tests).
-class Bench {
+class SensorBench {
  public:
   Measurements Measure(const RodProblem& problem, int sensors, double noise_scale) {
     RodSolver solver;
@@ -55,7 +57,7 @@ class Bench {
       }
     }
     if (sensors & kEm) {
-      const RodSection s = solver.Section(kL - 0.02);
+      const RodSection s = solver.Section(kBenchLength - 0.02);
       z.em.emplace();
       z.em->distance_from_tip_m = 0.02;
       z.em->position_noise_m = 1.3e-4;
@@ -101,10 +103,10 @@ class Bench {
   std::normal_distribution<double> normal_;
 };
 
-inline EstimatorOptions Options(bool use_positions = true) {
+inline EstimatorOptions BenchOptions(bool use_positions = true) {
   EstimatorOptions options;
-  options.instrument = {kL, 0.00238, kEI, 0.0};
-  options.p_RP = kPort;
+  options.instrument = {kBenchLength, 0.00238, kBenchStiffness, 0.0};
+  options.p_RP = kBenchPort;
   options.use_positions = use_positions;
   return options;
 }

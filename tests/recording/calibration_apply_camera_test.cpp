@@ -235,6 +235,12 @@ TEST(CalibrationApply, FramesAndTheirTipsMoveInTime) {
             0);
   moved(before.vision0->tips, r.vision0->tips);
   EXPECT_EQ(r.wrist0->samples[0].t_ns, before.wrist0->samples[0].t_ns);
+  r = before;
+  r.cam0.reset();  // tips alone, as live or of another program
+  r.cam1.reset();
+  Apply(WithNumbers("cam0.time_offset_s", {-0.0125}), r);
+  moved(before.vision0->tips, r.vision0->tips);
+  r = before;
   r.cam0->filenames.clear();
   r.cam0->frame_numbers.clear();
   r.vision0.reset();

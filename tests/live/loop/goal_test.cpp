@@ -32,17 +32,22 @@ TEST_F(Goal, TheTipStaysUntilOneIsThereAndThenGoesThere) {
   peer.Want(wanted);
   for (int i = 0; i < 40; ++i) Step();
   EXPECT_NEAR((peer.Tip() - start).norm(), 0.4 * 0.01, 1e-3);  // at the session's speed
-  for (int i = 0; i < 80; ++i) Step();
-  EXPECT_LT((peer.Tip() - wanted).norm(), 4e-4);
+  for (int i = 0; i < 50; ++i) Step();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // the seen tip is noisy in depth
+  for (int i = 0; i < 50; ++i) {
+    Step();
+    sum += peer.Tip();
+  }
+  EXPECT_LT((sum / 50 - wanted).norm(), 4e-4);
   EXPECT_FALSE(last.done);
 }
 
 TEST_F(Goal, APeerThatIsGoneHoldsTheRobot) {
   RunUntilMoving();
-  peer.Lose(kGoal);
+  peer.Lose(kGoalPeer);
   Step();
   EXPECT_EQ(last.hold, Hold::kSourceLost);
-  EXPECT_EQ(last.held_by, kGoal);
+  EXPECT_EQ(last.held_by, kGoalPeer);
 }
 
 TEST_F(Goal, OldAndBrokenOnesAreCountedAndLeftOut) {

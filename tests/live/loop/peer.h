@@ -20,7 +20,7 @@ class Peer {
  public:
   explicit Peer(const Session& session)
       : plant_(SetupOf(session), {30, 30}), sensors_(SensorsOf(session), 7), streams_(session) {
-    for (int i = 0; i <= kGoal; ++i) streams_.SetThere(i, true);
+    for (int i = 0; i <= kGoalPeer; ++i) streams_.SetThere(i, true);
     shape_ = plant_.Solve(p_RW_);
   }
 
@@ -62,7 +62,7 @@ class Peer {
 
   Eigen::Vector3d Tip() const { return shape_.T_RE().p; }
   Eigen::Vector3d Wrist() const { return p_RW_; }
-  /// A stream, or kGoal.
+  /// A stream, or kGoalPeer.
   void Lose(int stream) { streams_.SetThere(stream, false); }
   void Want(const Eigen::Vector3d& p_RE) {
     WireTransform goal;

@@ -12,7 +12,7 @@
 #include <chrono>
 #include <map>
 #include <string>
-#include <thread>
+#include <vector>
 
 #include "kinematics/rod.h"
 #include "pipeline/estimated_shape.h"
@@ -126,9 +126,9 @@ TEST_F(Publishing, TheShaftIsALineFromWristToTip) {
   const auto expected = EstimatedShape(command.estimate, command.measurements.p_RW, 40);
   ASSERT_EQ(shaft.GetPoints()->GetNumberOfPoints(), 40);
   ASSERT_EQ(shaft.GetLines()->GetNumberOfCells(), 1u);
-  igtl::PolyDataCellArray::Cell line;
-  shaft.GetLines()->GetCell(0, line);
-  ASSERT_EQ(line.size(), 40u);
+  ASSERT_EQ(shaft.GetLines()->GetCellSize(0), 40u);
+  std::vector<igtlUint32> line(40);
+  shaft.GetLines()->GetCell(0, line.data());
   int k = 0;
   for (const igtlUint32 place : line) {
     igtlFloat32 p[3];
@@ -142,8 +142,8 @@ TEST_F(Publishing, TheShaftIsALineFromWristToTip) {
 TEST_F(Publishing, ThePicture) {
   publisher.Take(command);
   ASSERT_TRUE(viewer.Next("wrist").IsNotNull());  // the viewer is known by now
-  Image picture{4, 3, 1, {}};
-  for (int i = 0; i < 12; ++i) picture.data.push_back(static_cast<std::uint8_t>(7 * i));
+  Image picture(4, 3, 1);
+  for (std::size_t i = 0; i < 12; ++i) picture.data[i] = static_cast<std::uint8_t>(7 * i);
   publisher.TakePicture(kTime_ns + 5, picture);
   const auto message = viewer.Next("cam0");
   ASSERT_TRUE(message.IsNotNull());
