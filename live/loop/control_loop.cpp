@@ -107,7 +107,8 @@ class Loop {
   // From the cycle's thread.
 
   void RunByClock() {
-    const RealTime real_time;
+    const RealTime real_time;  // may take a second: all memory is brought in
+    begin_ns_ = Now_ns();
     report_.had_priority = real_time.HasPriority();
     report_.had_locked_memory = real_time.HasLockedMemory();
     ClockBeats beats(session_.rate_hz);
