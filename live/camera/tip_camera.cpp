@@ -15,10 +15,11 @@ constexpr TimeNs kKept_ns = 1'000'000'000;
 
 }  // namespace
 
-TipCamera::TipCamera(const Session& session, Tip tip, Event event)
+TipCamera::TipCamera(const Session& session, Tip tip, Event event, Seen seen)
     : session_(session),
       tip_(std::move(tip)),
       event_(std::move(event)),
+      seen_(std::move(seen)),
       tracker_(TrackerSetupOf(session.base)) {
   if (!session.robot.lockstep) {
     looks_ = std::jthread([this](const std::stop_token& stop) { Run(stop); });
@@ -125,6 +126,7 @@ SensorReadings TipCamera::ReadingsAt(TimeNs t_ns) {
 void TipCamera::Look(const Picture& picture) {
   const Image* const pictures[] = {&picture.image};
   const TipTrack track = tracker_.Follow(pictures, picture.t_ns, ReadingsAt(picture.t_ns));
+  if (seen_) seen_(picture.t_ns, picture.image, track);
   if (track.tip.status != TipStatus::kOk) return;  // without a tip that was seen, it becomes stale
   {
     const std::lock_guard lock(mutex_);

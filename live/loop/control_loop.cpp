@@ -14,7 +14,8 @@ namespace flextip::live {
 namespace {
 
 constexpr double kPauseWait_s = 1.0;  // for the robot's word that it is paused
-constexpr int kPriority = 10;         // of a real-time thread, the least but nine
+constexpr TimeNs kTipShown_ns = 200'000'000;
+constexpr int kPriority = 10;  // of a real-time thread, the least but nine
 
 /// Real-time priority for the calling thread while it lives, where the system gives it.
 class Priority {
@@ -44,6 +45,7 @@ class Loop {
       : session_(session),
         options_(options),
         recorder_(recorder),
+        page_(options.page),
         streams_(session,
                  [this](StreamName stream, const Arrived<AnySample>& sample) {
                    if (recorder_ != nullptr) recorder_->Take(stream, sample);
@@ -71,6 +73,7 @@ class Loop {
     peers_.reset();
     if (camera_) report_.camera = camera_->Counts();
     camera_.reset();
+    if (page_ != nullptr) page_->End(report_.done);
     Finish();
     return std::move(report_);
   }
@@ -84,6 +87,10 @@ class Loop {
         },
         [this](const std::string& what) {
           if (recorder_ != nullptr) recorder_->TakeEvent(Now_ns(), what);
+          if (page_ != nullptr) page_->TakeEvent(Now_ns(), what);
+        },
+        [this](TimeNs t_ns, const Image& picture, const TipTrack& track) {
+          if (page_ != nullptr) page_->TakePicture(t_ns, picture, track);
         });
   }
 
@@ -112,6 +119,7 @@ class Loop {
 
   void Note(const Address& peer, const WireEvent& event) {
     if (recorder_ != nullptr) recorder_->TakeEvent(Now_ns(), event.what);
+    if (page_ != nullptr) page_->TakeEvent(Now_ns(), event.what);
     if (event.kind == WireEvent::Kind::kRefused) return;
     const bool there = event.kind == WireEvent::Kind::kConnected;
     for (int i = 0; i < kStreams; ++i) {
@@ -150,6 +158,7 @@ class Loop {
     record.sent_ns = Send(record) ? Now_ns() : 0;
     if (recorder_ != nullptr) recorder_->Take(record);
     Count(record);
+    if (page_ != nullptr) Show(record);
     if (options_.progress) options_.progress(record);
   }
 
@@ -168,12 +177,40 @@ class Loop {
       sent = peers_->Send(session_.robot.command, set_point_);
       report_.unsent += !sent;
     }
-    if (outputs.state_command) {
+    if (const auto command = StateCommand(record)) {
       state_command_.t_ns = outputs.t_ns;
-      state_command_.body = WireText{Name(*outputs.state_command)};
+      state_command_.body = WireText{Name(*command)};
       (void)peers_->Send(*session_.robot.command_state, state_command_);
     }
     return sent;
+  }
+
+  /// The person's command at the page comes before the cycle's own.
+  std::optional<CrtkCommand> StateCommand(const CycleRecord& record) {
+    const std::optional<CrtkCommand>& own = record.outputs.state_command;
+    if (page_ == nullptr || options_.only_timing || !session_.robot.command_state) return own;
+    return page_->operators().Next(record.inputs.t_ns, record.inputs.streams.state, own);
+  }
+
+  void Show(const CycleRecord& record) {
+    snapshot_.record = record;
+    // The estimate on which the controller acts: between two tips it is that of the last.
+    const ControllerCommand& command = cycle_.LastCommand();
+    const bool acts = command.p_RE_measured || !UsesTipMeasurement(session_.task.controller.kind);
+    if (acts || record.inputs.t_ns - snapshot_.command.t_ns > kTipShown_ns)
+      snapshot_.command = command;
+    const TipPath* const path = cycle_.Path();
+    snapshot_.on_path = path != nullptr;
+    if (path != nullptr) {
+      snapshot_.p_RE_start = path->Start();
+      snapshot_.deviation_m = path->Deviation(record.outputs.p_RE);
+    }
+    snapshot_.cycles = report_.cycles;
+    snapshot_.missed = report_.missed;
+    for (int i = 0; i < kStreams; ++i)
+      snapshot_.accepted[static_cast<std::size_t>(i)] =
+          streams_.Counts(static_cast<StreamName>(i)).accepted;
+    page_->Take(snapshot_);
   }
 
   void Count(const CycleRecord& record) {
@@ -201,7 +238,8 @@ class Loop {
     const auto since_s = [&](TimeNs t_ns) { return 1e-9 * static_cast<double>(now_ns - t_ns); };
     if (!stops_) {
       const bool too_long = options_.duration_s && since_s(begin_ns_) >= *options_.duration_s;
-      const bool wanted = options_.stop && options_.stop();
+      const bool wanted = (options_.stop && options_.stop()) ||
+                          (page_ != nullptr && page_->operators().StopWanted());
       stops_ = too_long || wanted || report_.done;
       if (!stops_) return false;
       stop_ns_ = now_ns;
@@ -224,6 +262,7 @@ class Loop {
   const Session& session_;
   const LoopOptions& options_;
   Recorder* recorder_;
+  Page* page_;
   Streams streams_;
   GivenBeats beats_;
   Cycle cycle_;
@@ -231,6 +270,7 @@ class Loop {
   std::unique_ptr<Peers> peers_;
   WireMessage set_point_, state_command_;
   CycleRecord record_;
+  PageSnapshot snapshot_;
   LoopReport report_;
   std::array<long, 16> holds_{};
   Hold last_hold_ = Hold::kNone;

@@ -12,6 +12,7 @@
 #include "live/loop/cycle.h"
 #include "live/loop/peers.h"
 #include "live/loop/spread.h"
+#include "live/page/page.h"
 #include "live/recorder/recorder.h"
 
 namespace flextip::live {
@@ -24,6 +25,7 @@ struct LoopOptions {
   bool only_timing = false;
   std::function<bool()> stop;                        ///< whether the operator wants an end
   std::function<void(const CycleRecord&)> progress;  ///< called after each cycle
+  Page* page = nullptr;                              ///< shows the run; null for none
 };
 
 struct LoopReport {

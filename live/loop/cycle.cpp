@@ -85,7 +85,8 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
   const bool moves = clear && phase_ == Phase::kMoving;
   const ControllerInputs wish = Wish(inputs, moves, new_tip, outputs);
   if (new_tip) tip_t_ns_ = tip_times->first;
-  const ControllerCommand command = controller_.Step(wish);
+  command_ = controller_.Step(wish);
+  const ControllerCommand& command = command_;
   outputs.status = command.status;
   if (wish.p_RE_desired && Acts(command.status)) p_RE_known_ = command.p_RE_used;
   if (clear && phase_ == Phase::kAveraging) {

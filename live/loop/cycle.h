@@ -41,6 +41,11 @@ class Cycle {
   /// once the path has begun.
   CycleOutputs Step(const CycleInputs& inputs);
 
+  /// The controller's result behind the last step, with the estimate; kNoWrist before the first.
+  const ControllerCommand& LastCommand() const { return command_; }
+  /// The path that the tip follows; null before it starts.
+  const TipPath* Path() const { return path_ ? &*path_ : nullptr; }
+
  private:
   enum class Phase : std::uint8_t { kWaiting, kAveraging, kMoving, kDone };
 
@@ -56,6 +61,7 @@ class Cycle {
   const Session session_;
   bool wait_;
   InstrumentController controller_;
+  ControllerCommand command_;
   std::optional<TipPath> path_;
   Phase phase_ = Phase::kWaiting;
   bool enabled_once_ = false;

@@ -76,6 +76,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"apriltag", {"vision", "simulation", "tests"}},
       {"ceres/", {"estimation", "calibration", "tests"}},
       {"igtl", {"live", "tests"}},
+      {"websocketpp/", {"live", "tests"}},
       {"yaml-cpp/", {"recording"}},
       {"tbb/",
        {"simulation", kClosedLoop, "diagnosis", "workspace", "reproduction", "apps", "bench",

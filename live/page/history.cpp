@@ -1,0 +1,61 @@
+#include "live/page/history.h"
+
+#include <nlohmann/json.hpp>
+
+#include "live/page/state_json.h"
+#include "vision/tracking/tip_prediction.h"
+
+namespace flextip::live {
+namespace {
+
+constexpr TimeNs kKept_ns = 60'000'000'000;
+constexpr std::size_t kMostRows = 2400, kMostPlaces = 2000, kMostEvents = 60;
+
+}  // namespace
+
+void PageHistory::Add(const PageSnapshot& snapshot) {
+  Row row;
+  row.t_ns = snapshot.record.inputs.t_ns;
+  if (!rows_.empty() && row.t_ns <= rows_.back().t_ns) return;
+  if (snapshot.on_path) row.deviation_m = snapshot.deviation_m;
+  const ShaftEstimate& estimate = snapshot.command.estimate;
+  if (snapshot.command.status != ControlStatus::kNoWrist && estimate.measurements > 0)
+    row.sd_m = MaxSd(estimate.p_RE_covariance_m2);
+  rows_.push_back(row);
+  while (rows_.size() > kMostRows || rows_.front().t_ns < row.t_ns - kKept_ns) rows_.pop_front();
+  if (!snapshot.on_path) return;
+  const Eigen::Vector3d& p = snapshot.record.outputs.p_RE;
+  if (!way_.empty() && (p - way_.back()).norm() < apart_m_) return;
+  way_.push_back(p);
+  if (way_.size() < kMostPlaces) return;
+  for (std::size_t i = 0; 2 * i < way_.size(); ++i) way_[i] = way_[2 * i];
+  way_.resize(way_.size() / 2);
+  apart_m_ *= 2.0;
+}
+
+void PageHistory::AddEvent(nlohmann::ordered_json event) {
+  event["n"] = ++events_count_;
+  events_.push_back(std::move(event));
+  if (events_.size() > kMostEvents) events_.pop_front();
+}
+
+nlohmann::ordered_json PageHistory::Json() const {
+  using J = nlohmann::ordered_json;
+  J t = J::array(), deviation = J::array(), sd = J::array(), way = J::array();
+  for (const Row& row : rows_) {
+    t.push_back(std::to_string(row.t_ns));
+    deviation.push_back(row.deviation_m ? J(*row.deviation_m) : J());
+    sd.push_back(row.sd_m ? J(*row.sd_m) : J());
+  }
+  for (const Eigen::Vector3d& p : way_) way.push_back(VectorJson(p));
+  return {{"t_ns", t}, {"deviation_m", deviation}, {"sd_m", sd}, {"way_m", way}};
+}
+
+nlohmann::ordered_json PageHistory::Events(std::size_t most) const {
+  auto events = nlohmann::ordered_json::array();
+  for (std::size_t i = events_.size() > most ? events_.size() - most : 0; i < events_.size(); ++i)
+    events.push_back(events_[i]);
+  return events;
+}
+
+}  // namespace flextip::live

@@ -1,0 +1,303 @@
+#include "live/page/page.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+#include <utility>
+
+#include "core/error.h"
+#include "live/page/history.h"
+#include "live/page/picture_json.h"
+#include "live/page/server.h"
+#include "live/page/state_json.h"
+#include "live/page/web_files.h"
+#include "live/streams/newest.h"
+#include "recording/frames/frames.h"
+
+namespace flextip::live {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kRate_hz = 25.0;
+constexpr int kTicksPerPicture = 3, kTicksPerWorst = 6;
+constexpr std::size_t kChanges = 512;  // that wait for the page's thread
+constexpr std::size_t kMostWaitingEvents = 200, kEventsTold = 16;
+constexpr int kShapePoints = 25;
+constexpr int kPictureWidth_px = 800, kPictureQuality = 75;
+constexpr double kRateOver_s = 1.5;
+
+/// 128 bits of the system's, as hexadecimal digits.
+std::string RandomToken() {
+  std::random_device bits;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", bits());
+  return token;
+}
+
+/// Samples a second of the session's own time, over the last second or two.
+class RateMeter {
+ public:
+  void Add(TimeNs t_ns, const std::array<long, kStreams>& accepted) {
+    if (from_ns_ == 0) Begin(t_ns, accepted);
+    const double dt_s = 1e-9 * static_cast<double>(t_ns - from_ns_);
+    if (dt_s < kRateOver_s) return;
+    for (std::size_t i = 0; i < kStreams; ++i)
+      rates_hz_[i] = static_cast<double>(accepted[i] - from_[i]) / dt_s;
+    Begin(t_ns, accepted);
+  }
+  const std::array<double, kStreams>& Rates_hz() const { return rates_hz_; }
+
+ private:
+  void Begin(TimeNs t_ns, const std::array<long, kStreams>& accepted) {
+    from_ns_ = t_ns;
+    from_ = accepted;
+  }
+  TimeNs from_ns_ = 0;
+  std::array<long, kStreams> from_{};
+  std::array<double, kStreams> rates_hz_{};
+};
+
+/// The Jacobian that the controller inverts, whatever was seen of the tip in this cycle.
+Eigen::Matrix3d JacobianOf(TipController& controller, const ControllerCommand& command) {
+  ControlInput input;
+  input.p_RW = command.measurements.p_RW;
+  input.p_RE_desired = input.p_RE_measured = command.estimate.p_RE;
+  input.tip_measured = true;
+  input.model = command.estimate.model;
+  return controller.Step(input).J_tip_wrist;
+}
+
+}  // namespace
+
+class Page::Worker {
+ public:
+  Worker(const Session& session, PageOptions options, OperatorCommands& operators)
+      : session_(session),
+        options_(std::move(options)),
+        operators_(operators),
+        changes_(kChanges),
+        controller_(session.task.controller) {
+    if (options_.token.empty()) options_.token = RandomToken();
+    if (session.camera && session.base.cam0) camera_.emplace(session.base.cam0->calibration);
+    ServerHandlers handlers;
+    handlers.hello = [this] { return Hello(); };
+    handlers.answer = [this](std::string_view text) { return Answer(text); };
+    handlers.tick = [this] { Tick(); };
+    server_ = std::make_unique<PageServer>(options_.port, WebFiles(), handlers, kRate_hz);
+  }
+
+  int port() const { return server_->port(); }
+  const std::string& token() const { return options_.token; }
+
+  // The cycle's thread.
+  void Take(const PageSnapshot& snapshot) {
+    const CycleRecord& record = snapshot.record;
+    PageChange now{record.inputs.t_ns, record.outputs.hold, record.outputs.held_by, {}, {}};
+    if (record.inputs.streams.state) now.state = record.inputs.streams.state->value;
+    if (IsOther(now, last_change_)) changes_.Push(now);
+    last_change_ = now;
+    if (record.outputs.state_command) {
+      now.told = record.outputs.state_command;
+      changes_.Push(now);
+    }
+    snapshots_.Put(snapshot);
+  }
+
+  // The camera's thread.
+  void TakePicture(TimeNs t_ns, const Image& image, const TipTrack& track) {
+    if (!wants_picture_.exchange(false)) return;
+    const std::lock_guard lock(mutex_);
+    picture_ = Picture{t_ns, image, track};
+  }
+
+  // Any other thread.
+  void TakeEvent(TimeNs t_ns, const std::string& what) {
+    const std::lock_guard lock(mutex_);
+    if (events_.size() < kMostWaitingEvents) events_.emplace_back(t_ns, what);
+  }
+
+  void End(bool done) {
+    end_ = done ? Ending::kDone : Ending::kEarlier;
+    // A last look for those who watch.
+    for (int i = 0; i < 20 && !end_told_; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(25));
+  }
+
+ private:
+  enum class Ending : std::uint8_t { kNot, kDone, kEarlier };
+  struct Picture {
+    TimeNs t_ns = 0;
+    Image image;
+    TipTrack track;
+  };
+
+  static bool IsOther(const PageChange& a, const PageChange& b) {
+    if (a.hold != b.hold || a.held_by != b.held_by || a.state.has_value() != b.state.has_value())
+      return true;
+    return a.state && (a.state->state != b.state->state || a.state->is_homed != b.state->is_homed ||
+                       a.state->is_busy != b.state->is_busy);
+  }
+
+  // The server's thread from here on.
+
+  std::string Hello() {
+    return TextOf({{"type", "hello"},
+                   {"session", SessionJson(session_, options_.can_command)},
+                   {"history", history_.Json()},
+                   {"events", history_.Events(60)}});
+  }
+
+  /// A person's wish: {"do": "pause", "token": ...}.
+  std::optional<std::string> Answer(std::string_view text) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object() || !json.contains("do") || !json["do"].is_string()) return {};
+    const std::string wish = json["do"];
+    if (wish != "enable" && wish != "pause" && wish != "stop") return {};
+    const bool may = json.contains("token") && json["token"].is_string() &&
+                     SameSecret(json["token"].get<std::string>(), options_.token);
+    const bool can = wish == "stop" || (options_.can_command && session_.robot.command_state &&
+                                        (wish == "pause" || session_.robot.state));
+    const char* const why = !may ? "token" : !can ? "session" : "";
+    if (may && can) Do(wish);
+    return TextOf({{"type", "answer"}, {"do", wish}, {"accepted", may && can}, {"why", why}});
+  }
+
+  void Do(const std::string& wish) {
+    if (wish == "enable") operators_.Enable();
+    if (wish == "pause") operators_.Pause();
+    if (wish == "stop") operators_.Stop();
+    const TimeNs now_ns = Now_ns();
+    history_.AddEvent({{"t_ns", std::to_string(now_ns)}, {"kind", "person"}, {"wish", wish}});
+    if (options_.said) options_.said(now_ns, fmt::format("a person at the page: {}", wish));
+  }
+
+  void Tick() {
+    ++ticks_;
+    TakeNews();
+    const PageSnapshot* const snapshot = snapshots_.Look();
+    if (snapshot == nullptr) return;
+    const TimeNs t_ns = snapshot->record.inputs.t_ns;
+    if (snapshot->cycles != last_cycles_) {
+      last_cycles_ = snapshot->cycles;
+      heard_ = Clock::now();
+      history_.Add(*snapshot);
+      rates_.Add(t_ns, snapshot->accepted);
+    }
+    const Ending end = end_;
+    if (server_->Watchers() > 0) {
+      FindOut(*snapshot);
+      Json state = StateJson(session_, *snapshot, findings_);
+      state["type"] = "state";
+      state["n"] = ++sent_;
+      state["events"] = history_.Events(kEventsTold);
+      state["end"] = end == Ending::kNot ? "" : end == Ending::kDone ? "done" : "earlier";
+      server_->SendText(sent_, TextOf(state));
+      if (camera_ && ticks_ % kTicksPerPicture == 0) SendPicture(*snapshot);
+    }
+    if (end != Ending::kNot) end_told_ = true;
+  }
+
+  /// Events and changes since the last tick.
+  void TakeNews() {
+    std::vector<std::pair<TimeNs, std::string>> events;
+    {
+      const std::lock_guard lock(mutex_);
+      events.swap(events_);
+    }
+    for (auto& [t_ns, what] : events)
+      history_.AddEvent({{"t_ns", std::to_string(t_ns)}, {"kind", "text"}, {"what", what}});
+    changes_.Drain([&](const PageChange& change) { history_.AddEvent(ChangeJson(change)); });
+  }
+
+  void FindOut(const PageSnapshot& snapshot) {
+    const ControllerCommand& command = snapshot.command;
+    findings_.rates_hz = rates_.Rates_hz();
+    findings_.silent_s = std::chrono::duration<double>(Clock::now() - heard_).count();
+    if (snapshot.cycles == found_cycles_) return;
+    found_cycles_ = snapshot.cycles;
+    findings_.shape.clear();
+    if (command.status == ControlStatus::kNoWrist) return;
+    findings_.shape = EstimatedShape(command.estimate, command.measurements.p_RW, kShapePoints);
+    if (ticks_ - worst_tick_ < kTicksPerWorst) return;
+    worst_tick_ = ticks_;
+    findings_.worst =
+        FindWorstMotion(JacobianOf(controller_, command), command.estimate,
+                        command.measurements.p_RW, session_.task.controller, kPageDeviations);
+  }
+
+  /// Four bytes with the length of the JSON (least first), the JSON, the JPEG.
+  void SendPicture(const PageSnapshot& snapshot) {
+    std::optional<Picture> picture;
+    {
+      const std::lock_guard lock(mutex_);
+      picture.swap(picture_);
+    }
+    wants_picture_ = true;
+    if (!picture) return;
+    Json json =
+        OverlayJson(*camera_, picture->track, findings_.shape, snapshot.record.outputs.p_RE_goal);
+    json["type"] = "picture";
+    json["n"] = ++sent_;
+    json["t_ns"] = std::to_string(picture->t_ns);
+    json["width"] = picture->image.width_px;
+    json["height"] = picture->image.height_px;
+    const std::string head = TextOf(json);
+    std::string bytes(4, '\0');
+    for (int i = 0; i < 4; ++i) bytes[i] = static_cast<char>(head.size() >> (8 * i) & 0xffU);
+    bytes += head;
+    bytes += EncodeJpeg(picture->image, kPictureQuality, kPictureWidth_px);
+    server_->SendBytes(sent_, bytes);
+  }
+
+  const Session& session_;
+  PageOptions options_;
+  OperatorCommands& operators_;
+  std::atomic<Ending> end_{Ending::kNot};
+  std::atomic<bool> end_told_{false}, wants_picture_{false};
+
+  Newest<PageSnapshot> snapshots_;
+  Ring<PageChange> changes_;
+  PageChange last_change_;  // of the cycle's thread
+
+  std::mutex mutex_;  // not for the cycle's thread
+  std::vector<std::pair<TimeNs, std::string>> events_;
+  std::optional<Picture> picture_;
+
+  // Of the server's thread.
+  std::optional<CameraModel> camera_;
+  TipController controller_;
+  PageHistory history_;
+  RateMeter rates_;
+  PageFindings findings_;
+  Clock::time_point heard_ = Clock::now();
+  long ticks_ = 0, worst_tick_ = -kTicksPerWorst, sent_ = 0;
+  long last_cycles_ = -1, found_cycles_ = -1;
+
+  std::unique_ptr<PageServer> server_;  // last: its thread uses all the others
+};
+
+Page::Page(const Session& session, PageOptions options)
+    : worker_(std::make_unique<Worker>(session, std::move(options), operators_)) {}
+Page::~Page() = default;
+
+int Page::port() const { return worker_->port(); }
+std::string Page::Address() const {
+  return fmt::format("http://127.0.0.1:{}/?token={}", worker_->port(), worker_->token());
+}
+void Page::Take(const PageSnapshot& snapshot) { worker_->Take(snapshot); }
+void Page::TakePicture(TimeNs t_ns, const Image& picture, const TipTrack& track) {
+  worker_->TakePicture(t_ns, picture, track);
+}
+void Page::TakeEvent(TimeNs t_ns, const std::string& what) { worker_->TakeEvent(t_ns, what); }
+void Page::End(bool done) { worker_->End(done); }
+
+}  // namespace flextip::live

@@ -1,0 +1,20 @@
+// The laparoscope's picture for the page, and what lies over it, in pixels. Private to live/page/.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <vector>
+
+#include "pipeline/estimated_shape.h"
+#include "vision/camera_model.h"
+#include "vision/tracking/tip_tracker.h"
+
+namespace flextip::live {
+
+/// Returns the tags' corners, the tip with its doubt and its frame as tracked, the estimate's shaft
+/// and the goal, as far as `camera` sees them. Pixel (0, 0) is the middle of the first.
+nlohmann::ordered_json OverlayJson(const CameraModel& camera, const TipTrack& track,
+                                   const std::vector<ShapePoint>& shape,
+                                   const std::optional<Eigen::Vector3d>& p_RE_goal);
+
+}  // namespace flextip::live
