@@ -1,4 +1,4 @@
-#include "control/worst_motion.h"
+#include "control/supervision/worst_motion.h"
 
 #include <algorithm>
 #include <array>
