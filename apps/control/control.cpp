@@ -23,15 +23,15 @@ struct ControlCommandOptions {
   fs::path session, out;
   std::optional<double> duration_s, timing_s;
   std::optional<int> page_port;
-  bool wait = false, force = false;
+  bool page = false, wait = false, force = false;
 };
 
 /// Returns the page where one is wanted, and says where it is.
 std::unique_ptr<live::Page> OpenPage(const ControlCommandOptions& options,
                                      const live::Session& session, live::Recorder* recorder) {
-  if (!options.page_port) return nullptr;
+  if (!options.page && !options.page_port) return nullptr;
   live::PageOptions page_options;
-  page_options.port = *options.page_port;
+  page_options.port = options.page_port.value_or(kPagePort);
   page_options.can_command = !options.timing_s;
   if (recorder != nullptr) {
     page_options.said = [recorder](TimeNs t_ns, const std::string& what) {
@@ -105,20 +105,18 @@ void AddControl(CLI::App& app, AppContext& context) {
                    "robot is not enabled")
       ->check(CLI::PositiveNumber)
       ->type_name("SECONDS");
+  command->add_flag("--page", options->page, "Show the run on a page of this machine");
   command
-      ->add_option("--page", options->page_port,
-                   fmt::format("Show the run on a page of this machine; PORT is {} unless told, 0 "
-                               "is a free one",
+      ->add_option("--page-port", options->page_port,
+                   fmt::format("Port of the page, which it asks for; {} unless told, 0: a free one",
                                kPagePort))
-      ->expected(0, 1)
-      ->default_str(std::to_string(kPagePort))
       ->check(CLI::Range(0, 65535))
       ->type_name("PORT");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->footer(
       "Ctrl-C pauses the robot and ends.\n"
       "Examples:\n  flextip control session.yaml -o session\n"
-      "  flextip control session.yaml -o session --page\n"
+      "  flextip control --page session.yaml -o session\n"
       "  flextip control session.yaml --timing 10\n");
   OnRun(*command, context, [options, &context] { RunControl(*options, context.quiet); });
 }
