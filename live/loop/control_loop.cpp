@@ -14,8 +14,7 @@ namespace flextip::live {
 namespace {
 
 constexpr double kPauseWait_s = 1.0;  // for the robot's word that it is paused
-constexpr TimeNs kTipShown_ns = 200'000'000;
-constexpr int kPriority = 10;  // of a real-time thread, the least but nine
+constexpr int kPriority = 10;         // of a real-time thread, the least but nine
 
 /// Real-time priority for the calling thread while it lives, where the system gives it.
 class Priority {
@@ -194,11 +193,7 @@ class Loop {
 
   void Show(const CycleRecord& record) {
     snapshot_.record = record;
-    // The estimate on which the controller acts: between two tips it is that of the last.
-    const ControllerCommand& command = cycle_.LastCommand();
-    const bool acts = command.p_RE_measured || !UsesTipMeasurement(session_.task.controller.kind);
-    if (acts || record.inputs.t_ns - snapshot_.command.t_ns > kTipShown_ns)
-      snapshot_.command = command;
+    snapshot_.command = cycle_.LastCommand();
     const TipPath* const path = cycle_.Path();
     snapshot_.on_path = path != nullptr;
     if (path != nullptr) {

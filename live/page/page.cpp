@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "live/page/findings.h"
 #include "live/page/history.h"
 #include "live/page/picture_json.h"
 #include "live/page/server.h"
@@ -25,15 +26,12 @@ namespace flextip::live {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 constexpr double kRate_hz = 25.0;
-constexpr int kTicksPerPicture = 3, kTicksPerWorst = 6;
+constexpr int kTicksPerPicture = 3;
 constexpr std::size_t kChanges = 512;  // that wait for the page's thread
 constexpr std::size_t kMostWaitingEvents = 200, kEventsTold = 16;
-constexpr int kShapePoints = 25;
 constexpr int kPictureWidth_px = 800, kPictureQuality = 75;
-constexpr double kRateOver_s = 1.5;
 
 /// 128 bits of the system's, as hexadecimal digits.
 std::string RandomToken() {
@@ -41,39 +39,6 @@ std::string RandomToken() {
   std::string token;
   for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", bits());
   return token;
-}
-
-/// Samples a second of the session's own time, over the last second or two.
-class RateMeter {
- public:
-  void Add(TimeNs t_ns, const std::array<long, kStreams>& accepted) {
-    if (from_ns_ == 0) Begin(t_ns, accepted);
-    const double dt_s = 1e-9 * static_cast<double>(t_ns - from_ns_);
-    if (dt_s < kRateOver_s) return;
-    for (std::size_t i = 0; i < kStreams; ++i)
-      rates_hz_[i] = static_cast<double>(accepted[i] - from_[i]) / dt_s;
-    Begin(t_ns, accepted);
-  }
-  const std::array<double, kStreams>& Rates_hz() const { return rates_hz_; }
-
- private:
-  void Begin(TimeNs t_ns, const std::array<long, kStreams>& accepted) {
-    from_ns_ = t_ns;
-    from_ = accepted;
-  }
-  TimeNs from_ns_ = 0;
-  std::array<long, kStreams> from_{};
-  std::array<double, kStreams> rates_hz_{};
-};
-
-/// The Jacobian that the controller inverts, whatever was seen of the tip in this cycle.
-Eigen::Matrix3d JacobianOf(TipController& controller, const ControllerCommand& command) {
-  ControlInput input;
-  input.p_RW = command.measurements.p_RW;
-  input.p_RE_desired = input.p_RE_measured = command.estimate.p_RE;
-  input.tip_measured = true;
-  input.model = command.estimate.model;
-  return controller.Step(input).J_tip_wrist;
 }
 
 }  // namespace
@@ -85,13 +50,18 @@ class Page::Worker {
         options_(std::move(options)),
         operators_(operators),
         changes_(kChanges),
-        controller_(session.task.controller) {
+        finder_(session) {
     if (options_.token.empty()) options_.token = RandomToken();
     if (session.camera && session.base.cam0) camera_.emplace(session.base.cam0->calibration);
     ServerHandlers handlers;
     handlers.hello = [this] { return Hello(); };
     handlers.answer = [this](std::string_view text) { return Answer(text); };
     handlers.tick = [this] { Tick(); };
+    handlers.fault = [this](const char* what) {
+      if (faults_++ > 0) return;
+      TakeEvent(Now_ns(), fmt::format("a fault of the page: {}", what));
+      if (options_.said) options_.said(Now_ns(), fmt::format("a fault of the page: {}", what));
+    };
     server_ = std::make_unique<PageServer>(options_.port, WebFiles(), handlers, kRate_hz);
   }
 
@@ -185,23 +155,16 @@ class Page::Worker {
     TakeNews();
     const PageSnapshot* const snapshot = snapshots_.Look();
     if (snapshot == nullptr) return;
-    const TimeNs t_ns = snapshot->record.inputs.t_ns;
-    if (snapshot->cycles != last_cycles_) {
-      last_cycles_ = snapshot->cycles;
-      heard_ = Clock::now();
-      history_.Add(*snapshot);
-      rates_.Add(t_ns, snapshot->accepted);
-    }
+    if (finder_.Note(*snapshot)) history_.Add(*snapshot);
     const Ending end = end_;
     if (server_->Watchers() > 0) {
-      FindOut(*snapshot);
-      Json state = StateJson(session_, *snapshot, findings_);
+      Json state = StateJson(session_, *snapshot, finder_.Find(*snapshot));
       state["type"] = "state";
       state["n"] = ++sent_;
       state["events"] = history_.Events(kEventsTold);
       state["end"] = end == Ending::kNot ? "" : end == Ending::kDone ? "done" : "earlier";
       server_->SendText(sent_, TextOf(state));
-      if (camera_ && ticks_ % kTicksPerPicture == 0) SendPicture(*snapshot);
+      if (camera_ && ticks_ % kTicksPerPicture == 0) SendPicture();
     }
     if (end != Ending::kNot) end_told_ = true;
   }
@@ -218,24 +181,8 @@ class Page::Worker {
     changes_.Drain([&](const PageChange& change) { history_.AddEvent(ChangeJson(change)); });
   }
 
-  void FindOut(const PageSnapshot& snapshot) {
-    const ControllerCommand& command = snapshot.command;
-    findings_.rates_hz = rates_.Rates_hz();
-    findings_.silent_s = std::chrono::duration<double>(Clock::now() - heard_).count();
-    if (snapshot.cycles == found_cycles_) return;
-    found_cycles_ = snapshot.cycles;
-    findings_.shape.clear();
-    if (command.status == ControlStatus::kNoWrist) return;
-    findings_.shape = EstimatedShape(command.estimate, command.measurements.p_RW, kShapePoints);
-    if (ticks_ - worst_tick_ < kTicksPerWorst) return;
-    worst_tick_ = ticks_;
-    findings_.worst =
-        FindWorstMotion(JacobianOf(controller_, command), command.estimate,
-                        command.measurements.p_RW, session_.task.controller, kPageDeviations);
-  }
-
   /// Four bytes with the length of the JSON (least first), the JSON, the JPEG.
-  void SendPicture(const PageSnapshot& snapshot) {
+  void SendPicture() {
     std::optional<Picture> picture;
     {
       const std::lock_guard lock(mutex_);
@@ -243,8 +190,7 @@ class Page::Worker {
     }
     wants_picture_ = true;
     if (!picture) return;
-    Json json =
-        OverlayJson(*camera_, picture->track, findings_.shape, snapshot.record.outputs.p_RE_goal);
+    Json json = OverlayJson(*camera_, picture->track, finder_.At(picture->t_ns));
     json["type"] = "picture";
     json["n"] = ++sent_;
     json["t_ns"] = std::to_string(picture->t_ns);
@@ -274,13 +220,9 @@ class Page::Worker {
 
   // Of the server's thread.
   std::optional<CameraModel> camera_;
-  TipController controller_;
   PageHistory history_;
-  RateMeter rates_;
-  PageFindings findings_;
-  Clock::time_point heard_ = Clock::now();
-  long ticks_ = 0, worst_tick_ = -kTicksPerWorst, sent_ = 0;
-  long last_cycles_ = -1, found_cycles_ = -1;
+  PageFinder finder_;
+  long ticks_ = 0, sent_ = 0, faults_ = 0;
 
   std::unique_ptr<PageServer> server_;  // last: its thread uses all the others
 };

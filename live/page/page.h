@@ -1,5 +1,5 @@
 // The page of a running session: one address on this machine shows the run, and lets whoever has
-// its token enable, pause and stop (docs/live/page.md).
+// its token enable, pause and stop (docs/usage/control.md).
 #pragma once
 
 #include <atomic>

@@ -41,9 +41,7 @@ Json DoubtJson(const CameraModel& camera, const TipObservation& tip) {
 
 }  // namespace
 
-Json OverlayJson(const CameraModel& camera, const TipTrack& track,
-                 const std::vector<ShapePoint>& shape,
-                 const std::optional<Eigen::Vector3d>& p_RE_goal) {
+Json OverlayJson(const CameraModel& camera, const TipTrack& track, const ShaftMoment& moment) {
   Json tags = Json::array();
   for (const TagDetection& tag : track.tags) {
     Json corners = Json::array();
@@ -56,7 +54,7 @@ Json OverlayJson(const CameraModel& camera, const TipTrack& track,
             {"doubt", nullptr},
             {"axes", Json::array()},
             {"shaft", Json::array()},
-            {"goal", p_RE_goal ? PixelJson(Seen(camera, *p_RE_goal)) : Json()}};
+            {"goal", moment.p_RE_goal ? PixelJson(Seen(camera, *moment.p_RE_goal)) : Json()}};
   if (track.tip.status != TipStatus::kLost) {
     json["tip"] = PixelJson(Seen(camera, track.tip.p_RE));
     json["doubt"] = DoubtJson(camera, track.tip);
@@ -67,7 +65,8 @@ Json OverlayJson(const CameraModel& camera, const TipTrack& track,
       json["axes"].push_back(PixelJson(Seen(camera, track.T_RE * end)));
     }
   }
-  for (const ShapePoint& point : shape) json["shaft"].push_back(PixelJson(Seen(camera, point.p_R)));
+  for (const ShapePoint& point : moment.shape)
+    json["shaft"].push_back(PixelJson(Seen(camera, point.p_R)));
   return json;
 }
 

@@ -2,19 +2,17 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <vector>
 
-#include "pipeline/estimated_shape.h"
+#include "live/page/findings.h"
 #include "vision/camera_model.h"
 #include "vision/tracking/tip_tracker.h"
 
 namespace flextip::live {
 
-/// Returns the tags' corners, the tip with its doubt and its frame as tracked, the estimate's shaft
-/// and the goal, as far as `camera` sees them. Pixel (0, 0) is the middle of the first.
+/// Returns the tags' corners, the tip with its doubt and its frame as seen in the picture, and the
+/// estimate's shaft and the goal of the `moment` nearest to it, as far as `camera` sees them. Pixel
+/// (0, 0) is the middle of the first.
 nlohmann::ordered_json OverlayJson(const CameraModel& camera, const TipTrack& track,
-                                   const std::vector<ShapePoint>& shape,
-                                   const std::optional<Eigen::Vector3d>& p_RE_goal);
+                                   const ShaftMoment& moment);
 
 }  // namespace flextip::live

@@ -126,7 +126,14 @@ class PageServer::Worker {
   void Run() {
     setpriority(PRIO_PROCESS, 0, kNice);  // of this thread alone, on Linux
     SetTimer();
-    endpoint_.run();
+    for (bool runs = true; runs;) {
+      try {
+        endpoint_.run();
+        runs = false;
+      } catch (const std::exception& fault) {  // it must not end the run of a robot
+        handlers_.fault(fault.what());
+      }
+    }
   }
 
   void SetTimer() {
@@ -236,9 +243,11 @@ class PageServer::Worker {
       answer = handlers_.answer(text);
     }
     if (!answer) return Dismiss(from, ws::close::status::policy_violation, "not understood");
+    // Every wish is answered, also while a state is on its way; who asks and never reads, goes.
     const Connection connection = endpoint_.get_con_from_hdl(from);
-    if (connection->get_buffered_amount() < kLongestMessage)
-      connection->send(*answer, ws::frame::opcode::text);
+    if (connection->get_buffered_amount() > kMostWaiting)
+      return Dismiss(from, ws::close::status::policy_violation, "answers are not read");
+    connection->send(*answer, ws::frame::opcode::text);
   }
 
   void Dismiss(const ws::connection_hdl& who, ws::close::status::value why, const char* reason) {

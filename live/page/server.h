@@ -24,6 +24,8 @@ struct ServerHandlers {
   /// Answers a watcher's text; nothing: the text is of no use, and the watcher is sent away.
   std::function<std::optional<std::string>(std::string_view text)> answer;
   std::function<void()> tick;  ///< called at the server's rate
+  /// Told of an exception that another handler or the library threw; the server goes on.
+  std::function<void(const char* what)> fault;
 };
 
 /// A watcher says what it has seen ({"seen": N}). Three messages at most are on their way to it;

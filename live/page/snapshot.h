@@ -12,7 +12,7 @@ namespace flextip::live {
 
 struct PageSnapshot {
   CycleRecord record;
-  ControllerCommand command;  ///< the last with a measured tip where the controller needs it
+  ControllerCommand command;  ///< behind the record: a late tip is carried on to its time
   bool on_path = false;       ///< the path is begun; the next two mean something
   Eigen::Vector3d p_RE_start = Eigen::Vector3d::Zero();  ///< of the path (m, in R)
   double deviation_m = 0.0;                              ///< of the known tip from the path so far

@@ -29,9 +29,11 @@ Json RobotJson(const std::optional<CrtkOperatingState>& robot) {
   return {{"state", Name(robot->state)}, {"homed", robot->is_homed}, {"busy", robot->is_busy}};
 }
 
+/// The age at which the stream is stale, as the holds count it.
 double LimitOf(const Session& session, StreamName stream) {
-  if (const auto& setup = session.Of(stream)) return setup->stale_s;
-  return session.camera ? session.camera->stale_s : 0.0;
+  const auto& setup = session.Of(stream);
+  const double stale_s = setup ? setup->stale_s : session.camera ? session.camera->stale_s : 0.0;
+  return stale_s + session.LatencyOf(stream).value_s;
 }
 
 bool IsUsed(const Session& session, StreamName stream) {
@@ -48,6 +50,7 @@ Json StreamsJson(const Session& session, const PageSnapshot& snapshot,
     Json one{{"name", Name(stream)},
              {"age_s", nullptr},
              {"limit_s", LimitOf(session, stream)},
+             {"latency_s", session.LatencyOf(stream).value_s},
              {"rate_hz", findings.rates_hz[static_cast<std::size_t>(i)]},
              {"samples", snapshot.accepted[static_cast<std::size_t>(i)]},
              {"lost", (inputs.streams.lost >> i & 1U) != 0}};
@@ -132,7 +135,7 @@ Json StateJson(const Session& session, const PageSnapshot& snapshot, const PageF
   std::optional<CrtkOperatingState> robot;
   if (streams.state) robot = streams.state->value;
   Json shaft = Json::array();
-  for (const ShapePoint& point : findings.shape) shaft.push_back(VectorJson(point.p_R));
+  for (const ShapePoint& point : findings.now.shape) shaft.push_back(VectorJson(point.p_R));
   Json json{
       {"t_ns", std::to_string(record.inputs.t_ns)},  // more digits than a script's numbers
       {"cycles", snapshot.cycles},

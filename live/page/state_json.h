@@ -2,27 +2,13 @@
 // is, so that it reads back to the same bits. Private to live/page/.
 #pragma once
 
-#include <array>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "control/worst_motion.h"
+#include "live/page/findings.h"
 #include "live/page/snapshot.h"
-#include "pipeline/estimated_shape.h"
 
 namespace flextip::live {
-
-inline constexpr double kPageDeviations = 1.0;  ///< of the estimate, for the worst angle
-
-/// What the page's thread finds out beside the snapshot.
-struct PageFindings {
-  std::vector<ShapePoint> shape;  ///< of the snapshot's estimate
-  std::optional<WorstMotion> worst;
-  std::array<double, kStreams> rates_hz{};
-  double silent_s = 0.0;  ///< since the cycle was last heard of
-};
 
 /// Returns the session: told once to each watcher.
 nlohmann::ordered_json SessionJson(const Session& session, bool can_command);

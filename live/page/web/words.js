@@ -13,6 +13,24 @@ const HOLDS = {
   no_command: ["Held: no command", "warn", "The controller cannot say where to go."],
   not_finite: ["Held: bad number", "bad", "The controller's command is no number."],
   stopped: ["Stopped", "wait", "The run ends. The robot is being paused."],
+  delay_unknown: ["Not enabled: delay unknown", "warn", "The session does not say how late the camera's tip is (latency_s)."],
+  // Stops of the supervisor.
+  operator: ["Stopped by a person", "wait", "Somebody said stop."],
+  tip_jump: ["Held: tip jumped", "warn", "The tip is further off than motion and model allow."],
+  tip_disagrees: ["Held: tip disagrees", "bad", "The tip does not fit the other sensors."],
+  model_disagrees: ["Held: model disagrees", "bad", "The sensors together do not fit the instrument's model."],
+  wrist_not_following: ["Held: robot does not follow", "bad", "The wrist is not where it was commanded to be."],
+  port_moved: ["Held: port moved", "bad", "The port has left its place."],
+  port_depth: ["Held: shaft too far out", "bad", "Too little of the shaft is beyond the port."],
+  speed: ["Held: too fast", "bad", "A speed is above its limit."],
+  acceleration: ["Held: acceleration", "bad", "An acceleration is above its limit."],
+  jerk: ["Held: jerk", "bad", "A jerk is above its limit."],
+  step: ["Held: step", "bad", "A step of the wrist is above its limit."],
+  workspace: ["Held: out of the workspace", "bad", "The tip is where it must not be."],
+  fixture: ["Held: fixture", "bad", "The tip is in a forbidden region."],
+  force: ["Held: force", "bad", "The tip presses harder than it may."],
+  motion_angle: ["Held: worst angle", "bad", "The tip may go another way than wished."],
+  deadline: ["Held: cycle too slow", "bad", "Too many cycles in a row took too long."],
 };
 
 const STREAMS = {
@@ -32,7 +50,7 @@ export function robotWords(robot) {
 }
 
 const CONTROL = {
-  bad_input: "A position is no number.", no_tip: "It needs a measured tip.",
+  bad_input: "A position is no number.", no_tip: "It waits for a measured tip.",
   no_model: "The shaft's model cannot be evaluated.",
   straight_instead: "The bending is not known: the straight shaft is taken.",
 };
@@ -57,9 +75,7 @@ export function stateWords(state, connected, seconds_without_news) {
   }
   if (state.hold === "source_lost" && state.held_by) reason = `Gone or late: ${streamWords(state.held_by)}.`;
   if (state.hold === "none" && state.limited.length) reason += ` Limited: ${state.limited.join(", ")}.`;
-  // Between two tips a moving controller waits for the next: that is no news.
-  const worth = state.hold === "no_command" || (state.hold === "none" && state.status !== "no_tip");
-  if (worth && CONTROL[state.status]) reason += ` ${CONTROL[state.status]}`;
+  if ((state.hold === "no_command" || state.hold === "none") && CONTROL[state.status]) reason += ` ${CONTROL[state.status]}`;
   return { title, mood, reason };
 }
 
