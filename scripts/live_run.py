@@ -50,6 +50,14 @@ class LiveRun:
         self.address, self.programs, self.said = "", [], ""
 
     def __enter__(self):
+        try:
+            self._begin()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def _begin(self):
         camera, lockstep = (self.session.get(key, default)
                             for key, default in (("camera", True), ("lockstep", False)))
         robot = self._start("simulate", ROOT / "testdata/scenarios/press.yaml", "--serve", "0",
@@ -61,13 +69,16 @@ class LiveRun:
                                    *["--page-port", "0"] * self.page, *self.options)
         if self.page:
             self.address = self._wait_for(self.control, r"page: (\S+)")
-        return self
 
     def __exit__(self, *_):
         for program in reversed(self.programs):
             if program.poll() is None:
                 program.send_signal(signal.SIGINT)
-            program.communicate()
+            try:
+                program.communicate(timeout=60)
+            except subprocess.TimeoutExpired:
+                program.kill()
+                program.communicate(timeout=60)
 
     def wait(self, seconds):
         """Waits until control has ended; returns its exit code. `said` is what it printed."""

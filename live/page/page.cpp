@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <random>
