@@ -44,6 +44,7 @@ struct WireEvent {
   enum class Kind : std::uint8_t { kConnected, kLost, kRefused };
   Kind kind = Kind::kConnected;
   std::string what;
+  std::string device = {};  ///< that it befell; empty: all of the peer's
 };
 
 /// How many messages a connection, or several, took and why others went no further.

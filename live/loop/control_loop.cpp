@@ -114,11 +114,14 @@ class Loop {
     if (recorder_ != nullptr) recorder_->TakeEvent(Now_ns(), event.what);
     if (event.kind == WireEvent::Kind::kRefused) return;
     const bool there = event.kind == WireEvent::Kind::kConnected;
+    const auto concerns = [&](const Address& address) {
+      return address.SamePeer(peer) && (event.device.empty() || event.device == address.device);
+    };
     for (int i = 0; i < kStreams; ++i) {
       const auto& stream = session_.streams[static_cast<std::size_t>(i)];
-      if (stream && stream->address.SamePeer(peer)) streams_.SetThere(i, there);
+      if (stream && concerns(stream->address)) streams_.SetThere(i, there);
     }
-    if (session_.robot.command.SamePeer(peer)) streams_.SetThere(kStreams, there);
+    if (concerns(session_.robot.command)) streams_.SetThere(kStreams, there);
   }
 
   // From the cycle's thread.

@@ -17,6 +17,22 @@ namespace {
 constexpr const char* kFormat = "flextip-session";
 constexpr std::int64_t kVersion = 1;
 
+Content ContentOf(StreamName stream) {
+  switch (stream) {
+    case StreamName::kTip:
+      return Content::kTip;
+    case StreamName::kStrain:
+      return Content::kMoments;
+    case StreamName::kLoad:
+      return Content::kForce;
+    case StreamName::kWrist:
+    case StreamName::kEm0:
+    case StreamName::kEm1:
+      break;
+  }
+  return Content::kPose;
+}
+
 /// Reads a file's sections and remembers them, to find the keys nobody asked for.
 class SessionReader {
  public:
@@ -89,14 +105,10 @@ class SessionReader {
     if (!sources.Has(key)) return {};
     const YamlMap map = Section(sources, key);
     StreamSetup& setup = session_.streams[static_cast<std::size_t>(stream)].emplace();
-    const auto address = ReadAddress(map, sections_);
-    if (!address) throw sources.Error(key, "found no source, expected openigtlink or udp");
+    const auto address = ReadAddress(map, sections_, ContentOf(stream));
+    if (!address)
+      throw sources.Error(key, fmt::format("found no source, expected {}", ProtocolKeys()));
     setup.address = *address;
-    const bool takes_udp =
-        stream == StreamName::kWrist || stream == StreamName::kEm0 || stream == StreamName::kEm1;
-    if (address->transport == Transport::kUdp && !takes_udp) {
-      throw map.Error("udp", "carries poses alone, expected openigtlink");
-    }
     setup.latency = ReadLatency(map);
     setup.stale_s = NumberInOr(map, "stale_s", kStale, default_stale_s);
     return map;
@@ -195,7 +207,7 @@ class SessionReader {
       throw sources.Error("cam0", "found a camera and vision0, expected one of them");
     }
     CameraSetup& camera = session_.camera.emplace();
-    camera.address = ReadAddress(map, sections_);
+    camera.address = ReadAddress(map, sections_, Content::kPicture);
     camera.video = map.TextOr("video", "");
     if (camera.address.has_value() == !camera.video.empty()) {
       throw sources.Error("cam0", "expected one source: video or openigtlink");
@@ -214,23 +226,23 @@ class SessionReader {
     vision.rate_hz = stream.calibration.rate_hz;
   }
 
-  std::optional<Address> RobotAddress(const YamlMap& map, const std::string& key) {
+  std::optional<Address> RobotAddress(const YamlMap& map, const std::string& key, Content content) {
     if (!map.Has(key)) return {};
-    const auto address = ReadAddress(Section(map, key), sections_);
-    if (!address || address->transport == Transport::kUdp) {
-      throw map.Error(key, "found no peer, expected openigtlink");
+    const auto address = ReadAddress(Section(map, key), sections_, content);
+    if (!address || !address->protocol->takes_commands) {
+      throw map.Error(key, "found no peer that takes commands, as openigtlink and ros2 do");
     }
     return address;
   }
 
   void ReadRobot() {
     const YamlMap map = Section(top_, "robot");
-    const auto command = RobotAddress(map, "command");
+    const auto command = RobotAddress(map, "command", Content::kPose);
     if (!command) throw map.Error("command", "is missing: where do commands go?");
     session_.robot.command = *command;
-    session_.robot.state = RobotAddress(map, "state");
-    session_.robot.command_state = RobotAddress(map, "command_state");
-    session_.robot.lockstep = RobotAddress(map, "lockstep");
+    session_.robot.state = RobotAddress(map, "state", Content::kState);
+    session_.robot.command_state = RobotAddress(map, "command_state", Content::kText);
+    session_.robot.lockstep = RobotAddress(map, "lockstep", Content::kText);
     if (session_.robot.command_state && !session_.robot.state) {
       throw map.Error("command_state", "needs state: nobody commands a robot that is not seen");
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnosis/model/extended_model.h"
+#include "live/protocols/protocol.h"
 #include "recording/calibrations/apply.h"
 #include "recording/recording.h"
 #include "task/task_reader.h"
@@ -21,20 +22,6 @@ enum class StreamName : std::uint8_t { kWrist, kTip, kEm0, kEm1, kStrain, kLoad 
 inline constexpr int kStreams = 6;
 /// Returns the name as in session files and recordings: "wrist0", "vision0", "em0", ...
 const char* Name(StreamName stream);
-
-enum class Transport : std::uint8_t { kOpenIgtLink, kUdp };
-
-/// Where messages come from or go to.
-struct Address {
-  Transport transport = Transport::kOpenIgtLink;
-  std::string host = "127.0.0.1";  ///< of a server; with UDP the address that is listened on
-  int port = 0;
-  std::string device;  ///< the message's name; with UDP the key of the JSON object
-
-  bool SamePeer(const Address& other) const {
-    return transport == other.transport && host == other.host && port == other.port;
-  }
-};
 
 struct StreamSetup {
   Address address;

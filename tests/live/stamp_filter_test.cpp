@@ -1,4 +1,4 @@
-#include "live/openigtlink/stamp_filter.h"
+#include "live/protocols/stamp_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,86 @@
+// The readers and the writer of one topic. Private to the node.
+#pragma once
+
+#include <dds/dds.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "live/dds/node.h"
+
+namespace flextip::live {
+
+/// Deletes an entity of DDS and all that was made of it.
+class DdsEntity {
+ public:
+  explicit DdsEntity(dds_entity_t entity = 0) : entity_(entity) {}
+  ~DdsEntity() {
+    if (entity_ > 0) dds_delete(entity_);
+  }
+  DdsEntity(DdsEntity&& other) noexcept : entity_(std::exchange(other.entity_, 0)) {}
+  DdsEntity& operator=(DdsEntity&& other) noexcept {
+    std::swap(entity_, other.entity_);
+    return *this;
+  }
+  dds_entity_t get() const { return entity_; }
+
+ private:
+  dds_entity_t entity_;
+};
+
+/// What readers and writers are made with.
+struct EndpointPlace {
+  dds_entity_t participant = 0, waitset = 0;
+  bool lockstep = false;
+};
+
+/// Reads one type.
+class Ros2Reader {
+ public:
+  Ros2Reader(const EndpointPlace& place, const std::string& name, Ros2Type type);
+
+  /// A sample and who wrote it.
+  using Take = std::function<void(Ros2Type, const void* sample, TimeNs source_ns,
+                                  dds_instance_handle_t participant)>;
+  /// Gives all samples that are there.
+  void TakeAll(const Take& take);
+  /// Looks at the changes since the last call: who is there, and whether the reader asks for more
+  /// than a writer offers; then it asks for less.
+  void LookAtStatus();
+  int Writers() const { return writers_; }
+  /// Returns whether the participant has a writer here.
+  bool IsWrittenBy(dds_instance_handle_t participant) const;
+
+ private:
+  void Open(bool reliable, bool durable);
+  dds_instance_handle_t ParticipantOf(dds_instance_handle_t writer);
+
+  EndpointPlace place_;
+  Ros2Type type_;
+  DdsEntity topic_, reader_;
+  bool reliable_ = true, durable_ = false;
+  int writers_ = 0;
+  std::map<dds_instance_handle_t, dds_instance_handle_t> participants_;  // of writers
+};
+
+class Ros2Writer {
+ public:
+  Ros2Writer(const EndpointPlace& place, const std::string& name, Ros2Type type);
+
+  Ros2Type type() const { return type_; }
+  /// Returns false where the library does not take it now.
+  bool Write(const void* sample) const;
+  void LookAtStatus();
+  int Readers() const { return readers_; }
+  bool WaitForReaders(std::chrono::nanoseconds patience) const;
+
+ private:
+  Ros2Type type_;
+  DdsEntity topic_, writer_;
+  int readers_ = 0;
+};
+
+}  // namespace flextip::live
