@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 BUILD_PACKAGES=(
   cmake ninja-build g++ libopencv-dev libapriltag-dev libeigen3-dev libceres-dev libcli11-dev
   libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev libcairo2-dev
-  liblz4-dev libzstd-dev libopenigtlink-dev pkg-config
+  liblz4-dev libzstd-dev libopenigtlink-dev cyclonedds-dev cyclonedds-tools pkg-config
 )
 # The documentation site (scripts/site).
 SITE_PACKAGES=(mkdocs mkdocs-material python3)

@@ -70,6 +70,9 @@ void CheckOptions(const ServeCommand& options, const simulation::Scenario& scena
   if (options.udp_port && (*options.udp_port < 1 || *options.udp_port > kLastPort))
     throw InputError(
         fmt::format("--udp: found {}, expected 1 to {}", *options.udp_port, kLastPort));
+  if (options.ros2_domain && (*options.ros2_domain < 0 || *options.ros2_domain > live::kLastDomain))
+    throw InputError(fmt::format("--ros2-domain: found {}, expected 0 to {}", *options.ros2_domain,
+                                 live::kLastDomain));
   positive("--duration", options.duration_s);
   positive("--rate", options.rate_hz);
   if (options.render && !scenario.has_camera)
@@ -95,11 +98,17 @@ CLI::Option* AddServeOptions(CLI::App& command, ServeCommand& options) {
                   "With --lockstep: cycles per second (default: the scenario's control rate)")
       ->needs(serve)
       ->type_name("HZ");
+  auto* ros2 =
+      command
+          .add_flag("--ros2", options.ros2,
+                    "With --serve: be a node of ROS 2 too, on this machine alone unless "
+                    "--any-address")
+          ->needs(serve);
   command
-      .add_flag("--ros2", options.ros2,
-                "With --serve: be a node of ROS 2 too, in the domain of ROS_DOMAIN_ID, on this "
-                "machine alone unless --any-address")
-      ->needs(serve);
+      .add_option("--ros2-domain", options.ros2_domain,
+                  "With --ros2: its domain (default: ROS_DOMAIN_ID, or 0)")
+      ->needs(ros2)
+      ->type_name("N");
   command
       .add_option("--udp", options.udp_port,
                   "With --serve: send the poses of wrist and EM sensors to this port of this "
@@ -138,7 +147,8 @@ void RunServe(const ServeCommand& options, bool quiet) {
   live::ServeOptions serve;
   serve.port = *options.port;
   serve.any_address = options.any_address;
-  if (options.ros2) serve.ros2_domain = live::RosDomain();
+  if (options.ros2)
+    serve.ros2_domain = options.ros2_domain ? *options.ros2_domain : live::RosDomain();
   serve.udp_port = options.udp_port;
   serve.lockstep = options.lockstep;
   serve.rate_hz = options.rate_hz.value_or(0.0);

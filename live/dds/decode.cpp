@@ -2,12 +2,12 @@
 #include <ros2.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 
 #include "live/dds/messages.h"
 #include "live/dds/tip_covariance.h"
+#include "live/protocols/reports.h"
 
 namespace flextip::live {
 namespace {
@@ -18,14 +18,6 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::size_t kMostNumbers = 1024;
 constexpr std::size_t kLongestText = 65535;
 constexpr std::size_t kLargestPicture = std::size_t{64} << 20;
-
-std::string Printable(std::string_view text) {
-  constexpr std::size_t kShown = 100;
-  std::string shown(text.substr(0, kShown));
-  for (char& c : shown)
-    if (std::isprint(static_cast<unsigned char>(c)) == 0) c = '?';
-  return shown;
-}
 
 std::string_view Text(const char* text) { return text == nullptr ? "" : std::string_view(text); }
 
@@ -139,7 +131,7 @@ void ReadPicture(const sensor_msgs_msg_dds__Image_& sample, Reading& reading) {
     reading.Refuse(fmt::format(
         "found a picture of {} x {} '{}', {} bytes a row and {} in all, "
         "expected mono8, bgr8 or rgb8 and sizes that agree",
-        sample.width, sample.height, Printable(encoding), sample.step, sample.data._length));
+        sample.width, sample.height, Printable(encoding, kShownBytes), sample.step, sample.data._length));
     return;
   }
   WireImage picture{

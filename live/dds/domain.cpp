@@ -1,5 +1,6 @@
 #include "live/dds/domain.h"
 
+#include <dds/dds.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,7 +60,7 @@ void RequireName(const std::string& network) {
 
 }  // namespace
 
-std::string DdsProblem(dds_return_t error) {
+std::string DdsProblem(DdsHandle error) {
   const std::string name = dds_strretcode(-error);
   return last_said.empty() ? name : fmt::format("{} ({})", name, std::exchange(last_said, {}));
 }
@@ -97,7 +98,7 @@ Ros2Domain::~Ros2Domain() {
   if (entity_ > 0) dds_delete(entity_);
 }
 
-dds_entity_t Ros2Domain::NewParticipant() const {
+DdsHandle Ros2Domain::NewParticipant() const {
   const dds_entity_t made =
       dds_create_participant(static_cast<dds_domainid_t>(domain_), nullptr, nullptr);
   if (made < 0) {

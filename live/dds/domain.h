@@ -1,12 +1,15 @@
 // A participant in a domain of DDS. Private to dds.
 #pragma once
 
-#include <dds/dds.h>
-
+#include <cstdint>
 #include <memory>
 #include <string>
 
 namespace flextip::live {
+
+/// As the library has them: of entities (0: none, negative: an error) and of remote ones.
+using DdsHandle = std::int32_t;
+using DdsInstance = std::uint64_t;
 
 /// The domain of this process, which its participants share. Messages of the library go nowhere;
 /// errors are told with the exception.
@@ -22,17 +25,17 @@ class Ros2Domain {
   Ros2Domain& operator=(const Ros2Domain&) = delete;
 
   /// Returns a new participant, to be deleted by the caller.
-  dds_entity_t NewParticipant() const;
+  DdsHandle NewParticipant() const;
 
  private:
   Ros2Domain(int domain, std::string network, bool quick);
 
   int domain_;
   std::string network_;
-  dds_entity_t entity_ = 0;  // 0: the environment's, or somebody else's in this process
+  DdsHandle entity_ = 0;  // 0: the environment's, or somebody else's in this process
 };
 
 /// Returns what the library last said in this thread, or the name of the error.
-std::string DdsProblem(dds_return_t error);
+std::string DdsProblem(DdsHandle error);
 
 }  // namespace flextip::live

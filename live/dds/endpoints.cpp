@@ -1,14 +1,15 @@
 #include "live/dds/endpoints.h"
 
+#include <dds/dds.h>
 #include <fmt/format.h>
 #include <ros2.h>
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 #include <utility>
 
 #include "core/error.h"
-#include "live/dds/domain.h"
 
 namespace flextip::live {
 namespace {
@@ -69,6 +70,13 @@ dds_entity_t NewTopic(const EndpointPlace& place, const std::string& name, Ros2T
 }
 
 }  // namespace
+
+static_assert(std::is_same_v<DdsHandle, dds_entity_t>);
+static_assert(std::is_same_v<DdsInstance, dds_instance_handle_t>);
+
+DdsEntity::~DdsEntity() {
+  if (entity_ > 0) dds_delete(entity_);
+}
 
 Ros2Reader::Ros2Reader(const EndpointPlace& place, const std::string& name, Ros2Type type)
     : place_(place), type_(type), topic_(NewTopic(place, name, type)) {

@@ -1,14 +1,14 @@
 // The readers and the writer of one topic. Private to the node.
 #pragma once
 
-#include <dds/dds.h>
-
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "live/dds/domain.h"
 #include "live/dds/node.h"
 
 namespace flextip::live {
@@ -16,24 +16,22 @@ namespace flextip::live {
 /// Deletes an entity of DDS and all that was made of it.
 class DdsEntity {
  public:
-  explicit DdsEntity(dds_entity_t entity = 0) : entity_(entity) {}
-  ~DdsEntity() {
-    if (entity_ > 0) dds_delete(entity_);
-  }
+  explicit DdsEntity(DdsHandle entity = 0) : entity_(entity) {}
+  ~DdsEntity();
   DdsEntity(DdsEntity&& other) noexcept : entity_(std::exchange(other.entity_, 0)) {}
   DdsEntity& operator=(DdsEntity&& other) noexcept {
     std::swap(entity_, other.entity_);
     return *this;
   }
-  dds_entity_t get() const { return entity_; }
+  DdsHandle get() const { return entity_; }
 
  private:
-  dds_entity_t entity_;
+  DdsHandle entity_;
 };
 
 /// What readers and writers are made with.
 struct EndpointPlace {
-  dds_entity_t participant = 0, waitset = 0;
+  DdsHandle participant = 0, waitset = 0;
   bool lockstep = false;
 };
 
@@ -44,7 +42,7 @@ class Ros2Reader {
 
   /// A sample and who wrote it.
   using Take = std::function<void(Ros2Type, const void* sample, TimeNs source_ns,
-                                  dds_instance_handle_t participant)>;
+                                  DdsInstance participant)>;
   /// Gives all samples that are there.
   void TakeAll(const Take& take);
   /// Looks at the changes since the last call: who is there, and whether the reader asks for more
@@ -52,18 +50,18 @@ class Ros2Reader {
   void LookAtStatus();
   int Writers() const { return writers_; }
   /// Returns whether the participant has a writer here.
-  bool IsWrittenBy(dds_instance_handle_t participant) const;
+  bool IsWrittenBy(DdsInstance participant) const;
 
  private:
   void Open(bool reliable, bool durable);
-  dds_instance_handle_t ParticipantOf(dds_instance_handle_t writer);
+  DdsInstance ParticipantOf(DdsInstance writer);
 
   EndpointPlace place_;
   Ros2Type type_;
   DdsEntity topic_, reader_;
   bool reliable_ = true, durable_ = false;
   int writers_ = 0;
-  std::map<dds_instance_handle_t, dds_instance_handle_t> participants_;  // of writers
+  std::map<DdsInstance, DdsInstance> participants_;  // of writers
 };
 
 class Ros2Writer {

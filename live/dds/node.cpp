@@ -1,12 +1,15 @@
 #include "live/dds/node.h"
 
+#include <dds/dds.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "live/dds/domain.h"
@@ -22,6 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLook{200};
 constexpr std::chrono::seconds kFirstPatience{1};  // for somebody at the other end of a topic
+constexpr std::chrono::milliseconds kLastPatience{1000};  // for readers of what was sent before
 
 }  // namespace
 
@@ -49,7 +53,8 @@ class Ros2Node::Worker {
     for (std::size_t i = 0; i < setup_.in.size(); ++i) {
       In& in = ins_.emplace_back();
       in.name = setup_.in[i].name;
-      if (static_cast<int>(i) != setup_.last_in) OpenReaders(in, setup_.in[i]);
+      const bool later = setup_.opens_last_in_late && static_cast<int>(i) == setup_.last_in;
+      if (!later) OpenReaders(in, setup_.in[i]);
     }
     thread_ = std::thread([this] { Run(); });
   }
@@ -65,8 +70,13 @@ class Ros2Node::Worker {
   bool Send(const WireMessage& message) {
     bool sent = false;
     if (Out* const out = OutOf(message.device)) {
-      WithRos2(out->writer->type(), message,
-               [&](const void* sample) { sent = out->there && out->writer->Write(sample); });
+      const bool is_last = setup_.last_out >= 0 && out == &outs_[std::size_t(setup_.last_out)];
+      if (is_last) (void)WaitForReaders(kLastPatience);
+      const bool there = out->there;
+      WithRos2(out->writer->type(), message, [&](const void* sample) {
+        // In lockstep also for a reader that this thread does not know yet.
+        sent = (there || setup_.lockstep) && out->writer->Write(sample) && there;
+      });
     }
     if (!sent) counts_.Add(&WireCounts::unsent);
     return sent;
@@ -134,31 +144,35 @@ class Ros2Node::Worker {
   }
 
   void LookAtStatus() {
+    // All ends first: who is told of one then finds the others as they are.
+    std::vector<WireEvent> news;
     for (In& in : ins_) {
       int writers = 0;
       for (Ros2Reader& reader : in.readers) {
         reader.LookAtStatus();
         writers += reader.Writers();
       }
-      Note(in, writers > 0, "sent");
+      if (writers == 0) filter_.Forget(in.name);
+      Note(in, writers > 0, "sent", news);
     }
     for (Out& out : outs_) {
       out.writer->LookAtStatus();
-      Note(out, out.writer->Readers() > 0, "read");
+      Note(out, out.writer->Readers() > 0, "read", news);
     }
     if (commander_ != 0 && !IsWritten(commander_)) commander_ = 0;
     OpenLast();
+    for (WireEvent& event : news) event_(std::move(event));
   }
 
   template <class End>
-  void Note(End& end, bool there, const char* what) {
+  void Note(End& end, bool there, const char* what, std::vector<WireEvent>& news) const {
     if (there == end.there) return;
     end.there = there;
     end.told = true;
-    event_({there ? WireEvent::Kind::kConnected : WireEvent::Kind::kLost,
-            fmt::format("{}: {} is {}", name_, end.name,
-                        there ? what : fmt::format("not {} any more", what)),
-            end.name});
+    news.push_back({there ? WireEvent::Kind::kConnected : WireEvent::Kind::kLost,
+                    fmt::format("{}: {} is {}", name_, end.name,
+                                there ? what : fmt::format("not {} any more", what)),
+                    end.name});
   }
 
   void TellMissing() {
@@ -176,7 +190,7 @@ class Ros2Node::Worker {
   /// Others know of this node's endpoints in the order in which they were made. Who sees the last
   /// one has seen all.
   void OpenLast() {
-    if (setup_.last_in < 0) return;
+    if (setup_.last_in < 0 || !setup_.opens_last_in_late) return;
     const auto last = static_cast<std::size_t>(setup_.last_in);
     if (!ins_[last].readers.empty()) return;
     for (std::size_t i = 0; i < ins_.size(); ++i)
@@ -186,7 +200,7 @@ class Ros2Node::Worker {
     OpenReaders(ins_[last], setup_.in[last]);
   }
 
-  bool IsWritten(dds_instance_handle_t participant) const {
+  bool IsWritten(DdsInstance participant) const {
     for (const In& in : ins_)
       for (const Ros2Reader& reader : in.readers)
         if (reader.IsWrittenBy(participant)) return true;
@@ -211,7 +225,7 @@ class Ros2Node::Worker {
   void TakeFrom(In& in, const Give& give) {
     for (Ros2Reader& reader : in.readers) {
       reader.TakeAll([&](Ros2Type type, const void* sample, TimeNs source_ns,
-                         dds_instance_handle_t participant) {
+                         DdsInstance participant) {
         Ros2Decoded decoded = DecodeRos2(type, sample, in.name, source_ns);
         if (!decoded.message) {
           Refuse(decoded.why, in.name);
@@ -222,9 +236,9 @@ class Ros2Node::Worker {
     }
   }
 
-  bool IsHeard(dds_instance_handle_t participant, const std::string& topic) {
+  bool IsHeard(DdsInstance participant, const std::string& topic) {
     if (!setup_.one_commander) return true;
-    dds_instance_handle_t nobody = 0;
+    DdsInstance nobody = 0;
     commander_.compare_exchange_strong(nobody, participant);
     if (commander_ == participant) return true;
     Refuse(fmt::format("{}: another participant commands, this one is not heard", topic), topic);
@@ -268,7 +282,7 @@ class Ros2Node::Worker {
   DdsEntity participant_, waitset_, wake_;
   std::deque<In> ins_;
   std::deque<Out> outs_;
-  std::atomic<dds_instance_handle_t> commander_ = 0;
+  std::atomic<DdsInstance> commander_ = 0;
   std::atomic<bool> stop_ = false;
   std::thread thread_;
 };

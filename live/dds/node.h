@@ -29,15 +29,19 @@ struct Ros2Setup {
   /// also before a reader is there (transient local, where both offer it), and readers are asked
   /// soon what they have.
   bool lockstep = false;
-  /// Of `in`: opened when somebody is there for all other topics, and given after what was sent
+  /// Of `in` and `out`, in lockstep: given after, and sent when readers have, all that was sent
   /// before. -1: none is so.
-  int last_in = -1;
+  int last_in = -1, last_out = -1;
+  /// The topic `last_in` is opened when somebody is there for all others.
+  bool opens_last_in_late = false;
   bool one_commander = false;  ///< the first participant that sends is listened to until it is gone
   bool says_invalid = true;    ///< an event for a stamp of 0
 };
 
 /// Returns whether this build has ROS 2. Without it nodes throw WorkError when they are made.
 bool HasRos2();
+
+inline constexpr int kLastDomain = 232;  // later ones have no ports
 
 /// Returns the domain that ROS_DOMAIN_ID names, 0 without it. Throws InputError where that is none.
 int RosDomain();
@@ -57,9 +61,10 @@ class Ros2Node {
   Ros2Node(const Ros2Node&) = delete;
   Ros2Node& operator=(const Ros2Node&) = delete;
 
-  /// Gives the message to the library; never waits for a reader. Returns false where nobody reads
-  /// the topic or it is none of `out`. Any thread may call it. Throws InputError for a message that
-  /// its type cannot carry.
+  /// Gives the message to the library; never waits for a reader, but with `last_out` for a second
+  /// at most. Returns false where nobody reads the topic or it is none of `out`; in lockstep the
+  /// message is kept for a reader to come. Any thread may call it. Throws InputError for a message
+  /// that its type cannot carry.
   bool Send(const WireMessage& message);
 
   /// Returns whether a writer (of `out`: a reader) of the topic is there.

@@ -11,7 +11,6 @@
 namespace flextip::live {
 namespace {
 
-constexpr int kLastDomain = 232;  // more have no ports
 constexpr std::size_t kLongestTopic = 200;
 
 bool IsTopic(const std::string& name) {
@@ -63,8 +62,10 @@ Ros2Setup SetupOf(const PeerWish& wish) {
   Ros2Setup setup;
   setup.domain = any.port;
   setup.network = any.host;
-  setup.last_in = wish.lockstep;
   setup.lockstep = wish.lockstep >= 0;
+  setup.last_in = wish.lockstep;
+  setup.opens_last_in_late = true;
+  setup.last_out = wish.answer;
   for (const Address& address : wish.in) setup.in.push_back(TopicOf(address));
   for (const Address& address : wish.out) setup.out.push_back(TopicOf(address));
   return setup;

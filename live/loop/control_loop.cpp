@@ -8,6 +8,8 @@
 
 #include "live/camera/tip_camera.h"
 #include "live/loop/beat.h"
+#include "live/protocols/reports.h"
+#include "live/session/address.h"
 #include "live/streams/streams.h"
 
 namespace flextip::live {
@@ -95,9 +97,13 @@ class Loop {
       return address.SamePeer(peer) && address.device == message.device;
     };
     for (int i = 0; i < kStreams; ++i) {
-      const auto& stream = session_.streams[static_cast<std::size_t>(i)];
-      if (stream && is_of(stream->address))
-        streams_.Take(static_cast<StreamName>(i), message, now_ns);
+      const auto at = static_cast<std::size_t>(i);
+      const auto& stream = session_.streams[at];
+      if (!stream || !is_of(stream->address)) continue;
+      const std::string why = streams_.Take(static_cast<StreamName>(i), message, now_ns);
+      if (why.empty()) continue;
+      const auto note = [&](WireEvent&& event) { Note(peer, event); };
+      reports_[at].Tell(note, fmt::format("{}: {}", Text(stream->address), why), message.device);
     }
     const auto* picture = std::get_if<WireImage>(&message.body);
     const bool of_camera = session_.camera && session_.camera->address &&
@@ -162,6 +168,12 @@ class Loop {
     const bool known_still = state && state->value.state != CrtkState::kEnabled;
     // In lockstep the robot waits for a set-point, and one that it cannot use moves nothing.
     const bool has_one = outputs.has_command || session_.robot.lockstep.has_value();
+    // First, for in lockstep the robot goes on at the set-point.
+    if (outputs.state_command) {
+      state_command_.t_ns = outputs.t_ns;
+      state_command_.body = WireText{Name(*outputs.state_command)};
+      (void)peers_->Send(*session_.robot.command_state, state_command_);
+    }
     bool sent = false;
     if (has_one && (!options_.only_timing || known_still)) {
       WireTransform transform;
@@ -170,11 +182,6 @@ class Loop {
       set_point_.body = transform;
       sent = peers_->Send(session_.robot.command, set_point_);
       report_.unsent += !sent;
-    }
-    if (outputs.state_command) {
-      state_command_.t_ns = outputs.t_ns;
-      state_command_.body = WireText{Name(*outputs.state_command)};
-      (void)peers_->Send(*session_.robot.command_state, state_command_);
     }
     return sent;
   }
@@ -228,6 +235,7 @@ class Loop {
   const LoopOptions& options_;
   Recorder* recorder_;
   Streams streams_;
+  std::array<Reports, kStreams> reports_;  // each of the thread that delivers the stream
   GivenBeats beats_;
   Cycle cycle_;
   std::optional<TipCamera> camera_;

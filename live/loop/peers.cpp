@@ -19,6 +19,7 @@ class AllPeers : public Peers {
     if (robot.lockstep) {
       PeerWish& wish = Read(*robot.lockstep);
       wish.lockstep = static_cast<int>(wish.in.size()) - 1;
+      if (robot.lockstep->SamePeer(robot.command)) wish.answer = 0;
     }
     for (Peer& peer : peers_) peer.connection = peer.address.protocol->open(peer.wish);
   }

@@ -46,11 +46,12 @@ class PeerConnection {
   PeerConnection& operator=(const PeerConnection&) = default;
 };
 
-/// What is wanted of a peer: addresses of one SamePeer. `lockstep`, one of `in`, is the index of
-/// the device whose messages must come after all that were sent before them; -1: none must.
+/// What is wanted of a peer: addresses of one SamePeer.
 struct PeerWish {
   std::vector<Address> in, out;
-  int lockstep = -1;
+  /// Indices of the devices by which both sides wait for one another: the peer's message (of `in`)
+  /// and the answer (of `out`) must each come after all that was sent before. -1: none must.
+  int lockstep = -1, answer = -1;
   /// Called from a thread of the connection, one call at a time.
   std::function<void(WireMessage&&)> message;
   std::function<void(WireEvent&&)> event;

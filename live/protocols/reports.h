@@ -7,11 +7,22 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "live/wire.h"
 
 namespace flextip::live {
+
+inline constexpr std::size_t kShownBytes = 100;  // of a text that a peer chose
+
+/// Returns the first `most` bytes of a text, fit for a line: what is not printable as '?'.
+inline std::string Printable(std::string_view text, std::size_t most = std::string_view::npos) {
+  std::string shown(text.substr(0, most));
+  for (char& c : shown)
+    if (c < ' ' || c > '~') c = '?';
+  return shown;
+}
 
 /// Counts that several threads change.
 class SharedCounts {

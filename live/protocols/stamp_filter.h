@@ -18,6 +18,9 @@ enum class StampVerdict : std::uint8_t { kPass, kRepeated, kOutOfOrder, kTooMany
 class StampFilter {
  public:
   StampVerdict Judge(const WireMessage& message);
+  /// Lets the device's next message pass, whatever its time: its sender is a new one.
+  void Forget(const std::string& device) { devices_.erase(device); }
+  void ForgetAll() { devices_.clear(); }
   /// Returns the time of the device's last message that passed, 0 where there was none.
   TimeNs Last(const std::string& device) const;
 

@@ -34,7 +34,6 @@ Outlets::Outlets(const ServeOptions& options, std::function<void(Source, WireMes
   }
 }
 
-/// The first of `out` is known first to others: who waits for it last has found all.
 Ros2Setup Outlets::RosSetup(int domain) const {
   Ros2Setup setup;
   setup.domain = domain;
@@ -51,6 +50,7 @@ Ros2Setup Outlets::RosSetup(int domain) const {
   setup.out.push_back(Topic("vision0", Content::kTip));
   setup.out.push_back(Topic("cam0", Content::kPicture));
   setup.out.push_back(Topic(kStateDevice, Content::kState));
+  if (options_.lockstep) setup.last_in = 0;  // state commands of a cycle come before its set-point
   setup.in.push_back(Topic(kServoDevice, Content::kPose));
   setup.in.push_back(Topic(kInterpolateDevice, Content::kPose));
   setup.in.push_back(Topic(kCommandDevice, Content::kText));
@@ -66,28 +66,12 @@ bool Outlets::IsHeard(Source source) {
 bool Outlets::Send(const WireMessage& message) {
   if (udp_ && std::holds_alternative<WireTransform>(message.body)) (void)udp_->Send(message);
   bool heard = node_ && node_->Send(message);
-  if (node_ && options_.lockstep) {
-    const std::lock_guard lock(kept_mutex_);
-    kept_.push_back(message);
-  }
   heard |= server_.Send(message, options_.lockstep) > 0;
   return heard;
 }
 
-void Outlets::ForgetKept() {
-  server_.ForgetKept();
-  const std::lock_guard lock(kept_mutex_);
-  kept_.clear();
-}
-
 bool Outlets::Settled() const {
   return !node_ || !HasRosClient() || node_->WaitForReaders(kSettle);
-}
-
-void Outlets::SendAgain() {
-  if (!node_) return;
-  const std::lock_guard lock(kept_mutex_);
-  for (const WireMessage& message : kept_) (void)node_->Send(message);
 }
 
 bool Outlets::HasRosClient() const {

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <functional>
-#include <mutex>
 #include <optional>
-#include <vector>
 
 #include "live/dds/node.h"
 #include "live/openigtlink/server.h"
@@ -26,12 +24,9 @@ class Outlets {
   /// Sends to all who listen. Returns whether somebody does, UDP left out. In lockstep who comes
   /// later is given it too, until ForgetKept.
   bool Send(const WireMessage& message);
-  void ForgetKept();
+  void ForgetKept() { server_.ForgetKept(); }
   /// Waits until all who listen in lockstep have what was sent; false where they do not in 20 ms.
   bool Settled() const;
-  /// Sends once more what lockstep waits for an answer to: the first messages over DDS may find a
-  /// reader that is not ready.
-  void SendAgain();
 
   /// One peer commands, whatever its protocol. Returns whether that of `source` is heard; it then
   /// commands.
@@ -49,8 +44,6 @@ class Outlets {
 
   const ServeOptions& options_;
   Source commander_ = Source::kNobody;
-  std::mutex kept_mutex_;
-  std::vector<WireMessage> kept_;
   std::optional<UdpSender> udp_;
   std::optional<Ros2Node> node_;
   OpenIgtLinkServer server_;

@@ -21,8 +21,7 @@ namespace {
 using simulation::kSimulationStart_ns;
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kLook{20};       // how often the end is looked for
-constexpr std::chrono::milliseconds kAskAgain{500};  // in lockstep, where nobody answers
+constexpr std::chrono::milliseconds kLook{20};  // how often the end is looked for
 
 simulation::VirtualRobotSetup RobotOf(const simulation::Scenario& scenario, bool pictures,
                                       bool keep) {
@@ -140,13 +139,7 @@ class Session {
       }
       Publish({kLockstepDevice, robot_.Now(), WireText{fmt::format("cycle {}", figures_.cycles)}});
       answered_ = false;
-      SteadyClock::time_point asked = SteadyClock::now();
-      while (!answered_ && !Stopped() && !Left()) {
-        TakeOne();
-        if (SteadyClock::now() - asked < kAskAgain) continue;
-        outlets_.SendAgain();
-        asked = SteadyClock::now();
-      }
+      while (!answered_ && !Stopped() && !Left()) TakeOne();
       if (answered_) ++figures_.cycles;
     }
   }

@@ -1,5 +1,7 @@
 #include "live/streams/streams.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <ctime>
 
@@ -7,6 +9,10 @@
 
 namespace flextip::live {
 namespace {
+
+/// A sample whose time is further from that of its arrival is of another day or clock. Were it
+/// taken, a time to come would shut out all that are right.
+constexpr double kOtherClock_s = 20.0;
 
 template <class T>
 void LookAt(Newest<Arrived<T>>& newest, std::optional<Arrived<T>>& sample) {
@@ -32,22 +38,31 @@ double StreamCounts::Rate_hz() const {
 Streams::Streams(const Session& session, Observer observer)
     : session_(session), observer_(std::move(observer)), lost_(AllOf(session)) {}
 
-void Streams::Take(StreamName stream, const WireMessage& message, TimeNs arrived_ns) {
+std::string Streams::Take(StreamName stream, const WireMessage& message, TimeNs arrived_ns) {
   const auto i = static_cast<std::size_t>(stream);
   Counters& counters = counters_[i];
   ++counters.arrived;
   if (message.t_ns <= 0) {
     ++counters.invalid;
-    return;
+    return {};
   }
-  const auto sample = SampleIn(stream, message);
+  std::string why;
+  const auto sample = SampleIn(stream, message, why);
   if (!sample) {
     ++counters.unusable;
-    return;
+    return why;
+  }
+  // In lockstep the robot's time is not that of arrivals.
+  const double off_s = 1e-9 * static_cast<double>(message.t_ns - arrived_ns);
+  if (!session_.robot.lockstep && std::abs(off_s) > kOtherClock_s) {
+    ++counters.unusable;
+    return fmt::format("found a time {:.6g} s {} this machine's, expected its clock within {:g} s",
+                       std::abs(off_s), off_s > 0.0 ? "after" : "before", kOtherClock_s);
   }
   const double latency_s = session_.streams[i] ? session_.streams[i]->latency.value_s : 0.0;
   const TimeNs t_ns = message.t_ns - std::llround(1e9 * latency_s);
   Accept(stream, Calibrate(session_, stream, {t_ns, arrived_ns, *sample}));
+  return {};
 }
 
 void Streams::TakeTip(TimeNs t_ns, const SeenTip& tip, TimeNs arrived_ns) {

@@ -46,8 +46,9 @@ class Streams {
   explicit Streams(const Session& session, Observer observer = {});
 
   /// Takes a message of a stream that arrived at `arrived_ns`: calibrates it, takes the latency off
-  /// its time, drops and counts what is invalid, old or unusable.
-  void Take(StreamName stream, const WireMessage& message, TimeNs arrived_ns);
+  /// its time, drops and counts what is invalid, old or unusable (of another kind, unit or day).
+  /// Returns why a message is unusable, with the values found; otherwise nothing.
+  std::string Take(StreamName stream, const WireMessage& message, TimeNs arrived_ns);
   /// Takes a sample of the tip by the session's own camera.
   void TakeTip(TimeNs t_ns, const SeenTip& tip, TimeNs arrived_ns);
   /// Takes the robot's operating state; a text that is none is counted.

@@ -76,6 +76,8 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"apriltag", {"vision", "simulation", "tests"}},
       {"ceres/", {"estimation", "calibration", "tests"}},
       {"igtl", {"live", "tests"}},
+      {"dds/", {"live", "tests"}},
+      {"ros2.h", {"live", "tests"}},
       {"yaml-cpp/", {"recording"}},
       {"tbb/",
        {"simulation", kClosedLoop, "diagnosis", "workspace", "reproduction", "apps", "bench",

@@ -48,6 +48,40 @@ TEST(Session, NumbersInAnotherUnitAreRefusedWithTheirLine) {
               HasSubstr("found 50"));
 }
 
+/// The session with the strain gages by another protocol.
+std::string StrainBy(const std::string& address) {
+  return Complaint("openigtlink: {port: 18944, device: strain0}", address);
+}
+
+TEST(Session, EachProtocolHasItsOwnKeys) {
+  std::string text = SessionText();
+  const std::string before = "openigtlink: {port: 18944, device: strain0}";
+  text.replace(text.find(before), before.size(), "ros2: {topic: /arm/strain0, domain: 5}");
+  const Session session = ReadSession(WriteSession(text));
+  const Address& strain = session.Of(StreamName::kStrain)->address;
+  EXPECT_STREQ(strain.protocol->key, "ros2");
+  EXPECT_EQ(strain.device, "arm/strain0");
+  EXPECT_EQ(strain.port, 5);
+  EXPECT_EQ(strain.host, "lo");
+  EXPECT_FALSE(strain.SamePeer(session.robot.command));
+  EXPECT_EQ(ProtocolKeys(), "openigtlink, ros2 or udp");
+}
+
+TEST(Session, AddressesThatAreNoneAreRefused) {
+  EXPECT_THAT(StrainBy("ros2: {topic: strain 0}"), HasSubstr("found 'strain 0'"));
+  EXPECT_THAT(StrainBy("ros2: {topic: a//b}"), HasSubstr("a topic of ROS 2"));
+  EXPECT_THAT(StrainBy("ros2: {topic: /9a}"), HasSubstr("a topic of ROS 2"));
+  EXPECT_THAT(StrainBy("ros2: {topic: a, domain: 233}"), HasSubstr("found 233, expected 0 to 232"));
+  EXPECT_THAT(StrainBy("ros2: {topic: a, type: std_msgs/String}"),
+              HasSubstr("found 'std_msgs/String', expected sensor_msgs/JointState"));
+  EXPECT_THAT(StrainBy("ros2: {topic: a, port: 5}"), HasSubstr("port"));
+  EXPECT_THAT(StrainBy("udp: {port: 5000, device: a}"), HasSubstr("does not carry this"));
+  EXPECT_THAT(StrainBy("openigtlink: {port: 70000, device: a}"), HasSubstr("found 70000"));
+  EXPECT_THAT(Complaint("openigtlink: {port: 18944, device: PSM1/servo_cp}",
+                        "udp: {port: 5000, device: servo_cp}"),
+              HasSubstr("udp"));
+}
+
 TEST(Session, UnknownKeysAreRefused) {
   EXPECT_THAT(Complaint("rate_hz: 100", "rate_hz: 100, rat: 2"),
               HasSubstr("unknown key \"controller.rat\""));
