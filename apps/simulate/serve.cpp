@@ -98,12 +98,11 @@ CLI::Option* AddServeOptions(CLI::App& command, ServeCommand& options) {
                   "With --lockstep: cycles per second (default: the scenario's control rate)")
       ->needs(serve)
       ->type_name("HZ");
-  auto* ros2 =
-      command
-          .add_flag("--ros2", options.ros2,
-                    "With --serve: be a node of ROS 2 too, on this machine alone unless "
-                    "--any-address")
-          ->needs(serve);
+  auto* ros2 = command
+                   .add_flag("--ros2", options.ros2,
+                             "With --serve: be a node of ROS 2 too, on this machine alone unless "
+                             "--any-address")
+                   ->needs(serve);
   command
       .add_option("--ros2-domain", options.ros2_domain,
                   "With --ros2: its domain (default: ROS_DOMAIN_ID, or 0)")

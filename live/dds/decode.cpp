@@ -128,10 +128,11 @@ void ReadPicture(const sensor_msgs_msg_dds__Image_& sample, Reading& reading) {
   const std::uint64_t size = std::uint64_t{sample.step} * sample.height;
   if (channels == 0 || row == 0 || size == 0 || sample.step < row || size > kLargestPicture ||
       sample.data._length != size) {
-    reading.Refuse(fmt::format(
-        "found a picture of {} x {} '{}', {} bytes a row and {} in all, "
-        "expected mono8, bgr8 or rgb8 and sizes that agree",
-        sample.width, sample.height, Printable(encoding, kShownBytes), sample.step, sample.data._length));
+    reading.Refuse(
+        fmt::format("found a picture of {} x {} '{}', {} bytes a row and {} in all, "
+                    "expected mono8, bgr8 or rgb8 and sizes that agree",
+                    sample.width, sample.height, Printable(encoding, kShownBytes), sample.step,
+                    sample.data._length));
     return;
   }
   WireImage picture{

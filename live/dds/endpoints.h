@@ -41,8 +41,8 @@ class Ros2Reader {
   Ros2Reader(const EndpointPlace& place, const std::string& name, Ros2Type type);
 
   /// A sample and who wrote it.
-  using Take = std::function<void(Ros2Type, const void* sample, TimeNs source_ns,
-                                  DdsInstance participant)>;
+  using Take =
+      std::function<void(Ros2Type, const void* sample, TimeNs source_ns, DdsInstance participant)>;
   /// Gives all samples that are there.
   void TakeAll(const Take& take);
   /// Looks at the changes since the last call: who is there, and whether the reader asks for more

@@ -224,15 +224,15 @@ class Ros2Node::Worker {
   template <class Give>
   void TakeFrom(In& in, const Give& give) {
     for (Ros2Reader& reader : in.readers) {
-      reader.TakeAll([&](Ros2Type type, const void* sample, TimeNs source_ns,
-                         DdsInstance participant) {
-        Ros2Decoded decoded = DecodeRos2(type, sample, in.name, source_ns);
-        if (!decoded.message) {
-          Refuse(decoded.why, in.name);
-        } else if (IsHeard(participant, in.name)) {
-          give(std::move(*decoded.message));
-        }
-      });
+      reader.TakeAll(
+          [&](Ros2Type type, const void* sample, TimeNs source_ns, DdsInstance participant) {
+            Ros2Decoded decoded = DecodeRos2(type, sample, in.name, source_ns);
+            if (!decoded.message) {
+              Refuse(decoded.why, in.name);
+            } else if (IsHeard(participant, in.name)) {
+              give(std::move(*decoded.message));
+            }
+          });
     }
   }
 

@@ -33,9 +33,10 @@ bool IsIn(const Plausible& range, const Vector& v, const char* what, std::string
 bool IsRotated(const WireTransform& body, std::string& why) {
   if (IsRotation(body.T_RD.R)) return true;
   const Eigen::Matrix3d off = body.T_RD.R.transpose() * body.T_RD.R - Eigen::Matrix3d::Identity();
-  why = fmt::format("found a matrix that is off a rotation by {:.3g} (determinant {:.6g}), expected "
-                    "at most {:g}",
-                    off.cwiseAbs().maxCoeff(), body.T_RD.R.determinant(), kUnitTolerance);
+  why = fmt::format(
+      "found a matrix that is off a rotation by {:.3g} (determinant {:.6g}), expected "
+      "at most {:g}",
+      off.cwiseAbs().maxCoeff(), body.T_RD.R.determinant(), kUnitTolerance);
   return false;
 }
 
@@ -76,9 +77,10 @@ std::optional<AnySample> TipIn(const std::vector<double>& v, std::string& why) {
   const Eigen::Vector3d d(v[12], v[13], v[14]);
   if (d.norm() > 0.0) {
     if (std::abs(d.norm() - 1.0) > kUnitTolerance || v[15] < 0.0) {
-      why = fmt::format("found a direction of length {:.6g} and noise {:.6g} rad, expected 1 and "
-                        "no less than 0",
-                        d.norm(), v[15]);
+      why = fmt::format(
+          "found a direction of length {:.6g} and noise {:.6g} rad, expected 1 and "
+          "no less than 0",
+          d.norm(), v[15]);
       return {};
     }
     seen.tip.d_RE = d.normalized();
@@ -126,8 +128,9 @@ std::optional<AnySample> SampleIn(StreamName stream, const WireMessage& message,
     return NumbersIn(stream, numbers->values, why);
   const auto* transform = std::get_if<WireTransform>(&message.body);
   if (transform == nullptr || CountOf(stream) != 0) {
-    why = fmt::format("found {}, expected {}", transform == nullptr ? "a text or picture" : "a pose",
-                      CountOf(stream) == 0 ? "a pose" : "numbers");
+    why =
+        fmt::format("found {}, expected {}", transform == nullptr ? "a text or picture" : "a pose",
+                    CountOf(stream) == 0 ? "a pose" : "numbers");
     return {};
   }
   if (!transform->T_RD.Matrix().allFinite()) {

@@ -131,8 +131,8 @@ class UdpListener::Worker {
                                                    : &WireCounts::out_of_order);
     reports_.Tell(event_, fmt::format("{} from {}: {}: found the time {} after {}, expected a "
                                       "later one",
-                                      name_, sender_, Printable(message.device, kShownBytes), message.t_ns,
-                                      filter_.Last(message.device)));
+                                      name_, sender_, Printable(message.device, kShownBytes),
+                                      message.t_ns, filter_.Last(message.device)));
   }
 
   void Refuse(const std::string& sender, const std::string& why) {

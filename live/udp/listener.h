@@ -24,8 +24,8 @@ std::vector<WireMessage> PosesInJson(std::string_view datagram, std::string& pro
 class UdpListener {
  public:
   /// `host`: the address that is listened on. Calls come from the thread: kConnected with the first
-  /// pose, kLost after a second without any, kRefused for what is not taken, with its sender. Throws
-  /// WorkError where the port cannot be had.
+  /// pose, kLost after a second without any, kRefused for what is not taken, with its sender.
+  /// Throws WorkError where the port cannot be had.
   UdpListener(const std::string& host, int port, std::function<void(WireMessage&&)> message,
               std::function<void(WireEvent&&)> event);
   ~UdpListener();

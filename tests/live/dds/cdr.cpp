@@ -40,8 +40,8 @@ class Topics {
     participant_ = domain_->NewParticipant();
     for (int i = 0; i < kRos2Types; ++i) {
       const auto& descriptor = DescriptorOf(static_cast<Ros2Type>(i));
-      const dds_entity_t topic = dds_create_topic(participant_, &descriptor,
-                                                  descriptor.m_typename, nullptr, nullptr);
+      const dds_entity_t topic =
+          dds_create_topic(participant_, &descriptor, descriptor.m_typename, nullptr, nullptr);
       const auto at = static_cast<std::size_t>(i);
       readers_[at] = dds_create_reader(participant_, topic, nullptr, nullptr);
       writers_[at] = dds_create_writer(participant_, topic, nullptr, nullptr);

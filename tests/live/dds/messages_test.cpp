@@ -25,8 +25,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class Layout {
  public:
   template <class T>
-    requires std::is_arithmetic_v<T>
-  Layout& Put(T value) {
+  requires std::is_arithmetic_v<T> Layout& Put(T value) {
     while (bytes_.size() % sizeof value != 0) bytes_.push_back(0);
     bytes_.resize(bytes_.size() + sizeof value);
     std::memcpy(bytes_.data() + bytes_.size() - sizeof value, &value, sizeof value);
@@ -89,13 +88,28 @@ TEST(Ros2Messages, BytesAreThoseOfXcdr1) {
   const Pose T_RW{ExpRotation(Eigen::Vector3d(0, 0, 1.0)), {0.1, -0.2, 0.3}};
   const Eigen::Quaterniond q = T_RW.Quaternion();
   const Bytes pose = Layout()
-                         .Header().Put(0.1).Put(-0.2).Put(0.3)
-                         .Put(q.x()).Put(q.y()).Put(q.z()).Put(q.w()).bytes();
+                         .Header()
+                         .Put(0.1)
+                         .Put(-0.2)
+                         .Put(0.3)
+                         .Put(q.x())
+                         .Put(q.y())
+                         .Put(q.z())
+                         .Put(q.w())
+                         .bytes();
   EXPECT_EQ(CdrOf(Ros2Type::kPoseStamped, {"w", kTime_ns, WireTransform{T_RW}}), pose);
   const std::uint32_t none = 0, four = 4;
   const Bytes joints = Layout()
-                           .Header().Put(none).Put(none).Put(none).Put(four)
-                           .Put(1.0).Put(2.0).Put(3.0).Put(4.0).bytes();
+                           .Header()
+                           .Put(none)
+                           .Put(none)
+                           .Put(none)
+                           .Put(four)
+                           .Put(1.0)
+                           .Put(2.0)
+                           .Put(3.0)
+                           .Put(4.0)
+                           .bytes();
   EXPECT_EQ(CdrOf(Ros2Type::kJointState, {"s", kTime_ns, WireNumbers{{1, 2, 3, 4}}}), joints);
   const Bytes state =
       Layout().Header().Put("PAUSED").Put(std::uint8_t{1}).Put(std::uint8_t{0}).bytes();
@@ -139,8 +153,7 @@ TEST(Ros2Messages, NumbersStatesTextsAndPicturesComeBack) {
     const WireMessage state = Again(Ros2Type::kOperatingState, {"o", kTime_ns, WireText{text}});
     EXPECT_EQ(std::get<WireText>(state.body).text, text);
   }
-  const WireMessage command =
-      Again(Ros2Type::kStringStamped, {"c", kTime_ns, WireText{"enable"}});
+  const WireMessage command = Again(Ros2Type::kStringStamped, {"c", kTime_ns, WireText{"enable"}});
   EXPECT_EQ(std::get<WireText>(command.body).text, "enable");
   const WireMessage plain = Again(Ros2Type::kString, {"c", kTime_ns, WireText{"home"}});
   EXPECT_EQ(std::get<WireText>(plain.body).text, "home");
@@ -224,9 +237,8 @@ TEST(Ros2Messages, TheLibraryRefusesBytesThatEndEarlyOrLieAboutLengths) {
   for (std::size_t size = 0; size + 8 < pose.size(); ++size)
     EXPECT_FALSE(is_taken(Ros2Type::kPoseStamped, {pose.begin(), pose.begin() + long(size)}));
   const std::uint32_t none = 0, lie = 0x20000000;
-  EXPECT_FALSE(is_taken(
-      Ros2Type::kJointState,
-      Layout().Header().Put(none).Put(none).Put(none).Put(lie).Put(1.0).bytes()));
+  EXPECT_FALSE(is_taken(Ros2Type::kJointState,
+                        Layout().Header().Put(none).Put(none).Put(none).Put(lie).Put(1.0).bytes()));
 }
 
 TEST(Ros2Messages, WhatATypeDoesNotCarryIsNotWritten) {

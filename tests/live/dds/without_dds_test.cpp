@@ -11,7 +11,8 @@ namespace {
 TEST(WithoutDds, NodesSayThatThereIsNoRos2) {
   EXPECT_FALSE(HasRos2());
   try {
-    const Ros2Node node({}, [](WireMessage&&) {}, [](WireEvent&&) {});
+    const Ros2Node node(
+        {}, [](WireMessage&&) {}, [](WireEvent&&) {});
     FAIL();
   } catch (const WorkError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("without ROS 2"));

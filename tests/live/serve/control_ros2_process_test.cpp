@@ -70,8 +70,7 @@ TEST_F(Ros2Robot, ThatIsAbsentIsALineATopicAndNothingMoves) {
   EXPECT_THAT(run.out, HasSubstr("held, source_lost"));
   const std::string events = ReadText(folder_ / "run/session0/events.csv");
   for (const char* const topic : {"PSM1/measured_cp", "em0", "strain0", "vision0"}) {
-    EXPECT_THAT(events,
-                HasSubstr(fmt::format("ros2 domain {}: nobody sends {}", kDomain, topic)));
+    EXPECT_THAT(events, HasSubstr(fmt::format("ros2 domain {}: nobody sends {}", kDomain, topic)));
   }
   EXPECT_THAT(events, HasSubstr("nobody reads PSM1/servo_cp"));
 }

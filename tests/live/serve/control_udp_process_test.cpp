@@ -51,8 +51,8 @@ class UdpRobot : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(EveryController, UdpRobot, EveryKind(), NameOfKind);
 
 TEST_P(UdpRobot, FollowsItsPathInLockstepAndReplaysBitForBit) {
-  ServedProgram robot({kPressScenario, "--serve", "0", "--lockstep", "--udp",
-                       std::to_string(udp_port_)});
+  ServedProgram robot(
+      {kPressScenario, "--serve", "0", "--lockstep", "--udp", std::to_string(udp_port_)});
   ASSERT_GT(robot.port(), 0);
   const std::string session =
       folder_.Write("session.yaml", SessionOf(robot.port(), udp_port_, GetParam(), true));

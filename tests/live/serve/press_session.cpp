@@ -55,7 +55,8 @@ path: {{frame: start, average_s: 0.3, speed_m_s: 0.01, settle_s: 0.2,
 
 void ExpectPathDone(ServedProgram& robot, const std::string& session, const TestFolder& folder) {
   const auto path = [&](const char* name) { return (folder / name).string(); };
-  const ProgramResult run = RunProgram({"control", session, "-o", path("run"), "--duration", "120"});
+  const ProgramResult run =
+      RunProgram({"control", session, "-o", path("run"), "--duration", "120"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("the path is done"));
   EXPECT_THAT(run.out, HasSubstr("the robot is not enabled"));

@@ -79,7 +79,7 @@ TEST(Session, AddressesThatAreNoneAreRefused) {
   EXPECT_THAT(StrainBy("openigtlink: {port: 70000, device: a}"), HasSubstr("found 70000"));
   EXPECT_THAT(Complaint("openigtlink: {port: 18944, device: PSM1/servo_cp}",
                         "udp: {port: 5000, device: servo_cp}"),
-              HasSubstr("udp"));
+              HasSubstr("found no peer that takes commands"));
 }
 
 TEST(Session, UnknownKeysAreRefused) {

@@ -23,9 +23,7 @@ std::string WhyNot(StreamName stream, decltype(WireMessage::body) body) {
 
 WireTransform At(const Eigen::Vector3d& p) { return {{Eigen::Matrix3d::Identity(), p}}; }
 
-WireNumbers Tip() {
-  return {{100, 0, 200, 0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01, 1, 0, 0, 0.01}};
-}
+WireNumbers Tip() { return {{100, 0, 200, 0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01, 1, 0, 0, 0.01}}; }
 
 TEST(Samples, OfAnotherUnitAreRefusedWithTheirValues) {
   EXPECT_THAT(WhyNot(StreamName::kWrist, At({600, 0, 0})),
