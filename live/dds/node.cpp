@@ -103,17 +103,16 @@ class Ros2Node::Worker {
   }
 
  private:
-  struct In {
+  struct End {
     std::string name;
-    std::deque<Ros2Reader> readers;  // one a type
     std::atomic<bool> there = false;
     bool told = false;
   };
-  struct Out {
-    std::string name;
+  struct In : End {
+    std::deque<Ros2Reader> readers;  // one a type
+  };
+  struct Out : End {
     std::optional<Ros2Writer> writer;
-    std::atomic<bool> there = false;
-    bool told = false;
   };
 
   EndpointPlace Place() const { return {participant_.get(), waitset_.get(), setup_.lockstep}; }
@@ -164,7 +163,6 @@ class Ros2Node::Worker {
     for (WireEvent& event : news) event_(std::move(event));
   }
 
-  template <class End>
   void Note(End& end, bool there, const char* what, std::vector<WireEvent>& news) const {
     if (there == end.there) return;
     end.there = there;
@@ -176,15 +174,13 @@ class Ros2Node::Worker {
   }
 
   void TellMissing() {
-    const auto tell = [&](auto& ends, const char* what) {
-      for (auto& end : ends) {
-        if (end.there || end.told) continue;
-        event_({WireEvent::Kind::kLost, fmt::format("{}: nobody {} {}", name_, what, end.name),
-                end.name});
-      }
+    const auto tell = [&](const End& end, const char* what) {
+      if (end.there || end.told) return;
+      event_({WireEvent::Kind::kLost, fmt::format("{}: nobody {} {}", name_, what, end.name),
+              end.name});
     };
-    tell(ins_, "sends");
-    tell(outs_, "reads");
+    for (const In& in : ins_) tell(in, "sends");
+    for (const Out& out : outs_) tell(out, "reads");
   }
 
   /// Others know of this node's endpoints in the order in which they were made. Who sees the last
