@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdlib>
 #include <memory>
+#include <string>
 
 #include "live/dds/domain.h"
 #include "live/dds/messages.h"
@@ -40,8 +41,9 @@ class Topics {
     participant_ = domain_->NewParticipant();
     for (int i = 0; i < kRos2Types; ++i) {
       const auto& descriptor = DescriptorOf(static_cast<Ros2Type>(i));
+      const std::string name = "cdr" + std::to_string(i);
       const dds_entity_t topic =
-          dds_create_topic(participant_, &descriptor, descriptor.m_typename, nullptr, nullptr);
+          dds_create_topic(participant_, &descriptor, name.c_str(), nullptr, nullptr);
       const auto at = static_cast<std::size_t>(i);
       readers_[at] = dds_create_reader(participant_, topic, nullptr, nullptr);
       writers_[at] = dds_create_writer(participant_, topic, nullptr, nullptr);
