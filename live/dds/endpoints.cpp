@@ -69,7 +69,39 @@ dds_entity_t NewTopic(const EndpointPlace& place, const std::string& name, Ros2T
               name);
 }
 
+/// A reader that is matched with a writer.
+struct Matched {
+  DdsInstance participant = 0;
+  std::string beside;
+};
+
+std::vector<Matched> ReadersOf(dds_entity_t writer) {
+  constexpr std::size_t kMost = 64;
+  std::array<dds_instance_handle_t, kMost> handles{};
+  const dds_return_t count = dds_get_matched_subscriptions(writer, handles.data(), kMost);
+  std::vector<Matched> readers;
+  for (std::size_t i = 0; i < kMost && i < static_cast<std::size_t>(std::max(count, 0)); ++i) {
+    dds_builtintopic_endpoint_t* const data = dds_get_matched_subscription_data(writer, handles[i]);
+    if (data == nullptr) continue;
+    Matched& reader = readers.emplace_back();
+    reader.participant = data->participant_instance_handle;
+    void* beside = nullptr;
+    std::size_t size = 0;
+    if (dds_qget_userdata(data->qos, &beside, &size) && beside != nullptr)
+      reader.beside.assign(static_cast<const char*>(beside), size);
+    dds_free(beside);
+    dds_builtintopic_free_endpoint(data);
+  }
+  return readers;
+}
+
 }  // namespace
+
+std::string BesideOf(const std::vector<Ros2Topic>& topics) {
+  std::string beside = "\n";
+  for (const Ros2Topic& topic : topics) beside += topic.name + "\n";
+  return beside;
+}
 
 static_assert(std::is_same_v<DdsHandle, dds_entity_t>);
 static_assert(std::is_same_v<DdsInstance, dds_instance_handle_t>);
@@ -86,6 +118,7 @@ Ros2Reader::Ros2Reader(const EndpointPlace& place, const std::string& name, Ros2
 void Ros2Reader::Open(bool reliable, bool durable) {
   reader_ = DdsEntity();
   const Qos qos = QosOf(reliable, durable, KeptOf(place_, type_));
+  dds_qset_userdata(qos.get(), place_.beside.data(), place_.beside.size());
   reader_ = DdsEntity(
       Made(dds_create_reader(place_.participant, topic_.get(), qos.get(), nullptr), Name(type_)));
   reliable_ = reliable;
@@ -154,7 +187,7 @@ dds_instance_handle_t Ros2Reader::ParticipantOf(dds_instance_handle_t writer) {
 }
 
 Ros2Writer::Ros2Writer(const EndpointPlace& place, const std::string& name, Ros2Type type)
-    : type_(type), topic_(NewTopic(place, name, type)) {
+    : name_(name), type_(type), topic_(NewTopic(place, name, type)) {
   const Qos qos = QosOf(true, place.lockstep, KeptOf(place, type));
   writer_ =
       DdsEntity(Made(dds_create_writer(place.participant, topic_.get(), qos.get(), nullptr), name));
@@ -170,6 +203,18 @@ void Ros2Writer::LookAtStatus() {
   dds_publication_matched_status_t matched{};
   if (dds_get_publication_matched_status(writer_.get(), &matched) == DDS_RETCODE_OK)
     readers_ = static_cast<int>(matched.current_count);
+}
+
+bool Ros2Writer::KnowsReadersOf(const Ros2Writer& other) const {
+  const std::vector<Matched> known = ReadersOf(writer_.get());
+  for (const Matched& reader : ReadersOf(other.writer_.get())) {
+    if (reader.beside.find("\n" + name_ + "\n") == std::string::npos) continue;
+    const bool here = std::any_of(known.begin(), known.end(), [&](const Matched& one) {
+      return one.participant == reader.participant;
+    });
+    if (!here) return false;
+  }
+  return true;
 }
 
 bool Ros2Writer::WaitForReaders(std::chrono::nanoseconds patience) const {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "live/dds/domain.h"
 #include "live/dds/node.h"
@@ -33,7 +34,11 @@ class DdsEntity {
 struct EndpointPlace {
   DdsHandle participant = 0, waitset = 0;
   bool lockstep = false;
+  std::string beside = {};  ///< by BesideOf: what else is read, told to writers
 };
+
+/// Returns topics as a reader tells them.
+std::string BesideOf(const std::vector<Ros2Topic>& topics);
 
 /// Reads one type.
 class Ros2Reader {
@@ -73,9 +78,13 @@ class Ros2Writer {
   bool Write(const void* sample) const;
   void LookAtStatus();
   int Readers() const { return readers_; }
+  /// Returns whether those readers of `other`'s topic that tell of reading this one too are known
+  /// here: others' endpoints become known in no certain order.
+  bool KnowsReadersOf(const Ros2Writer& other) const;
   bool WaitForReaders(std::chrono::nanoseconds patience) const;
 
  private:
+  std::string name_;
   Ros2Type type_;
   DdsEntity topic_, writer_;
   int readers_ = 0;

@@ -54,7 +54,7 @@ class Ros2Node::Worker {
       In& in = ins_.emplace_back();
       in.name = setup_.in[i].name;
       const bool later = setup_.opens_last_in_late && static_cast<int>(i) == setup_.last_in;
-      if (!later) OpenReaders(in, setup_.in[i]);
+      if (!later) OpenReaders(in, setup_.in[i], place);
     }
     thread_ = std::thread([this] { Run(); });
   }
@@ -70,8 +70,7 @@ class Ros2Node::Worker {
   bool Send(const WireMessage& message) {
     bool sent = false;
     if (Out* const out = OutOf(message.device)) {
-      const bool is_last = setup_.last_out >= 0 && out == &outs_[std::size_t(setup_.last_out)];
-      if (is_last) (void)WaitForReaders(kLastPatience);
+      if (IsLast(*out)) (void)WaitForReaders(kLastPatience);
       const bool there = out->there;
       WithRos2(out->writer->type(), message, [&](const void* sample) {
         // In lockstep also for a reader that this thread does not know yet.
@@ -117,8 +116,8 @@ class Ros2Node::Worker {
 
   EndpointPlace Place() const { return {participant_.get(), waitset_.get(), setup_.lockstep}; }
 
-  void OpenReaders(In& in, const Ros2Topic& topic) const {
-    for (const Ros2Type type : topic.types) in.readers.emplace_back(Place(), topic.name, type);
+  static void OpenReaders(In& in, const Ros2Topic& topic, const EndpointPlace& place) {
+    for (const Ros2Type type : topic.types) in.readers.emplace_back(place, topic.name, type);
   }
 
   Out* OutOf(const std::string& topic) {
@@ -156,7 +155,7 @@ class Ros2Node::Worker {
     }
     for (Out& out : outs_) {
       out.writer->LookAtStatus();
-      Note(out, out.writer->Readers() > 0, "read", news);
+      Note(out, out.writer->Readers() > 0 && (out.there || IsWhole(out)), "read", news);
     }
     if (commander_ != 0 && !IsWritten(commander_)) commander_ = 0;
     OpenLast();
@@ -183,8 +182,17 @@ class Ros2Node::Worker {
     for (const Out& out : outs_) tell(out, "reads");
   }
 
-  /// Others know of this node's endpoints in the order in which they were made. Who sees the last
-  /// one has seen all.
+  bool IsLast(const Out& out) const {
+    return setup_.last_out >= 0 && &out == &outs_[static_cast<std::size_t>(setup_.last_out)];
+  }
+
+  /// Whether readers of the topic that comes last are known on all others that they read.
+  bool IsWhole(const Out& out) const {
+    return !IsLast(out) || std::all_of(outs_.begin(), outs_.end(), [&](const Out& other) {
+      return other.writer->KnowsReadersOf(*out.writer);
+    });
+  }
+
   void OpenLast() {
     if (setup_.last_in < 0 || !setup_.opens_last_in_late) return;
     const auto last = static_cast<std::size_t>(setup_.last_in);
@@ -193,7 +201,9 @@ class Ros2Node::Worker {
       if (i != last && !ins_[i].there) return;
     for (const Out& out : outs_)
       if (!out.there) return;
-    OpenReaders(ins_[last], setup_.in[last]);
+    EndpointPlace place = Place();
+    place.beside = BesideOf(setup_.in);
+    OpenReaders(ins_[last], setup_.in[last], place);
   }
 
   bool IsWritten(DdsInstance participant) const {

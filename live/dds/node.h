@@ -30,9 +30,10 @@ struct Ros2Setup {
   /// soon what they have.
   bool lockstep = false;
   /// Of `in` and `out`, in lockstep: given after, and sent when readers have, all that was sent
-  /// before. -1: none is so.
+  /// before. The reader of `last_out` counts as there when it is known on all topics that it reads.
+  /// -1: none is so.
   int last_in = -1, last_out = -1;
-  /// The topic `last_in` is opened when somebody is there for all others.
+  /// The topic `last_in` is opened when somebody is there for all others, and told what they are.
   bool opens_last_in_late = false;
   bool one_commander = false;  ///< the first participant that sends is listened to until it is gone
   bool says_invalid = true;    ///< an event for a stamp of 0

@@ -41,7 +41,10 @@ Ros2Setup Outlets::RosSetup(int domain) const {
   setup.lockstep = options_.lockstep;
   setup.one_commander = true;
   setup.says_invalid = false;
-  if (options_.lockstep) setup.out.push_back(Topic(kLockstepDevice, Content::kText));
+  if (options_.lockstep) {
+    setup.out.push_back(Topic(kLockstepDevice, Content::kText));
+    setup.last_out = 0;
+  }
   setup.out.push_back(Topic(kMeasuredDevice, Content::kPose));
   setup.out.push_back(Topic("em0", Content::kPose));
   setup.out.push_back(Topic("em1", Content::kPose));

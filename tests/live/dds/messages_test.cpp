@@ -138,7 +138,8 @@ TEST(Ros2Messages, TheTipComesBackWithItsCovarianceAndDirection) {
     const auto& values = std::get<WireNumbers>(read.body).values;
     ASSERT_EQ(values.size(), 16u);
     for (std::size_t i = 0; i < 15; ++i) EXPECT_NEAR(values[i], tip.values[i], 1e-12) << i;
-    if (has_direction) EXPECT_NEAR(values[15], 0.02, 1e-12);
+    if (!has_direction) continue;
+    EXPECT_NEAR(values[15], 0.02, 1e-12);
   }
 }
 
