@@ -131,7 +131,9 @@ class Session {
   }
 
   void RunLockstep() {
-    while (!Stopped() && outlets_.Clients() == 0) TakeOne();
+    // Not TakeOne: samples that are sent before a client is there come when they like.
+    while (!Stopped() && outlets_.Clients() == 0)
+      if (const auto item = mailbox_.TakeUntil(SteadyClock::now() + kLook)) Take(*item);
     while (!Stopped() && !Left() && !DurationOver()) {
       outlets_.ForgetKept();
       Send(robot_.Advance(kSimulationStart_ns + std::llround(figures_.cycles * 1e9 / rate_hz_)));
