@@ -1,8 +1,8 @@
 #include "live/page/history.h"
 
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <utility>
 
-#include "live/page/state_json.h"
 #include "vision/tracking/tip_prediction.h"
 
 namespace flextip::live {
@@ -33,29 +33,15 @@ void PageHistory::Add(const PageSnapshot& snapshot) {
   apart_m_ *= 2.0;
 }
 
-void PageHistory::AddEvent(nlohmann::ordered_json event) {
-  event["n"] = ++events_count_;
+void PageHistory::AddEvent(PageEvent event) {
+  event.n = ++events_count_;
   events_.push_back(std::move(event));
   if (events_.size() > kMostEvents) events_.pop_front();
 }
 
-nlohmann::ordered_json PageHistory::Json() const {
-  using J = nlohmann::ordered_json;
-  J t = J::array(), deviation = J::array(), sd = J::array(), way = J::array();
-  for (const Row& row : rows_) {
-    t.push_back(std::to_string(row.t_ns));
-    deviation.push_back(row.deviation_m ? J(*row.deviation_m) : J());
-    sd.push_back(row.sd_m ? J(*row.sd_m) : J());
-  }
-  for (const Eigen::Vector3d& p : way_) way.push_back(VectorJson(p));
-  return {{"t_ns", t}, {"deviation_m", deviation}, {"sd_m", sd}, {"way_m", way}};
-}
-
-nlohmann::ordered_json PageHistory::Events(std::size_t most) const {
-  auto events = nlohmann::ordered_json::array();
-  for (std::size_t i = events_.size() > most ? events_.size() - most : 0; i < events_.size(); ++i)
-    events.push_back(events_[i]);
-  return events;
+std::vector<PageEvent> PageHistory::Events(std::size_t most) const {
+  const auto count = static_cast<std::ptrdiff_t>(std::min(most, events_.size()));
+  return {events_.end() - count, events_.end()};
 }
 
 }  // namespace flextip::live

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deque>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <vector>
 
@@ -13,25 +12,28 @@ namespace flextip::live {
 
 class PageHistory {
  public:
-  void Add(const PageSnapshot& snapshot);
-  /// Adds an event, which gets the next number.
-  void AddEvent(nlohmann::ordered_json event);
-
-  /// Returns {times, deviations, sds, way}: rows of the last minute, and places of the tip.
-  nlohmann::ordered_json Json() const;
-  /// Returns the last events, the newest at the end, with their numbers.
-  nlohmann::ordered_json Events(std::size_t most) const;
-
- private:
   struct Row {
     TimeNs t_ns = 0;
-    std::optional<double> deviation_m, sd_m;
+    std::optional<double> deviation_m, sd_m;  ///< of the tip from the path; in its worst direction
   };
+
+  void Add(const PageSnapshot& snapshot);
+  /// Adds an event, which gets the next number.
+  void AddEvent(PageEvent event);
+
+  /// Returns the rows of the last minute, by time.
+  const std::deque<Row>& Rows() const { return rows_; }
+  /// Returns places of the tip on its path so far (m, in R).
+  const std::vector<Eigen::Vector3d>& Way() const { return way_; }
+  /// Returns the last events, the newest at the end.
+  std::vector<PageEvent> Events(std::size_t most) const;
+
+ private:
   std::deque<Row> rows_;
   std::vector<Eigen::Vector3d> way_;
   double apart_m_ = 1e-4;  // of the way's places; twice as much whenever there are too many
   long events_count_ = 0;
-  std::deque<nlohmann::ordered_json> events_;
+  std::deque<PageEvent> events_;
 };
 
 }  // namespace flextip::live

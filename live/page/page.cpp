@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 #include <utility>
@@ -22,8 +21,6 @@
 
 namespace flextip::live {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kRate_hz = 25.0;
 constexpr int kTicksPerPicture = 3;
@@ -52,7 +49,7 @@ class Page::Worker {
     if (options_.token.empty()) options_.token = RandomToken();
     if (session.camera && session.base.cam0) camera_.emplace(session.base.cam0->calibration);
     ServerHandlers handlers;
-    handlers.hello = [this] { return Hello(); };
+    handlers.hello = [this] { return HelloText(session_, options_.can_command, history_); };
     handlers.answer = [this](std::string_view text) { return Answer(text); };
     handlers.tick = [this] { Tick(); };
     handlers.fault = [this](const char* what) {
@@ -117,26 +114,15 @@ class Page::Worker {
 
   // The server's thread from here on.
 
-  std::string Hello() {
-    return TextOf({{"type", "hello"},
-                   {"session", SessionJson(session_, options_.can_command)},
-                   {"history", history_.Json()},
-                   {"events", history_.Events(60)}});
-  }
-
-  /// A person's wish: {"do": "pause", "token": ...}.
   std::optional<std::string> Answer(std::string_view text) {
-    const Json json = Json::parse(text, nullptr, false);
-    if (!json.is_object() || !json.contains("do") || !json["do"].is_string()) return {};
-    const std::string wish = json["do"];
-    if (wish != "enable" && wish != "pause" && wish != "stop") return {};
-    const bool may = json.contains("token") && json["token"].is_string() &&
-                     SameSecret(json["token"].get<std::string>(), options_.token);
-    const bool can = wish == "stop" || (options_.can_command && session_.robot.command_state &&
-                                        (wish == "pause" || session_.robot.state));
-    const char* const why = !may ? "token" : !can ? "session" : "";
-    if (may && can) Do(wish);
-    return TextOf({{"type", "answer"}, {"do", wish}, {"accepted", may && can}, {"why", why}});
+    const std::optional<PageWish> wish = ReadWish(text);
+    if (!wish) return {};
+    const bool may = SameSecret(wish->token, options_.token);
+    const bool can =
+        wish->what == "stop" || (options_.can_command && session_.robot.command_state &&
+                                 (wish->what == "pause" || session_.robot.state));
+    if (may && can) Do(wish->what);
+    return AnswerText(wish->what, !may ? "token" : !can ? "session" : "");
   }
 
   void Do(const std::string& wish) {
@@ -144,7 +130,7 @@ class Page::Worker {
     if (wish == "pause") operators_.Pause();
     if (wish == "stop") operators_.Stop();
     const TimeNs now_ns = Now_ns();
-    history_.AddEvent({{"t_ns", std::to_string(now_ns)}, {"kind", "person"}, {"wish", wish}});
+    history_.AddEvent({now_ns, PageEvent::Kind::kWish, wish, {}});
     if (options_.said) options_.said(now_ns, fmt::format("a person at the page: {}", wish));
   }
 
@@ -156,12 +142,10 @@ class Page::Worker {
     if (finder_.Note(*snapshot)) history_.Add(*snapshot);
     const Ending end = end_;
     if (server_->Watchers() > 0) {
-      Json state = StateJson(session_, *snapshot, finder_.Find(*snapshot));
-      state["type"] = "state";
-      state["n"] = ++sent_;
-      state["events"] = history_.Events(kEventsTold);
-      state["end"] = end == Ending::kNot ? "" : end == Ending::kDone ? "done" : "earlier";
-      server_->SendText(sent_, TextOf(state));
+      const char* const told = end == Ending::kNot ? "" : end == Ending::kDone ? "done" : "earlier";
+      ++sent_;
+      server_->SendText(sent_, StateText(sent_, session_, *snapshot, finder_.Find(*snapshot),
+                                         history_.Events(kEventsTold), told));
       if (camera_ && ticks_ % kTicksPerPicture == 0) SendPicture();
     }
     if (end != Ending::kNot) end_told_ = true;
@@ -174,9 +158,10 @@ class Page::Worker {
       const std::lock_guard lock(mutex_);
       events.swap(events_);
     }
-    for (auto& [t_ns, what] : events)
-      history_.AddEvent({{"t_ns", std::to_string(t_ns)}, {"kind", "text"}, {"what", what}});
-    changes_.Drain([&](const PageChange& change) { history_.AddEvent(ChangeJson(change)); });
+    for (auto& [t_ns, what] : events) history_.AddEvent({t_ns, PageEvent::Kind::kText, what, {}});
+    changes_.Drain([&](const PageChange& change) {
+      history_.AddEvent({change.t_ns, PageEvent::Kind::kChange, "", change});
+    });
   }
 
   /// Four bytes with the length of the JSON (least first), the JSON, the JPEG.
@@ -188,13 +173,9 @@ class Page::Worker {
     }
     wants_picture_ = true;
     if (!picture) return;
-    Json json = OverlayJson(*camera_, picture->track, finder_.At(picture->t_ns));
-    json["type"] = "picture";
-    json["n"] = ++sent_;
-    json["t_ns"] = std::to_string(picture->t_ns);
-    json["width"] = picture->image.width_px;
-    json["height"] = picture->image.height_px;
-    const std::string head = TextOf(json);
+    ++sent_;
+    const std::string head =
+        OverlayText(sent_, picture->t_ns, *camera_, picture->track, finder_.At(picture->t_ns));
     std::string bytes(4, '\0');
     for (int i = 0; i < 4; ++i) bytes[i] = static_cast<char>(head.size() >> (8 * i) & 0xffU);
     bytes += head;

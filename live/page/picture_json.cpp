@@ -41,14 +41,20 @@ Json DoubtJson(const CameraModel& camera, const TipObservation& tip) {
 
 }  // namespace
 
-Json OverlayJson(const CameraModel& camera, const TipTrack& track, const ShaftMoment& moment) {
+std::string OverlayText(long n, TimeNs t_ns, const CameraModel& camera, const TipTrack& track,
+                        const ShaftMoment& moment) {
   Json tags = Json::array();
   for (const TagDetection& tag : track.tags) {
     Json corners = Json::array();
     for (const Eigen::Vector2d& corner : tag.corners_px) corners.push_back(PixelJson(corner));
     tags.push_back({{"id", tag.id}, {"corners", std::move(corners)}});
   }
-  Json json{{"status", Name(track.tip.status)},
+  Json json{{"type", "picture"},
+            {"n", n},
+            {"t_ns", std::to_string(t_ns)},
+            {"width", camera.Calibration().width_px},
+            {"height", camera.Calibration().height_px},
+            {"status", Name(track.tip.status)},
             {"tags", std::move(tags)},
             {"tip", nullptr},
             {"doubt", nullptr},
@@ -67,7 +73,7 @@ Json OverlayJson(const CameraModel& camera, const TipTrack& track, const ShaftMo
   }
   for (const ShapePoint& point : moment.shape)
     json["shaft"].push_back(PixelJson(Seen(camera, point.p_R)));
-  return json;
+  return json.dump();
 }
 
 }  // namespace flextip::live

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "core/robot/crtk.h"
 #include "live/recorder/cycle_record.h"
@@ -27,6 +28,16 @@ struct PageChange {
   int held_by = -1;
   std::optional<CrtkOperatingState> state;
   std::optional<CrtkCommand> told;  ///< by the cycle
+};
+
+/// Something that happened.
+struct PageEvent {
+  enum class Kind : std::uint8_t { kChange, kWish, kText };
+  TimeNs t_ns = 0;
+  Kind kind = Kind::kText;
+  std::string text;   ///< a line, or what a person wished: "pause"
+  PageChange change;  ///< with kChange
+  long n = 0;         ///< its number, from 1
 };
 
 }  // namespace flextip::live

@@ -19,6 +19,13 @@ double Age_s(const Session& session, TimeNs t_ns, TimeNs sample_ns, TimeNs arriv
   return session.robot.lockstep ? age_s : std::max(age_s, Seconds(t_ns - arrived_ns));
 }
 
+Json VectorJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+/// Letters of peers that are no UTF-8 are replaced.
+std::string TextOf(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 Json NameOf(int held_by) {
   if (held_by < 0) return nullptr;
   return held_by == kStreams ? "robot" : Name(static_cast<StreamName>(held_by));
@@ -93,12 +100,42 @@ Json LimitedJson(const CycleOutputs& outputs) {
   return names;
 }
 
-}  // namespace
+Json EventJson(const PageEvent& event) {
+  Json json{{"n", event.n}, {"t_ns", std::to_string(event.t_ns)}};
+  const PageChange& change = event.change;
+  if (event.kind == PageEvent::Kind::kText) {
+    json["kind"] = "text";
+    json["what"] = event.text;
+  } else if (event.kind == PageEvent::Kind::kWish) {
+    json["kind"] = "person";
+    json["wish"] = event.text;
+  } else if (change.told) {
+    json["kind"] = "told";
+    json["told"] = Name(*change.told);
+  } else {
+    json["kind"] = "change";
+    json["hold"] = Name(change.hold);
+    json["held_by"] = change.hold == Hold::kSourceLost ? NameOf(change.held_by) : Json();
+    json["robot"] = RobotJson(change.state);
+  }
+  return json;
+}
 
-Json VectorJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+Json EventsJson(const std::vector<PageEvent>& events) {
+  Json json = Json::array();
+  for (const PageEvent& event : events) json.push_back(EventJson(event));
+  return json;
+}
 
-std::string TextOf(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+Json HistoryJson(const PageHistory& history) {
+  Json t = Json::array(), deviation = Json::array(), sd = Json::array(), way = Json::array();
+  for (const PageHistory::Row& row : history.Rows()) {
+    t.push_back(std::to_string(row.t_ns));
+    deviation.push_back(row.deviation_m ? Json(*row.deviation_m) : Json());
+    sd.push_back(row.sd_m ? Json(*row.sd_m) : Json());
+  }
+  for (const Eigen::Vector3d& p : history.Way()) way.push_back(VectorJson(p));
+  return {{"t_ns", t}, {"deviation_m", deviation}, {"sd_m", sd}, {"way_m", way}};
 }
 
 Json SessionJson(const Session& session, bool can_command) {
@@ -128,7 +165,19 @@ Json SessionJson(const Session& session, bool can_command) {
           {"can_command", can_command && session.robot.command_state.has_value()}};
 }
 
-Json StateJson(const Session& session, const PageSnapshot& snapshot, const PageFindings& findings) {
+}  // namespace
+
+std::string HelloText(const Session& session, bool can_command, const PageHistory& history) {
+  constexpr std::size_t kEventsTold = 60;
+  return TextOf({{"type", "hello"},
+                 {"session", SessionJson(session, can_command)},
+                 {"history", HistoryJson(history)},
+                 {"events", EventsJson(history.Events(kEventsTold))}});
+}
+
+std::string StateText(long n, const Session& session, const PageSnapshot& snapshot,
+                      const PageFindings& findings, const std::vector<PageEvent>& events,
+                      const char* end) {
   const CycleRecord& record = snapshot.record;
   const CycleOutputs& outputs = record.outputs;
   const StreamInputs& streams = record.inputs.streams;
@@ -137,6 +186,8 @@ Json StateJson(const Session& session, const PageSnapshot& snapshot, const PageF
   Json shaft = Json::array();
   for (const ShapePoint& point : findings.now.shape) shaft.push_back(VectorJson(point.p_R));
   Json json{
+      {"type", "state"},
+      {"n", n},
       {"t_ns", std::to_string(record.inputs.t_ns)},  // more digits than a script's numbers
       {"cycles", snapshot.cycles},
       {"missed", snapshot.missed},
@@ -159,19 +210,24 @@ Json StateJson(const Session& session, const PageSnapshot& snapshot, const PageF
       {"shaft_m", std::move(shaft)},
       {"worst", WorstJson(findings.worst)},
       {"streams", StreamsJson(session, snapshot, findings)},
+      {"events", EventsJson(events)},
+      {"end", end},
       {"late_s", Seconds(record.woke_ns - record.due_ns)},
       {"work_s", record.sent_ns > 0 ? Json(Seconds(record.sent_ns - record.woke_ns)) : Json()}};
-  return json;
+  return TextOf(json);
 }
 
-Json ChangeJson(const PageChange& change) {
-  if (change.told)
-    return {{"t_ns", std::to_string(change.t_ns)}, {"kind", "told"}, {"told", Name(*change.told)}};
-  return {{"t_ns", std::to_string(change.t_ns)},
-          {"kind", "change"},
-          {"hold", Name(change.hold)},
-          {"held_by", change.hold == Hold::kSourceLost ? NameOf(change.held_by) : Json()},
-          {"robot", RobotJson(change.state)}};
+std::string AnswerText(const std::string& wish, const char* why) {
+  return TextOf({{"type", "answer"}, {"do", wish}, {"accepted", *why == '\0'}, {"why", why}});
+}
+
+std::optional<PageWish> ReadWish(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("do") || !json["do"].is_string()) return {};
+  PageWish wish{json["do"], ""};
+  if (wish.what != "enable" && wish.what != "pause" && wish.what != "stop") return {};
+  if (json.contains("token") && json["token"].is_string()) wish.token = json["token"];
+  return wish;
 }
 
 }  // namespace flextip::live

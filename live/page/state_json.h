@@ -1,29 +1,33 @@
-// What the page's watchers are told, as JSON. Lengths in m, angles in rad, in R; every number as it
-// is, so that it reads back to the same bits. Private to live/page/.
+// What the page's watchers are told and say, as JSON. Lengths in m, angles in rad, in R; every
+// number as it is, so that it reads back to the same bits. Private to live/page/.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "live/page/findings.h"
-#include "live/page/snapshot.h"
+#include "live/page/history.h"
 
 namespace flextip::live {
 
-/// Returns the session: told once to each watcher.
-nlohmann::ordered_json SessionJson(const Session& session, bool can_command);
+/// What a new watcher is told first: the session, and what it has missed.
+std::string HelloText(const Session& session, bool can_command, const PageHistory& history);
 
-/// Returns the run as it is.
-nlohmann::ordered_json StateJson(const Session& session, const PageSnapshot& snapshot,
-                                 const PageFindings& findings);
+/// The run as it is, message number `n`. `end`: "" while it runs, "done", "earlier".
+std::string StateText(long n, const Session& session, const PageSnapshot& snapshot,
+                      const PageFindings& findings, const std::vector<PageEvent>& events,
+                      const char* end);
 
-/// Returns a change as an event.
-nlohmann::ordered_json ChangeJson(const PageChange& change);
+/// What became of a person's wish. `why` it was refused: "token", "session"; "" where it was not.
+std::string AnswerText(const std::string& wish, const char* why);
 
-/// Returns [x, y, z].
-nlohmann::ordered_json VectorJson(const Eigen::Vector3d& v);
-
-/// Returns the text of `json`; letters of peers that are no UTF-8 are replaced.
-std::string TextOf(const nlohmann::ordered_json& json);
+/// What a person asks for.
+struct PageWish {
+  std::string what, token;
+};
+/// Reads {"do": "pause", "token": "..."}; nothing where the text is no wish.
+std::optional<PageWish> ReadWish(std::string_view text);
 
 }  // namespace flextip::live

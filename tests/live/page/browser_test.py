@@ -99,7 +99,7 @@ class PageInABrowser(unittest.TestCase):
         self.assertTrue(browser.until("document.getElementById('answer').textContent.startsWith("
                                       "'Refused')"))
         self.assertEqual(browser.value("location.search"), "")
-        self.assertNotIn("enable", browser.value("document.getElementById('events').textContent"))
+        self.assertNotIn("person", browser.value("document.getElementById('events').textContent"))
 
     def test_shows_what_is_recorded_and_lets_its_token_act(self):
         shutil.rmtree(self.work, ignore_errors=True)
