@@ -64,6 +64,7 @@ export class Plots {
     ctx.fillText(strip.name, left, top - 8);
     ctx.strokeStyle = ink[strip.colour];
     ctx.lineWidth = 1.8;
+    ctx.lineJoin = "round";
     ctx.beginPath();
     let pen = false;
     for (const row of this.rows) {
