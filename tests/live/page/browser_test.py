@@ -115,9 +115,9 @@ class PageInABrowser(unittest.TestCase):
             self.assertTrue(browser.until("!document.getElementById('enable').disabled"))
             self.press(browser, "enable", 2)
             self.assertTrue(browser.until("document.body.dataset.hold === 'none'", 60))
-            moving = self.watch(browser, 20)
+            moving = self.watch(browser, 10)
             self.assertTrue(browser.until("document.getElementById('picture').dataset.tags > 0"))
-            moving += self.watch(browser, 20)
+            moving += self.watch(browser, 10)
             colours = {name: browser.value(f"{COLOURS}('{name}')")
                        for name in ("whole", "near", "plots", "picture")}
             errors = browser.value("window.errors")
@@ -135,8 +135,8 @@ class PageInABrowser(unittest.TestCase):
         for seen in waiting:
             self.assertEqual((seen["hold"], seen["robot"]), ("not_enabled", "disabled, not homed"))
         self.assertEqual({seen["hold"] for seen in moving}, {"none"})
-        self.compare_deviation(moving[-20:], cycles)
-        self.compare_pictures(moving[-20:], cycles)
+        self.compare_deviation(moving[-10:], cycles)
+        self.compare_pictures(moving[-10:], cycles)
         events = (run.recording / "session0/events.csv").read_text(encoding="utf-8")
         self.assertEqual(events.count("a person at the page: enable"), 1)
         self.assertEqual(events.count("a person at the page: stop"), 1)
