@@ -3,13 +3,18 @@
 #include <atomic>
 #include <cstddef>
 
-// g++ says __SANITIZE_ADDRESS__, clang by __has_feature.
+// The address sanitizer brings its own malloc. g++ says it by a macro, clang by __has_feature.
 #if defined(__SANITIZE_ADDRESS__)
-#define FLEXTIP_HAS_ADDRESS_SANITIZER 1
+#define FLEXTIP_OTHER_MALLOC 1
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)
-#define FLEXTIP_HAS_ADDRESS_SANITIZER 1
+#define FLEXTIP_OTHER_MALLOC 1
 #endif
+#endif
+#if defined(__GLIBC__) && !defined(FLEXTIP_OTHER_MALLOC)
+#define FLEXTIP_COUNTS_ALLOCATIONS 1
+#else
+#define FLEXTIP_COUNTS_ALLOCATIONS 0
 #endif
 
 namespace {
@@ -18,11 +23,11 @@ std::atomic<long> allocations{0};
 
 namespace flextip {
 long AllocationCount() { return allocations.load(); }
+bool CountsAllocations() { return FLEXTIP_COUNTS_ALLOCATIONS != 0; }
 }  // namespace flextip
 
-// glibc's malloc, counted: operator new and Eigen's aligned memory both end here. The address
-// sanitizer brings its own malloc; there the count stays 0.
-#if defined(__GLIBC__) && !defined(FLEXTIP_HAS_ADDRESS_SANITIZER)
+// glibc's malloc, counted: operator new and Eigen's aligned memory both end here.
+#if FLEXTIP_COUNTS_ALLOCATIONS
 extern "C" {
 void* __libc_malloc(std::size_t size);  // NOLINT
 void* malloc(std::size_t size) {        // NOLINT
