@@ -92,6 +92,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   kinematics/effect_rod.h
   kinematics/plane_beam.h
   kinematics/rod.h
+  kinematics/rod/point.h
   kinematics/straight.h
   kinematics/tip_bending.h
   pipeline/estimate_recording.h
@@ -137,6 +138,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   simulation/sensors/pose_history.h
   simulation/sensors/sensors.h
   simulation/tissue/tip_load.h
+  simulation/virtual_robot/wrist_servo.h
   vision/camera_model.h
   vision/outline/contour.h
   vision/outline/contour_edge.h

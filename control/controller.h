@@ -74,6 +74,7 @@ class TipController {
   ControlOutput Step(const ControlInput& input);
 
   const ControllerOptions& Options() const { return options_; }
+  void SetGain(double gain) { options_.gain = gain; }
 
  private:
   ControllerOptions options_;

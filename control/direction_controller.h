@@ -76,6 +76,8 @@ class DirectionController {
  public:
   explicit DirectionController(const DirectionOptions& options) : options_(options) {}
 
+  void SetGain(double gain) { options_.gain = gain; }
+
   DirectionOutput Step(const DirectionInput& input);
 
  private:

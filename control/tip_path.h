@@ -38,6 +38,8 @@ class TipPath {
   /// any.
   std::optional<Eigen::Vector3d> Direction() const;
   bool Done() const { return done_; }
+  /// Returns where the first leg starts (m, in R).
+  const Eigen::Vector3d& Start() const { return points_.front(); }
 
   /// Returns the distance (m) of `p` from the path travelled so far: from the current leg and the
   /// last.

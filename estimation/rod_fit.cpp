@@ -173,16 +173,28 @@ void RodFit::AddPrior(const RodParameters& parameters) const {
   rows_ = 9;
 }
 
+const ShaftRodState& RodFit::RodAt(const RodParameters& parameters) const {
+  if (known_ && x_ == parameters) return rod_;
+  x_ = parameters;
+  known_ = true;
+  filled_ = false;
+  rod_ = solver_.Solve(ProblemAt(parameters), {stations_.data(), station_count_});
+  return rod_;
+}
+
 bool RodFit::operator()(const double* parameters, double* residuals, double* jacobian) const {
   const RodParameters x = Eigen::Map<const RodParameters>(parameters);
-  const ShaftRodState rod = solver_.Solve(ProblemAt(x), {stations_.data(), station_count_});
+  const ShaftRodState& rod = RodAt(x);
   if (!rod.IsUsable()) return false;
-  residuals_.setZero();
-  jacobian_.setZero();
-  AddPrior(x);
-  AddSensors(rod, x);
-  // The sensors' columns were by newton; the parameter is the force in units of EI / L^2.
-  jacobian_.bottomRightCorner<kMaxRodResiduals - 9, 3>() *= force_unit_;
+  if (!filled_) {
+    residuals_.setZero();
+    jacobian_.setZero();
+    AddPrior(x);
+    AddSensors(rod, x);
+    // The sensors' columns were by newton; the parameter is the force in units of EI / L^2.
+    jacobian_.bottomRightCorner<kMaxRodResiduals - 9, 3>() *= force_unit_;
+    filled_ = true;
+  }
   Eigen::Map<Residuals>(residuals, NUM_RESIDUALS) = residuals_;
   if (jacobian != nullptr)
     Eigen::Map<Jacobian>(jacobian, NUM_RESIDUALS, NUM_PARAMETERS) = jacobian_;

@@ -37,8 +37,17 @@ class RodFit {
   RodFit(const ShaftProblem& shaft, const Measurements& measurements, const RodPrior& prior,
          bool use_positions, ShaftRod& solver);
 
+  /// Narrows the prior of the force to `sd`, in units of EI / L^2.
+  void LimitForce(double sd) {
+    prior_.sd.tail<3>().setConstant(sd);
+    known_ = false;
+  }
+
   /// Returns false where the rod has no equilibrium. `jacobian` (column-major) may be null.
   bool operator()(const double* parameters, double* residuals, double* jacobian) const;
+
+  /// Returns the rod at `parameters`; the last one again where they are the same.
+  const ShaftRodState& RodAt(const RodParameters& parameters) const;
 
   /// Returns the number of scalar measurements (without the priors) that the last call used.
   int MeasurementCount() const { return rows_ - NUM_PARAMETERS; }
@@ -66,6 +75,9 @@ class RodFit {
   std::size_t station_count_ = 0;
   int em_station_ = -1;
   mutable int rows_ = 0;
+  mutable bool known_ = false, filled_ = false;  // the rod at x_, and the residuals there
+  mutable RodParameters x_;
+  mutable ShaftRodState rod_;
   mutable Residuals residuals_;
   mutable Jacobian jacobian_;
 };

@@ -21,7 +21,7 @@
 
 namespace flextip::effect_flow {
 
-// Chosen by timing, as in rod_flow.h; the derivatives need fewer terms than the states.
+// Chosen by timing, as in rod/flow.cpp; the derivatives need fewer terms than the states.
 inline constexpr int kOrder = 18;
 inline constexpr int kColumnOrder = 14;
 inline constexpr double kTolerance = 1e-12;  // of the last two terms, against a unit tangent

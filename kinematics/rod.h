@@ -7,6 +7,8 @@
 #include <Eigen/Dense>
 #include <cstdint>
 
+#include "kinematics/rod/point.h"
+
 namespace flextip {
 
 /// One equilibrium problem, in R and SI units.
@@ -47,7 +49,7 @@ struct RodSection {
 
 struct RodState {
   RodStatus status = RodStatus::kNotConverged;
-  int iterations = 0;
+  int iterations = 0;     ///< walks along the rod
   double residual = 0.0;  ///< of the scaled conditions
   RodSection wrist, tip;  ///< at s = 0 and s = length
   double s_port_m = 0.0;
@@ -64,9 +66,6 @@ struct RodState {
   Eigen::Matrix3d J_tip_wrist(const Eigen::Matrix3d& stiffness) const;
 };
 
-template <int C>
-struct RodFlow;
-
 /// Solves rod problems one after the other and starts each from the last equilibrium it found.
 /// Allocates nothing.
 class RodSolver {
@@ -82,33 +81,50 @@ class RodSolver {
   void Reset() { warm_ = false; }
 
  private:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
   struct Unknowns {  // in units of length L and force EI / L^2
     Eigen::Vector3d t_tip = Eigen::Vector3d::UnitX();
-    double sigma_port = 0.5;                      // from the tip
-    Eigen::Vector3d r = Eigen::Vector3d::Zero();  // port on the shaft
+    Eigen::Vector3d y_tip = Eigen::Vector3d::UnitY();  // unit, across t_tip: the turns are by it
+    double sigma_port = 0.5;                           // from the tip
+    Eigen::Vector3d r = Eigen::Vector3d::Zero();       // port on the shaft
 
-    void Move(const Eigen::Matrix<double, 3, 2>& turn_basis, const Eigen::Matrix<double, 6, 1>& dx);
+    void Move(const Vector6& dx);
+  };
+  /// What is known of the conditions before the first walk.
+  struct Start {
+    bool near = false;   // `inverse` holds nearly
+    bool same = false;   // the problem is that of `inverse`
+    double rate = 0.0;   // by which `inverse` takes the residual down; 0: by the first residual
+    double moved = 0.0;  // size of the change of the unknowns since it was made
   };
   struct Scaled;
   struct Evaluation;
 
   static Unknowns StraightGuess(const Scaled& scaled);
-  static void Evaluate(const Scaled& scaled, const Unknowns& x, Evaluation& e);
-  /// Returns the number of evaluations; 0 where the iteration did not converge.
-  static int Newton(const Scaled& scaled, Unknowns& x, Evaluation& e);
+  /// Walks the rod. The derivatives stay as they are unless they are asked for.
+  static void Evaluate(const Scaled& scaled, const Unknowns& x, bool with_derivatives,
+                       Evaluation& e);
+  /// Returns the number of walks; 0 where the iteration did not converge.
+  static int Newton(const Scaled& scaled, const Start& start, Unknowns& x, Evaluation& e);
   static int SolveCold(const Scaled& scaled, Unknowns& x, Evaluation& e);
-  int SolveWarm(const RodProblem& problem, const Scaled& scaled, Unknowns& x, Evaluation& e) const;
+  int SolveWarm(const RodProblem& problem, const Scaled& scaled, Unknowns& x, Evaluation& e);
   void Keep(const RodProblem& problem, const Unknowns& x, const Evaluation& e);
   void FillState(const Evaluation& e, RodState& state);
-  /// Turns a scaled state into SI; `tip` is null for the tip itself.
-  RodSection MakeSection(const RodFlow<9>& flow, const RodSection* tip, double s_m) const;
+  /// Returns derivatives by the solver's columns as derivatives by wrist, port and force.
+  template <int R>
+  Eigen::Matrix<double, R, 9> Total(const Eigen::Matrix<double, R, 9>& by_columns) const;
+  RodSection MakeSection(const RodPlace& place, double s_m) const;
 
   // The last equilibrium: a warm start for the next, and what Section() walks along.
   bool warm_ = false;
   RodProblem problem_;
   Unknowns x_;
-  Eigen::Matrix<double, 3, 2> turn_basis_ = Eigen::Matrix<double, 3, 2>::Zero();
+  RodPlace port_;
+  Matrix6 inverse_ = Matrix6::Zero();  // of the conditions' derivative by the unknowns
   Eigen::Matrix<double, 6, 9> dx_ = Eigen::Matrix<double, 6, 9>::Zero();  // by wrist, port, force
+  Vector6 predicted_ = Vector6::Zero();  // the last prediction of the unknowns' change
+  Vector6 missed_ = Vector6::Zero();     // and what it missed
   RodSection tip_;
 };
 

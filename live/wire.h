@@ -32,11 +32,16 @@ struct WireImage {
   Image image;
 };
 
+/// A line through places in R (m).
+struct WireLine {
+  std::vector<Eigen::Vector3d> points;
+};
+
 /// A message of a peer, in metres; codecs alone know millimetres.
 struct WireMessage {
   std::string device;
   TimeNs t_ns = 0;  ///< the header's stamp, from 1970; 0: the peer says the data are invalid
-  std::variant<WireTransform, WireNumbers, WireText, WireImage> body;
+  std::variant<WireTransform, WireNumbers, WireText, WireImage, WireLine> body;
 };
 
 /// What befell a connection; `what` names peer and cause in one line.
@@ -44,6 +49,7 @@ struct WireEvent {
   enum class Kind : std::uint8_t { kConnected, kLost, kRefused };
   Kind kind = Kind::kConnected;
   std::string what;
+  std::string device = {};  ///< that it befell; empty: all of the peer's
 };
 
 /// How many messages a connection, or several, took and why others went no further.

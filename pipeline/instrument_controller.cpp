@@ -75,6 +75,14 @@ InstrumentController::InstrumentController(const InstrumentControllerOptions& op
   direction_.emplace(direction);
 }
 
+void InstrumentController::SetTimeDeviations(double tip_sd_s, double em0_sd_s) {
+  options_.late.tip_time_sd_s = tip_sd_s;
+  options_.late.em0_time_sd_s = em0_sd_s;
+  late_.SetTimeDeviations(tip_sd_s, em0_sd_s);
+  place_.SetGain(GainOf(options_.control.gain, options_));
+  if (direction_) direction_->SetGain(GainOf(options_.direction->gain, options_));
+}
+
 ControllerCommand InstrumentController::Step(const ControllerInputs& inputs) {
   ControllerCommand command;
   command.t_ns = inputs.t_ns;

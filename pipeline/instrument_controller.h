@@ -72,6 +72,10 @@ class InstrumentController {
   /// Runs one cycle. Throws InputError only for pictures of the wrong size.
   ControllerCommand Step(const ControllerInputs& inputs);
 
+  /// Takes how well the times of the tip's and of em0's samples are known from now on, in the place
+  /// of LateSampleOptions'. The gain follows. Allocates nothing.
+  void SetTimeDeviations(double tip_sd_s, double em0_sd_s);
+
   /// Returns the tracker's result for the last pictures; empty before the first.
   const std::optional<TipTrack>& Track() const { return track_; }
   /// Returns the gain that the controllers have, with the delay's part taken off.

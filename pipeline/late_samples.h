@@ -35,6 +35,12 @@ class LateSamples {
   LateSamples(const LateSampleOptions& options, double max_tissue_gain)
       : options_(options), max_tissue_gain_(max_tissue_gain) {}
 
+  /// Takes other deviations of the times of the tip's and of em0's samples.
+  void SetTimeDeviations(double tip_sd_s, double em0_sd_s) {
+    options_.tip_time_sd_s = tip_sd_s;
+    options_.em0_time_sd_s = em0_sd_s;
+  }
+
   /// Takes a cycle's readings into the past. Call it once a cycle, first.
   void Note(const SensorReadings& readings);
 

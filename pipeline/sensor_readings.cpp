@@ -17,6 +17,46 @@ std::optional<Sample<TipMeasurement>> TipExactlyAt(const VisionStream& stream, T
   return Sample<TipMeasurement>{t_ns, Measured(stream, tip->value)};
 }
 
+/// Returns the speed of a place around `t_ns` (m/s), from the samples beside it that have one
+/// (`place` returns it, or nothing); zero where there are none.
+template <class Value, class Place>
+Eigen::Vector3d SpeedAt(const Series<Value>& series, TimeNs t_ns, const Place& place) {
+  constexpr std::size_t kFarthest = 3;  // samples on either side
+  const auto at = FindBracket(series, t_ns);
+  if (!at) return Eigen::Vector3d::Zero();
+  std::optional<Sample<Eigen::Vector3d>> first, last;
+  const std::size_t begin = at->i > kFarthest ? at->i - kFarthest : 0;
+  for (std::size_t i = begin; i < std::min(series.size(), at->i + kFarthest + 2); ++i) {
+    const std::optional<Eigen::Vector3d> p = place(series[i].value);
+    if (!p) continue;
+    if (!first || series[i].t_ns < t_ns) first = {series[i].t_ns, *p};
+    last = {series[i].t_ns, *p};
+    if (series[i].t_ns > t_ns && first->t_ns < last->t_ns) break;
+  }
+  if (!first || last->t_ns == first->t_ns) return Eigen::Vector3d::Zero();
+  return (last->value - first->value) / (1e-9 * static_cast<double>(last->t_ns - first->t_ns));
+}
+
+std::optional<Eigen::Vector3d> PlaceOf(const WristSample& sample) { return sample.p_RW; }
+std::optional<Eigen::Vector3d> PlaceOf(const EmSample& sample) { return sample.p_RS; }
+std::optional<Eigen::Vector3d> PlaceOf(const TipObservation& tip) {
+  if (tip.status == TipStatus::kLost) return {};
+  return tip.p_RE;
+}
+
+/// Returns how far a sample's time may have taken its place, by its speed (m).
+template <class Value>
+Eigen::Vector3d ByClock(const ClockNoise& clock, const Series<Value>& series, TimeNs t_ns) {
+  const double sd_s = clock.SdAt(t_ns);
+  if (sd_s == 0.0) return Eigen::Vector3d::Zero();
+  return sd_s * SpeedAt(series, t_ns, [](const Value& value) { return PlaceOf(value); });
+}
+
+/// An isotropic noise with `by_clock_m` along one direction: of the same trace.
+double WithClock(double noise_m, const Eigen::Vector3d& by_clock_m) {
+  return std::hypot(noise_m, by_clock_m.norm() / std::sqrt(3.0));
+}
+
 template <class Stream, class Value>
 auto Newest(const Stream& stream, const Series<Value>& samples)
     -> std::optional<Sample<decltype(Measured(stream, samples.back().value))>> {
@@ -29,6 +69,22 @@ auto Interpolated(const Stream& stream, const std::optional<Value>& value, TimeN
     -> std::optional<Sample<decltype(Measured(stream, *value))>> {
   if (!value) return {};
   return {{t_ns, Measured(stream, *value)}};
+}
+
+/// The clocks' deviations enter by the speed.
+void AddClocks(const Recording& r, TimeNs t_ns, SensorReadings& readings) {
+  if (readings.wrist) {
+    double& noise_m = readings.wrist->value.position_noise_m;
+    noise_m = WithClock(noise_m, ByClock(r.wrist0->clock, r.wrist0->samples, t_ns));
+  }
+  if (readings.em0) {
+    double& noise_m = readings.em0->value.position_noise_m;
+    noise_m = WithClock(noise_m, ByClock(r.em0->clock, r.em0->samples, t_ns));
+  }
+  if (readings.tip && readings.tip->value.tip.status != TipStatus::kLost) {
+    const Eigen::Vector3d by_clock_m = ByClock(r.vision0->clock, r.vision0->tips, t_ns);
+    readings.tip->value.tip.covariance_m2 += by_clock_m * by_clock_m.transpose();
+  }
 }
 
 }  // namespace
@@ -70,6 +126,7 @@ SensorReadings ReadingsAt(const Recording& r, TimeNs t_ns) {
   if (r.em1) readings.em1 = Interpolated(*r.em1, EmAt(*r.em1, t_ns), t_ns);
   if (r.strain0) readings.strain = Interpolated(*r.strain0, StrainAt(*r.strain0, t_ns), t_ns);
   if (r.load0) readings.load = Interpolated(*r.load0, LoadAt(*r.load0, t_ns), t_ns);
+  AddClocks(r, t_ns, readings);
   return readings;
 }
 

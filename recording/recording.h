@@ -4,6 +4,8 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -18,6 +20,26 @@
 
 namespace flextip {
 
+/// How well a stream's times are known once a calibration put its clock right. Nothing is stated:
+/// exactly.
+struct ClockNoise {
+  TimeNs origin_ns = 0;
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of offset (s) at the origin, and rate
+
+  /// Returns the deviation of a time near `t_ns` (s).
+  double SdAt(TimeNs t_ns) const {
+    const Eigen::Vector2d by(1.0, 1e-9 * static_cast<double>(t_ns - origin_ns));
+    return std::sqrt(std::max(0.0, by.dot(covariance * by)));
+  }
+  /// Adds that of a further clock put right, which goes on from here.
+  void Add(const ClockNoise& next) {
+    Eigen::Matrix2d later = Eigen::Matrix2d::Identity();
+    later(0, 1) = 1e-9 * static_cast<double>(next.origin_ns - origin_ns);
+    covariance = later * covariance * later.transpose() + next.covariance;
+    origin_ns = next.origin_ns;
+  }
+};
+
 /// The wrist as the robot's encoders give it; the orientation only where it is measured.
 struct WristSample {
   Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();
@@ -29,6 +51,7 @@ struct WristStream {
   double position_noise_m = 0.0;  ///< standard deviation per axis, as all noises here
   double orientation_noise_rad = 0.0;
   Series<WristSample> samples;
+  ClockNoise clock = {};
 };
 
 struct CommandStream {
@@ -54,6 +77,7 @@ struct EmStream {
   double registration_noise_rad = 0.0;  ///< how well the sensor's frame is known in R
   double registration_noise_m = 0.0;
   Series<EmSample> samples;
+  ClockNoise clock = {};
 };
 
 /// Internal bending moments m1_y, m1_z, m2_y, m2_z (Nm) of the part beyond on the part before,
@@ -93,6 +117,7 @@ struct VisionStream {
   double registration_noise_rad = 0.0;
   double registration_noise_m = 0.0;
   Series<TipObservation> tips;
+  ClockNoise clock = {};
 };
 
 struct Recording {

@@ -1,6 +1,7 @@
 // flextip control: a robot steered by the streams of a session, recorded while it runs.
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -16,11 +17,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kPagePort = 18080;
+
 struct ControlCommandOptions {
   fs::path session, out;
   std::optional<double> duration_s, timing_s;
-  bool wait = false, force = false;
+  std::optional<int> page_port;
+  bool page = false, wait = false, force = false;
 };
+
+/// Returns the page where one is wanted, and says where it is.
+std::unique_ptr<live::Page> OpenPage(const ControlCommandOptions& options,
+                                     const live::Session& session, live::Recorder* recorder) {
+  if (!options.page && !options.page_port) return nullptr;
+  live::PageOptions page_options;
+  page_options.port = options.page_port.value_or(kPagePort);
+  page_options.can_command = !options.timing_s;
+  if (recorder != nullptr) {
+    page_options.said = [recorder](TimeNs t_ns, const std::string& what) {
+      recorder->TakeEvent(t_ns, what);
+    };
+  }
+  auto page = std::make_unique<live::Page>(session, page_options);
+  fmt::print("page: {}\n", page->Address());
+  std::fflush(stdout);
+  return page;
+}
 
 /// Ctrl-C ends the loop, not the program.
 void RunControl(const ControlCommandOptions& options, bool quiet) {
@@ -32,6 +54,8 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
   loop.only_timing = options.timing_s.has_value();
   loop.duration_s = options.timing_s ? options.timing_s : options.duration_s;
   if (options.out.empty()) {
+    const auto page = OpenPage(options, session, nullptr);
+    loop.page = page.get();
     const live::LoopReport report = live::RunLoop(session, loop, nullptr);
     PrintTimes(report);
     return;
@@ -42,7 +66,10 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
   output.Warn(session.warnings);
   loop.stop = [&output] { return output.StopRequested(); };
   live::Recorder recorder(output.folder(), session, options.wait || loop.only_timing);
+  auto page = OpenPage(options, session, &recorder);
+  loop.page = page.get();
   const live::LoopReport report = live::RunLoop(session, loop, &recorder);
+  page.reset();
   recorder.Finish();
   if (recorder.Dropped() > 0)
     output.Warn(fmt::format("{} samples and cycles were not recorded: the disk was too slow",
@@ -78,10 +105,18 @@ void AddControl(CLI::App& app, AppContext& context) {
                    "robot is not enabled")
       ->check(CLI::PositiveNumber)
       ->type_name("SECONDS");
+  command->add_flag("--page", options->page, "Show the run on a page of this machine");
+  command
+      ->add_option("--page-port", options->page_port,
+                   fmt::format("Port of the page, which it asks for; {} unless told, 0: a free one",
+                               kPagePort))
+      ->check(CLI::Range(0, 65535))
+      ->type_name("PORT");
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->footer(
       "Ctrl-C pauses the robot and ends.\n"
       "Examples:\n  flextip control session.yaml -o session\n"
+      "  flextip control --page session.yaml -o session\n"
       "  flextip control session.yaml --timing 10\n");
   OnRun(*command, context, [options, &context] { RunControl(*options, context.quiet); });
 }

@@ -42,6 +42,13 @@ void PrintHistogram(const Spread& spread) {
   }
 }
 
+void PrintLacking(const live::LoopReport& report) {
+  if (!report.had_priority)
+    fmt::print("no real-time priority: other work delays a cycle (limits.conf: rtprio 10)\n");
+  if (!report.had_locked_memory)
+    fmt::print("memory not locked: swapping delays a cycle (limits.conf: memlock unlimited)\n");
+}
+
 }  // namespace
 
 nlohmann::ordered_json ReportJson(const live::Session& session, const live::LoopReport& report) {
@@ -69,6 +76,7 @@ nlohmann::ordered_json ReportJson(const live::Session& session, const live::Loop
           {"missed_cycles", report.missed},
           {"unsent_commands", report.unsent},
           {"real_time_priority", report.had_priority},
+          {"locked_memory", report.had_locked_memory},
           {"holds", report.holds},
           {"limited",
            {{"step", report.step_limited},
@@ -106,9 +114,9 @@ void PrintRun(const live::LoopReport& report) {
 }
 
 void PrintTimes(const live::LoopReport& report) {
-  fmt::print("{} cycles in {:.1f} s ({:.1f} Hz), {} missed{}\n", report.cycles, report.seconds,
-             static_cast<double>(report.cycles) / report.seconds, report.missed,
-             report.had_priority ? "" : "; no real-time priority");
+  fmt::print("{} cycles in {:.1f} s ({:.1f} Hz), {} missed\n", report.cycles, report.seconds,
+             static_cast<double>(report.cycles) / report.seconds, report.missed);
+  PrintLacking(report);
   fmt::print("{:<12}{:>10}{:>10}{:>10}{:>10}\n", "stream", "samples", "Hz", "old", "unusable");
   for (int i = 0; i < live::kStreams; ++i) {
     const auto& counts = report.streams[static_cast<std::size_t>(i)];

@@ -9,6 +9,7 @@
 #include "apps/common/output.h"
 #include "apps/simulate/frame_files.h"
 #include "core/error.h"
+#include "live/dds/node.h"
 #include "live/serve/serve.h"
 #include "recording/recording_writer.h"
 #include "recording/truth.h"
@@ -66,6 +67,12 @@ void CheckOptions(const ServeCommand& options, const simulation::Scenario& scena
   };
   if (*options.port < 0 || *options.port > kLastPort)
     throw InputError(fmt::format("--serve: found {}, expected 0 to {}", *options.port, kLastPort));
+  if (options.udp_port && (*options.udp_port < 1 || *options.udp_port > kLastPort))
+    throw InputError(
+        fmt::format("--udp: found {}, expected 1 to {}", *options.udp_port, kLastPort));
+  if (options.ros2_domain && (*options.ros2_domain < 0 || *options.ros2_domain > live::kLastDomain))
+    throw InputError(fmt::format("--ros2-domain: found {}, expected 0 to {}", *options.ros2_domain,
+                                 live::kLastDomain));
   positive("--duration", options.duration_s);
   positive("--rate", options.rate_hz);
   if (options.render && !scenario.has_camera)
@@ -91,6 +98,22 @@ CLI::Option* AddServeOptions(CLI::App& command, ServeCommand& options) {
                   "With --lockstep: cycles per second (default: the scenario's control rate)")
       ->needs(serve)
       ->type_name("HZ");
+  auto* ros2 = command
+                   .add_flag("--ros2", options.ros2,
+                             "With --serve: be a node of ROS 2 too, on this machine alone unless "
+                             "--any-address")
+                   ->needs(serve);
+  command
+      .add_option("--ros2-domain", options.ros2_domain,
+                  "With --ros2: its domain (default: ROS_DOMAIN_ID, or 0)")
+      ->needs(ros2)
+      ->type_name("N");
+  command
+      .add_option("--udp", options.udp_port,
+                  "With --serve: send the poses of wrist and EM sensors to this port of this "
+                  "machine too, as dVRK's JSON datagrams")
+      ->needs(serve)
+      ->type_name("PORT");
   command.add_option("--duration", options.duration_s, "With --serve: end after this time")
       ->needs(serve)
       ->type_name("S");
@@ -123,6 +146,9 @@ void RunServe(const ServeCommand& options, bool quiet) {
   live::ServeOptions serve;
   serve.port = *options.port;
   serve.any_address = options.any_address;
+  if (options.ros2)
+    serve.ros2_domain = options.ros2_domain ? *options.ros2_domain : live::RosDomain();
+  serve.udp_port = options.udp_port;
   serve.lockstep = options.lockstep;
   serve.rate_hz = options.rate_hz.value_or(0.0);
   serve.duration_s = options.duration_s;
@@ -130,6 +156,7 @@ void RunServe(const ServeCommand& options, bool quiet) {
   serve.stop = [&] { return output ? output->StopRequested() : interruption->Requested(); };
   serve.serving = [&](int port) {
     fmt::print("serving on {}:{}\n", options.any_address ? "0.0.0.0" : "127.0.0.1", port);
+    if (serve.ros2_domain) fmt::print("a node of ROS 2 in domain {}\n", *serve.ros2_domain);
     std::fflush(stdout);
   };
   serve.say = [&](const std::string& line) {

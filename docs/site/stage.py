@@ -31,7 +31,7 @@ SECTIONS = [
     ("The thesis done again", "docs/results/reproduction",
      ["docs/results/reproduction.md", "docs/errata.md"]),
     ("What was tried", "docs/notes", []),
-    ("Live", "docs/live", ["docs/live/protocols.md"]),
+    ("Live", "docs/live", ["docs/live.md", "docs/live/protocols.md"]),
     ("Reference", "docs", ["docs/formats.md", "docs/architecture.md", "docs/building.md",
                            "docs/dependencies.md"]),
 ]

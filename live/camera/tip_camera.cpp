@@ -15,10 +15,11 @@ constexpr TimeNs kKept_ns = 1'000'000'000;
 
 }  // namespace
 
-TipCamera::TipCamera(const Session& session, Tip tip, Event event)
+TipCamera::TipCamera(const Session& session, Tip tip, Event event, Seen seen)
     : session_(session),
       tip_(std::move(tip)),
       event_(std::move(event)),
+      seen_(std::move(seen)),
       tracker_(TrackerSetupOf(session.base)) {
   if (!session.robot.lockstep) {
     looks_ = std::jthread([this](const std::stop_token& stop) { Run(stop); });
@@ -35,7 +36,7 @@ TipCamera::~TipCamera() {
 
 void TipCamera::Take(TimeNs t_ns, const Image& image, TimeNs arrived_ns) {
   const CameraCalibration& camera = session_.base.cam0->calibration;
-  const TimeNs late_ns = std::llround(1e9 * session_.camera->latency.value_s);
+  const TimeNs taken_ns = session_.camera->TimeOf(t_ns);
   {
     const std::lock_guard lock(mutex_);
     ++counts_.pictures;
@@ -48,11 +49,11 @@ void TipCamera::Take(TimeNs t_ns, const Image& image, TimeNs arrived_ns) {
     }
     if (!session_.robot.lockstep) {
       counts_.left_out += newest_.has_value();
-      newest_ = Picture{t_ns - late_ns, arrived_ns, image};
+      newest_ = Picture{taken_ns, arrived_ns, image};
     }
   }
   if (session_.robot.lockstep) {
-    Look({t_ns - late_ns, arrived_ns, image});
+    Look({taken_ns, arrived_ns, image});
   } else {
     changed_.notify_one();
   }
@@ -125,6 +126,7 @@ SensorReadings TipCamera::ReadingsAt(TimeNs t_ns) {
 void TipCamera::Look(const Picture& picture) {
   const Image* const pictures[] = {&picture.image};
   const TipTrack track = tracker_.Follow(pictures, picture.t_ns, ReadingsAt(picture.t_ns));
+  if (seen_) seen_(picture.t_ns, picture.image, track);
   if (track.tip.status != TipStatus::kOk) return;  // without a tip that was seen, it becomes stale
   {
     const std::lock_guard lock(mutex_);

@@ -30,11 +30,13 @@ class TipCamera {
  public:
   using Tip = std::function<void(TimeNs t_ns, const SeenTip& tip, TimeNs arrived_ns)>;
   using Event = std::function<void(const std::string& what)>;
+  using Seen = std::function<void(TimeNs t_ns, const Image& picture, const TipTrack& track)>;
 
   /// `tip` is given each tip that was seen, with the picture's time; `event` a line where a
-  /// picture or the video cannot be used. `session` has a camera, and outlives this. Throws
+  /// picture or the video cannot be used; `seen` each picture with what was found in it, from the
+  /// thread that looked. `session` has a camera, and outlives this. Throws
   /// InputError for a camera or collar that cannot be used.
-  TipCamera(const Session& session, Tip tip, Event event);
+  TipCamera(const Session& session, Tip tip, Event event, Seen seen = {});
   ~TipCamera();
   TipCamera(const TipCamera&) = delete;
   TipCamera& operator=(const TipCamera&) = delete;
@@ -59,6 +61,7 @@ class TipCamera {
   const Session& session_;
   Tip tip_;
   Event event_;
+  Seen seen_;
   InstrumentTracker tracker_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

@@ -1,42 +1,20 @@
 #include "live/loop/control_loop.h"
 
 #include <fmt/format.h>
-#include <pthread.h>
-#include <sched.h>
-
 #include <utility>
 
 #include "live/camera/tip_camera.h"
 #include "live/loop/beat.h"
+#include "live/loop/real_time.h"
+#include "live/protocols/reports.h"
+#include "live/publish/publisher.h"
+#include "live/session/address.h"
 #include "live/streams/streams.h"
 
 namespace flextip::live {
 namespace {
 
 constexpr double kPauseWait_s = 1.0;  // for the robot's word that it is paused
-constexpr int kPriority = 10;         // of a real-time thread, the least but nine
-
-/// Real-time priority for the calling thread while it lives, where the system gives it.
-class Priority {
- public:
-  Priority() {
-    pthread_getschedparam(pthread_self(), &policy_, &before_);
-    sched_param wanted{};
-    wanted.sched_priority = kPriority;
-    given_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted) == 0;
-  }
-  ~Priority() {
-    if (given_) pthread_setschedparam(pthread_self(), policy_, &before_);
-  }
-  Priority(const Priority&) = delete;
-  Priority& operator=(const Priority&) = delete;
-  bool Given() const { return given_; }
-
- private:
-  int policy_ = 0;
-  sched_param before_{};
-  bool given_ = false;
-};
 
 class Loop {
  public:
@@ -44,12 +22,15 @@ class Loop {
       : session_(session),
         options_(options),
         recorder_(recorder),
+        page_(options.page),
         streams_(session,
                  [this](StreamName stream, const Arrived<AnySample>& sample) {
                    if (recorder_ != nullptr) recorder_->Take(stream, sample);
                    if (camera_) camera_->Note(stream, sample);
                  }),
-        cycle_(session, options.wait || options.only_timing) {
+        cycle_(session, options.wait || options.only_timing),
+        T_BR_(session.robot.T_RB.Inverse()),
+        T_WD_(session.robot.T_DW.Inverse()) {
     set_point_.device = session.robot.command.device;
     if (session.robot.command_state) state_command_.device = session.robot.command_state->device;
   }
@@ -60,6 +41,7 @@ class Loop {
       Dispatch(peer, message);
     };
     handlers.event = [this](const Address& peer, WireEvent&& event) { Note(peer, event); };
+    if (session_.publish) publisher_.emplace(session_);
     if (session_.camera) OpenCamera();
     peers_ = open(session_, handlers);
     begin_ns_ = Now_ns();
@@ -71,6 +53,7 @@ class Loop {
     peers_.reset();
     if (camera_) report_.camera = camera_->Counts();
     camera_.reset();
+    if (page_ != nullptr) page_->End(report_.done);
     Finish();
     return std::move(report_);
   }
@@ -84,6 +67,11 @@ class Loop {
         },
         [this](const std::string& what) {
           if (recorder_ != nullptr) recorder_->TakeEvent(Now_ns(), what);
+          if (page_ != nullptr) page_->TakeEvent(Now_ns(), what);
+        },
+        [this](TimeNs t_ns, const Image& picture, const TipTrack& track) {
+          if (page_ != nullptr) page_->TakePicture(t_ns, picture, track);
+          if (publisher_) publisher_->TakePicture(t_ns, picture);
         });
   }
 
@@ -95,9 +83,13 @@ class Loop {
       return address.SamePeer(peer) && address.device == message.device;
     };
     for (int i = 0; i < kStreams; ++i) {
-      const auto& stream = session_.streams[static_cast<std::size_t>(i)];
-      if (stream && is_of(stream->address))
-        streams_.Take(static_cast<StreamName>(i), message, now_ns);
+      const auto at = static_cast<std::size_t>(i);
+      const auto& stream = session_.streams[at];
+      if (!stream || !is_of(stream->address)) continue;
+      const std::string why = streams_.Take(static_cast<StreamName>(i), message, now_ns);
+      if (why.empty()) continue;
+      const auto note = [&](WireEvent&& event) { Note(peer, event); };
+      reports_[at].Tell(note, fmt::format("{}: {}", Text(stream->address), why), message.device);
     }
     const auto* picture = std::get_if<WireImage>(&message.body);
     const bool of_camera = session_.camera && session_.camera->address &&
@@ -107,25 +99,33 @@ class Loop {
     const auto* text = std::get_if<WireText>(&message.body);
     if (robot.state && is_of(*robot.state) && text != nullptr)
       streams_.TakeState(text->text, message.t_ns, now_ns);
+    if (session_.goal && is_of(*session_.goal)) streams_.TakeGoal(message, now_ns);
     if (robot.lockstep && is_of(*robot.lockstep)) beats_.Give(message.t_ns, now_ns);
   }
 
   void Note(const Address& peer, const WireEvent& event) {
     if (recorder_ != nullptr) recorder_->TakeEvent(Now_ns(), event.what);
+    if (page_ != nullptr) page_->TakeEvent(Now_ns(), event.what);
     if (event.kind == WireEvent::Kind::kRefused) return;
     const bool there = event.kind == WireEvent::Kind::kConnected;
+    const auto concerns = [&](const Address& address) {
+      return address.SamePeer(peer) && (event.device.empty() || event.device == address.device);
+    };
     for (int i = 0; i < kStreams; ++i) {
       const auto& stream = session_.streams[static_cast<std::size_t>(i)];
-      if (stream && stream->address.SamePeer(peer)) streams_.SetThere(i, there);
+      if (stream && concerns(stream->address)) streams_.SetThere(i, there);
     }
-    if (session_.robot.command.SamePeer(peer)) streams_.SetThere(kStreams, there);
+    if (concerns(session_.robot.command)) streams_.SetThere(kRobotPeer, there);
+    if (session_.goal && concerns(*session_.goal)) streams_.SetThere(kGoalPeer, there);
   }
 
   // From the cycle's thread.
 
   void RunByClock() {
-    const Priority priority;
-    report_.had_priority = priority.Given();
+    const RealTime real_time;  // may take a second: all memory is brought in
+    begin_ns_ = Now_ns();
+    report_.had_priority = real_time.HasPriority();
+    report_.had_locked_memory = real_time.HasLockedMemory();
     ClockBeats beats(session_.rate_hz);
     while (!IsOver(Now_ns())) {
       Step(beats.Next());
@@ -150,6 +150,8 @@ class Loop {
     record.sent_ns = Send(record) ? Now_ns() : 0;
     if (recorder_ != nullptr) recorder_->Take(record);
     Count(record);
+    if (page_ != nullptr) Show(record);
+    if (publisher_) publisher_->Take(cycle_.LastCommand());
     if (options_.progress) options_.progress(record);
   }
 
@@ -159,21 +161,46 @@ class Loop {
     const bool known_still = state && state->value.state != CrtkState::kEnabled;
     // In lockstep the robot waits for a set-point, and one that it cannot use moves nothing.
     const bool has_one = outputs.has_command || session_.robot.lockstep.has_value();
+    // First, for in lockstep the robot goes on at the set-point.
+    if (const auto command = StateCommand(record)) {
+      state_command_.t_ns = outputs.t_ns;
+      state_command_.body = WireText{Name(*command)};
+      (void)peers_->Send(*session_.robot.command_state, state_command_);
+    }
     bool sent = false;
     if (has_one && (!options_.only_timing || known_still)) {
       WireTransform transform;
-      transform.T_RD = {outputs.R_RW, outputs.p_RW_command};
+      transform.T_RD = T_BR_ * Pose{outputs.R_RW, outputs.p_RW_command} * T_WD_;
       set_point_.t_ns = outputs.has_command ? outputs.t_ns : 0;
       set_point_.body = transform;
       sent = peers_->Send(session_.robot.command, set_point_);
       report_.unsent += !sent;
     }
-    if (outputs.state_command) {
-      state_command_.t_ns = outputs.t_ns;
-      state_command_.body = WireText{Name(*outputs.state_command)};
-      (void)peers_->Send(*session_.robot.command_state, state_command_);
-    }
     return sent;
+  }
+
+  /// The person's command at the page comes before the cycle's own.
+  std::optional<CrtkCommand> StateCommand(const CycleRecord& record) {
+    const std::optional<CrtkCommand>& own = record.outputs.state_command;
+    if (page_ == nullptr || options_.only_timing || !session_.robot.command_state) return own;
+    return page_->operators().Next(record.inputs.t_ns, record.inputs.streams.state, own);
+  }
+
+  void Show(const CycleRecord& record) {
+    snapshot_.record = record;
+    snapshot_.command = cycle_.LastCommand();
+    const TipPath* const path = cycle_.Path();
+    snapshot_.on_path = path != nullptr;
+    if (path != nullptr) {
+      snapshot_.p_RE_start = path->Start();
+      snapshot_.deviation_m = path->Deviation(record.outputs.p_RE);
+    }
+    snapshot_.cycles = report_.cycles;
+    snapshot_.missed = report_.missed;
+    for (int i = 0; i < kStreams; ++i)
+      snapshot_.accepted[static_cast<std::size_t>(i)] =
+          streams_.Counts(static_cast<StreamName>(i)).accepted;
+    page_->Take(snapshot_);
   }
 
   void Count(const CycleRecord& record) {
@@ -201,7 +228,8 @@ class Loop {
     const auto since_s = [&](TimeNs t_ns) { return 1e-9 * static_cast<double>(now_ns - t_ns); };
     if (!stops_) {
       const bool too_long = options_.duration_s && since_s(begin_ns_) >= *options_.duration_s;
-      const bool wanted = options_.stop && options_.stop();
+      const bool wanted = (options_.stop && options_.stop()) ||
+                          (page_ != nullptr && page_->operators().StopWanted());
       stops_ = too_long || wanted || report_.done;
       if (!stops_) return false;
       stop_ns_ = now_ns;
@@ -224,13 +252,18 @@ class Loop {
   const Session& session_;
   const LoopOptions& options_;
   Recorder* recorder_;
+  Page* page_;
   Streams streams_;
+  std::array<Reports, kStreams> reports_;  // each of the thread that delivers the stream
   GivenBeats beats_;
   Cycle cycle_;
+  std::optional<Publisher> publisher_;
   std::optional<TipCamera> camera_;
   std::unique_ptr<Peers> peers_;
+  const Pose T_BR_, T_WD_;
   WireMessage set_point_, state_command_;
   CycleRecord record_;
+  PageSnapshot snapshot_;
   LoopReport report_;
   std::array<long, 16> holds_{};
   Hold last_hold_ = Hold::kNone;

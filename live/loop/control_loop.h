@@ -12,6 +12,7 @@
 #include "live/loop/cycle.h"
 #include "live/loop/peers.h"
 #include "live/loop/spread.h"
+#include "live/page/page.h"
 #include "live/recorder/recorder.h"
 
 namespace flextip::live {
@@ -24,6 +25,7 @@ struct LoopOptions {
   bool only_timing = false;
   std::function<bool()> stop;                        ///< whether the operator wants an end
   std::function<void(const CycleRecord&)> progress;  ///< called after each cycle
+  Page* page = nullptr;                              ///< shows the run; null for none
 };
 
 struct LoopReport {
@@ -33,6 +35,7 @@ struct LoopReport {
   bool done = false;                  ///< the path was run to its end
   bool ends_paused = false;           ///< the robot said at the end that it is not enabled
   bool had_priority = false;          ///< the system gave the cycle real-time priority
+  bool had_locked_memory = false;     ///< and kept its memory in place
   Spread sample_to_command;           ///< from the newest wrist's time to the command sent
   Spread wake;                        ///< from the cycle's due time to its begin
   Spread work;                        ///< from the cycle's begin to the command sent

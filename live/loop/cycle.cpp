@@ -24,11 +24,10 @@ InstrumentControllerOptions OptionsOf(const Session& session) {
   options.direction_free_axis = session.task.direction_free_axis;
   options.fixtures = session.task.fixtures;
   options.em_is_tip = session.EmIsTip();
-  const Latency tip = session.LatencyOf(StreamName::kTip);
   const Latency em0 = session.LatencyOf(StreamName::kEm0);
-  options.late.tip_time_sd_s = tip.sd_s;
-  options.late.em0_time_sd_s = em0.sd_s;
-  options.late.carry_em0 = session.EmIsTip() || em0.value_s != 0.0 || em0.sd_s != 0.0;
+  const bool em0_has_clock = session.base.em0 && !session.base.em0->clock.covariance.isZero(0.0);
+  options.late.carry_em0 =
+      session.EmIsTip() || em0.value_s != 0.0 || em0.sd_s != 0.0 || em0_has_clock;
   options.rate_hz = session.rate_hz;
   return options;
 }
@@ -48,6 +47,21 @@ bool Acts(ControlStatus status) {
 
 Cycle::Cycle(const Session& session, bool wait)
     : session_(session), wait_(wait), controller_(OptionsOf(session), ModelOf(session)) {}
+
+/// The doubt in a clock grows with the time since it was found. The gain is found anew where it has
+/// grown by a tenth.
+void Cycle::KnowTimes(TimeNs t_ns) {
+  constexpr double kGrown = 1.1;
+  const double tip_s = session_.TimeSdOf(StreamName::kTip, t_ns);
+  const double em0_s = session_.TimeSdOf(StreamName::kEm0, t_ns);
+  const auto same = [](double sd_s, double before_s) {
+    return sd_s <= kGrown * before_s && before_s <= kGrown * sd_s;
+  };
+  if (same(tip_s, tip_time_sd_s_) && same(em0_s, em0_time_sd_s_)) return;
+  tip_time_sd_s_ = tip_s;
+  em0_time_sd_s_ = em0_s;
+  controller_.SetTimeDeviations(tip_s, em0_s);
+}
 
 CycleOutputs Cycle::Step(const CycleInputs& inputs) {
   CycleOutputs outputs;
@@ -75,6 +89,7 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
     return outputs;
   }
   t_ns_ = inputs.t_ns;
+  KnowTimes(t_ns_);
 
   const auto tip_times = TimesIn(inputs.streams, StreamName::kTip);
   const bool new_tip = tip_times && tip_times->first > tip_t_ns_;
@@ -83,9 +98,10 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
   if (clear && session_.path && phase_ == Phase::kWaiting) phase_ = Phase::kAveraging;
   if (!clear && phase_ == Phase::kAveraging) average_from_ns_ = 0;
   const bool moves = clear && phase_ == Phase::kMoving;
-  const ControllerInputs wish = Wish(inputs, moves, new_tip, outputs);
+  const ControllerInputs wish = Wish(inputs, moves, new_tip, dt_s, outputs);
   if (new_tip) tip_t_ns_ = tip_times->first;
-  const ControllerCommand command = controller_.Step(wish);
+  command_ = controller_.Step(wish);
+  const ControllerCommand& command = command_;
   outputs.status = command.status;
   if (wish.p_RE_desired && Acts(command.status)) p_RE_known_ = command.p_RE_used;
   if (clear && phase_ == Phase::kAveraging) {
@@ -96,7 +112,7 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
     outputs.p_RE_goal = command.goal.p_RE_desired;
     outputs.fixture_limited = command.goal.status != FixtureStatus::kFree;
     Command(command, dt_s, outputs);
-    if (path_->Done()) {
+    if (path_ && path_->Done()) {
       outputs.done = true;
       phase_ = Phase::kDone;
     }
@@ -142,7 +158,7 @@ SensorReadings Cycle::Readings(const StreamInputs& streams) {
   if (streams.wrist && base.wrist0) {
     readings.wrist = {streams.wrist->t_ns, Measured(*base.wrist0, streams.wrist->value)};
     double& noise_m = readings.wrist->value.position_noise_m;
-    const double time_sd_s = session_.LatencyOf(StreamName::kWrist).sd_s;
+    const double time_sd_s = session_.TimeSdOf(StreamName::kWrist, t_ns_);
     noise_m = std::hypot(noise_m, time_sd_s * v_last_m_s_.norm());
   }
   if (streams.tip && base.vision0) {
@@ -165,7 +181,7 @@ SensorReadings Cycle::Readings(const StreamInputs& streams) {
 
 /// The controller's inputs. While the start is averaged, the goal is the tip itself: the controller
 /// then says where it takes the tip to be, and its command is not used.
-ControllerInputs Cycle::Wish(const CycleInputs& inputs, bool moves, bool new_tip,
+ControllerInputs Cycle::Wish(const CycleInputs& inputs, bool moves, bool new_tip, double dt_s,
                              CycleOutputs& outputs) {
   ControllerInputs wish;
   wish.t_ns = inputs.t_ns;
@@ -176,13 +192,25 @@ ControllerInputs Cycle::Wish(const CycleInputs& inputs, bool moves, bool new_tip
   if (!moves) return wish;
   const bool waits_for_tip = session_.task.path.mode == PathMode::kSteps && session_.HasTip() &&
                              UsesTipMeasurement(session_.task.controller.kind) && !new_tip;
-  if (!p_goal_ || !waits_for_tip) p_goal_ = path_->Advance(p_RE_known_);
+  if (session_.goal) {
+    GoToGoal(inputs, dt_s);
+  } else if (!p_goal_ || !waits_for_tip) {
+    p_goal_ = path_->Advance(p_RE_known_);
+  }
   Limited goal{*p_goal_, false};
   if (session_.limits.workspace) goal = KeepInBox(*session_.limits.workspace, *p_goal_);
   outputs.workspace_limited = goal.limited;
   wish.p_RE_desired = goal.p;
-  wish.d_RE_desired = path_->Direction();
+  if (path_) wish.d_RE_desired = path_->Direction();
   return wish;
+}
+
+/// The wish goes to the peer's newest goal at the session's speed; before the first it stays.
+void Cycle::GoToGoal(const CycleInputs& inputs, double dt_s) {
+  if (!p_goal_) p_goal_ = p_RE_known_;
+  if (!inputs.streams.goal) return;
+  const Eigen::Vector3d& p_RE = inputs.streams.goal->value.p_RE;
+  p_goal_ = LimitSpeed(*p_goal_, p_RE, dt_s, session_.task.path.speed_m_s).p;
 }
 
 void Cycle::Average(const CycleInputs& inputs, const ControllerCommand& command, bool new_tip) {
@@ -207,13 +235,14 @@ void Cycle::StartPath() {
   T_RE.p = sum_p_ / averaged_;
   p_RE_known_ = T_RE.p;
   T_RE.R = RotationWithoutTwist(Eigen::Vector3d::UnitX(), sum_d_.normalized());
+  phase_ = Phase::kMoving;
+  if (session_.goal) return;
   PathSetup setup = session_.task.path;
   if (session_.path->frame == PathFrame::kRobot) {
     if (session_.path->p_start) T_RE.p = *session_.path->p_start;
     for (auto& waypoint : setup.waypoints_m) waypoint -= T_RE.p;
   }
   path_.emplace(setup, T_RE, session_.rate_hz);
-  phase_ = Phase::kMoving;
 }
 
 void Cycle::Command(const ControllerCommand& command, double dt_s, CycleOutputs& outputs) {

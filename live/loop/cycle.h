@@ -18,7 +18,7 @@ namespace flextip::live {
 struct CycleOutputs {
   TimeNs t_ns = 0;
   Hold hold = Hold::kStaleWrist;
-  int held_by = -1;          ///< the stream, with kSourceLost; kStreams: the robot
+  int held_by = -1;          ///< the stream, with kSourceLost; kRobotPeer, kGoalPeer
   bool has_command = false;  ///< false before the wrist was ever measured
   Eigen::Vector3d p_RW_command = Eigen::Vector3d::Zero();
   Eigen::Matrix3d R_RW = Eigen::Matrix3d::Identity();  ///< as measured
@@ -41,21 +41,30 @@ class Cycle {
   /// once the path has begun.
   CycleOutputs Step(const CycleInputs& inputs);
 
+  /// The controller's result behind the last step, with the estimate; kNoWrist before the first.
+  const ControllerCommand& LastCommand() const { return command_; }
+  /// The path that the tip follows; null before it starts.
+  const TipPath* Path() const { return path_ ? &*path_ : nullptr; }
+
  private:
   enum class Phase : std::uint8_t { kWaiting, kAveraging, kMoving, kDone };
 
+  void KnowTimes(TimeNs t_ns);
   SensorReadings Readings(const StreamInputs& streams);
   std::optional<CrtkCommand> StartUp(const CycleInputs& inputs);
   std::optional<CrtkCommand> Ending(const CycleInputs& inputs);
   void Average(const CycleInputs& inputs, const ControllerCommand& command, bool new_tip);
   void StartPath();
-  ControllerInputs Wish(const CycleInputs& inputs, bool moves, bool new_tip, CycleOutputs& outputs);
+  ControllerInputs Wish(const CycleInputs& inputs, bool moves, bool new_tip, double dt_s,
+                        CycleOutputs& outputs);
+  void GoToGoal(const CycleInputs& inputs, double dt_s);
   void Command(const ControllerCommand& command, double dt_s, CycleOutputs& outputs);
   void HoldStill(const CycleInputs& inputs, CycleOutputs& outputs);
 
   const Session session_;
   bool wait_;
   InstrumentController controller_;
+  ControllerCommand command_;
   std::optional<TipPath> path_;
   Phase phase_ = Phase::kWaiting;
   bool enabled_once_ = false;
@@ -64,8 +73,9 @@ class Cycle {
   TimeNs average_from_ns_ = 0;  // of the start
   Eigen::Vector3d sum_p_ = Eigen::Vector3d::Zero(), sum_d_ = Eigen::Vector3d::Zero();
   int averaged_ = 0;
-  TimeNs tip_t_ns_ = 0;                    // of the last tip that a cycle had
-  std::optional<Eigen::Vector3d> p_goal_;  // the path's, last
+  double tip_time_sd_s_ = 0.0, em0_time_sd_s_ = 0.0;  // as the controller was told
+  TimeNs tip_t_ns_ = 0;                               // of the last tip that a cycle had
+  std::optional<Eigen::Vector3d> p_goal_;             // the path's, last
   Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> p_target_;           // of the controller, not yet limited
   Eigen::Vector3d p_last_ = Eigen::Vector3d::Zero();  // commanded

@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kFuture_s = 0.1;      // a sample may be so far ahead of the cycle's clock
 constexpr double kStateStale_s = 3.0;  // states come once a second
-constexpr int kRobot = kStreams;       // in `held_by`
 
 double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 
@@ -66,16 +65,18 @@ Hold FindHold(const Session& session, const CycleInputs& inputs, bool waits, int
     if (times && Seconds(times->first - inputs.t_ns) > kFuture_s) return Hold::kBadTime;
   }
   for (int i = 0; i <= kStreams; ++i) {
-    const bool used = i == kRobot || session.streams[static_cast<std::size_t>(i)].has_value();
+    const bool used = i == kRobotPeer || session.streams[static_cast<std::size_t>(i)].has_value();
     if (!used) continue;
     held_by = i;
     if ((inputs.streams.lost >> i & 1U) != 0) return Hold::kSourceLost;
     const auto stream = static_cast<StreamName>(i);
-    const bool has_name = i == kRobot || stream == StreamName::kWrist ||
+    const bool has_name = i == kRobotPeer || stream == StreamName::kWrist ||
                           stream == StreamName::kTip || (tracks && stream == tip);
     if (!has_name && IsStale(session, inputs, stream)) return Hold::kSourceLost;
   }
-  held_by = kRobot;
+  held_by = kGoalPeer;
+  if (session.goal && (inputs.streams.lost >> kGoalPeer & 1U) != 0) return Hold::kSourceLost;
+  held_by = kRobotPeer;
   if (const auto& state = inputs.streams.state) {
     if (Age_s(session, inputs.t_ns, state->t_ns, state->arrived_ns) > kStateStale_s)
       return Hold::kSourceLost;

@@ -1,9 +1,7 @@
 #include "live/loop/peers.h"
 
 #include <list>
-
-#include "live/openigtlink/client.h"
-#include "live/udp/listener.h"
+#include <utility>
 
 namespace flextip::live {
 namespace {
@@ -12,50 +10,54 @@ class AllPeers : public Peers {
  public:
   AllPeers(const Session& session, const PeerHandlers& handlers) : handlers_(handlers) {
     for (const auto& stream : session.streams)
-      if (stream) Open(stream->address);
-    if (session.camera && session.camera->address) Open(*session.camera->address);
-    Open(session.robot.command);
-    for (const auto& address :
-         {session.robot.state, session.robot.command_state, session.robot.lockstep})
-      if (address) Open(*address);
+      if (stream) Read(stream->address);
+    if (session.camera && session.camera->address) Read(*session.camera->address);
+    if (session.goal) Read(*session.goal);
+    const RobotSetup& robot = session.robot;
+    if (robot.state) Read(*robot.state);
+    Of(robot.command).wish.out.push_back(robot.command);
+    if (robot.command_state) Of(*robot.command_state).wish.out.push_back(*robot.command_state);
+    if (robot.lockstep) {
+      PeerWish& wish = Read(*robot.lockstep);
+      wish.lockstep = static_cast<int>(wish.in.size()) - 1;
+      if (robot.lockstep->SamePeer(robot.command)) wish.answer = 0;
+    }
+    for (Peer& peer : peers_) peer.connection = peer.address.protocol->open(peer.wish);
   }
 
   bool Send(const Address& address, const WireMessage& message) override {
-    for (Connection& connection : connections_)
-      if (connection.address.SamePeer(address) && connection.client)
-        return connection.client->Send(message);
+    for (Peer& peer : peers_)
+      if (peer.address.SamePeer(address)) return peer.connection->Send(message);
     return false;
   }
 
  private:
-  struct Connection {
-    Address address;
-    std::unique_ptr<OpenIgtLinkClient> client;
-    std::unique_ptr<UdpListener> listener;
+  struct Peer {
+    Address address;  // its device means nothing
+    PeerWish wish;
+    std::unique_ptr<PeerConnection> connection;
   };
 
-  void Open(const Address& address) {
-    for (const Connection& connection : connections_)
-      if (connection.address.SamePeer(address)) return;
-    Connection& connection = connections_.emplace_back();
-    connection.address = address;
-    const auto message = [this, &connection](WireMessage&& m) {
-      handlers_.message(connection.address, std::move(m));
+  PeerWish& Read(const Address& address) {
+    PeerWish& wish = Of(address).wish;
+    wish.in.push_back(address);
+    return wish;
+  }
+
+  Peer& Of(const Address& address) {
+    for (Peer& peer : peers_)
+      if (peer.address.SamePeer(address)) return peer;
+    Peer& peer = peers_.emplace_back();
+    peer.address = address;
+    peer.wish.message = [this, &peer](WireMessage&& m) {
+      handlers_.message(peer.address, std::move(m));
     };
-    const auto event = [this, &connection](WireEvent&& e) {
-      handlers_.event(connection.address, std::move(e));
-    };
-    if (address.transport == Transport::kUdp) {
-      connection.listener =
-          std::make_unique<UdpListener>(address.host, address.port, message, event);
-    } else {
-      connection.client =
-          std::make_unique<OpenIgtLinkClient>(address.host, address.port, message, event);
-    }
+    peer.wish.event = [this, &peer](WireEvent&& e) { handlers_.event(peer.address, std::move(e)); };
+    return peer;
   }
 
   PeerHandlers handlers_;
-  std::list<Connection> connections_;  // handlers keep references to them
+  std::list<Peer> peers_;  // handlers keep references to them
 };
 
 }  // namespace

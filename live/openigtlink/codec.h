@@ -41,10 +41,10 @@ struct Decoded {
 /// OpenIGTLink protocol, http://openigtlink.org/developers/spec
 Decoded DecodeOpenIgtLink(std::span<const std::uint8_t> bytes, std::string_view peer);
 
-/// Returns the message as TRANSFORM (32-bit numbers on the wire), NDARRAY of 64-bit numbers, STRING
-/// or IMAGE, with a header of version 1. Throws InputError for device names of no or more than 20
-/// bytes, numbers that are not finite, times before 1970 or after 2106, and what is too long for
-/// the type.
+/// Returns the message as TRANSFORM (32-bit numbers on the wire), NDARRAY of 64-bit numbers,
+/// STRING, IMAGE or POLYDATA (a line of 32-bit numbers), with a header of version 1. Throws
+/// InputError for device names of no or more than 20 bytes, numbers that are not finite, times
+/// before 1970 or after 2106, and what is too long for the type.
 std::vector<std::uint8_t> EncodeOpenIgtLink(const WireMessage& message);
 
 /// Convert between nanoseconds since 1970 and OpenIGTLink's seconds with a 32-bit fraction; there

@@ -17,7 +17,6 @@ namespace {
 constexpr std::size_t kChunk = std::size_t{64} << 10;
 constexpr int kChunksAtOnce = 16;
 constexpr std::chrono::milliseconds kMessagePatience{2000};
-constexpr int kReportsPerSecond = 10;
 
 }  // namespace
 
@@ -59,7 +58,7 @@ bool Connection::Decode(const OnMessage& message, const OnEvent& event) {
     if (decoded.status == DecodeStatus::kIgnored) counts_.Add(&WireCounts::ignored);
     if (decoded.status == DecodeStatus::kRefused) {
       counts_.Add(&WireCounts::refused);
-      Report(event, decoded.why);
+      reports_.Tell(event, decoded.why);
     }
     for (WireMessage& one : decoded.messages) Pass(std::move(one), message, event);
   }
@@ -89,29 +88,14 @@ void Connection::Pass(WireMessage&& message, const OnMessage& on_message, const 
 void Connection::Drop(const WireMessage& message, StampVerdict verdict, const OnEvent& event) {
   if (verdict == StampVerdict::kTooManyDevices) {
     counts_.Add(&WireCounts::refused);
-    Report(event, fmt::format("{}: names more devices than can be", peer_));
+    reports_.Tell(event, fmt::format("{}: names more devices than can be", peer_));
     return;
   }
   const bool repeated = verdict == StampVerdict::kRepeated;
   counts_.Add(repeated ? &WireCounts::repeated : &WireCounts::out_of_order);
-  Report(event, fmt::format("{}: {}: found the time {} after {}, expected a later one", peer_,
+  reports_.Tell(event,
+                fmt::format("{}: {}: found the time {} after {}, expected a later one", peer_,
                             message.device, message.t_ns, filter_.Last(message.device)));
-}
-
-void Connection::Report(const OnEvent& event, const std::string& what) {
-  const auto now = WireClock::now();
-  if (now - reports_begun_ > std::chrono::seconds(1)) {
-    reports_begun_ = now;
-    reports_ = 0;
-  }
-  if (++reports_ > kReportsPerSecond) {
-    ++unreported_;
-    return;
-  }
-  const std::int64_t left_out = std::exchange(unreported_, 0);
-  const std::string more =
-      left_out > 0 ? fmt::format(" ({} such lines were left out before)", left_out) : "";
-  event({WireEvent::Kind::kRefused, what + more});
 }
 
 bool Connection::IsOnTime(WireClock::time_point now) {

@@ -12,29 +12,13 @@
 #include <vector>
 
 #include "live/openigtlink/socket.h"
-#include "live/openigtlink/stamp_filter.h"
+#include "live/protocols/reports.h"
+#include "live/protocols/stamp_filter.h"
 #include "live/wire.h"
 
 namespace flextip::live {
 
 using WireClock = std::chrono::steady_clock;
-
-/// Counts that several threads change.
-class SharedCounts {
- public:
-  void Add(std::int64_t WireCounts::*count, std::int64_t n = 1) {
-    const std::lock_guard lock(mutex_);
-    counts_.*count += n;
-  }
-  WireCounts Get() const {
-    const std::lock_guard lock(mutex_);
-    return counts_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  WireCounts counts_;
-};
 
 class Connection {
  public:
@@ -67,7 +51,6 @@ class Connection {
   bool Decode(const OnMessage& message, const OnEvent& event);
   void Pass(WireMessage&& message, const OnMessage& on_message, const OnEvent& event);
   void Drop(const WireMessage& message, StampVerdict verdict, const OnEvent& event);
-  void Report(const OnEvent& event, const std::string& what);
   bool WriteLocked();
 
   Descriptor socket_;
@@ -78,9 +61,7 @@ class Connection {
   std::vector<std::uint8_t> in_;
   std::optional<WireClock::time_point> begun_;  // the message under way
   std::string why_;
-  WireClock::time_point reports_begun_{};
-  int reports_ = 0;
-  std::int64_t unreported_ = 0;
+  Reports reports_;
 
   mutable std::mutex out_mutex_;
   std::vector<std::uint8_t> out_;

@@ -3,11 +3,11 @@
 #include <igtl_util.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 
 #include "live/openigtlink/codec.h"
 #include "live/openigtlink/content.h"
+#include "live/protocols/reports.h"
 
 namespace flextip::live {
 namespace {
@@ -21,12 +21,6 @@ constexpr std::size_t kLeastExtendedHeader = 12;
 /// A field of fixed width: up to its first zero byte, or all of it.
 std::string FieldText(const char* field, std::size_t width) {
   return {field, ::strnlen(field, width)};
-}
-
-std::string Printable(std::string text) {
-  for (char& c : text)
-    if (std::isprint(static_cast<unsigned char>(c)) == 0) c = '?';
-  return text;
 }
 
 std::uint64_t BigEndian(Bytes bytes, std::size_t at, std::size_t width) {

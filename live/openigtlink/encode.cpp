@@ -112,6 +112,29 @@ Packet Pack(const WireImage& body, const std::string& device) {
   return packet;
 }
 
+Packet Pack(const WireLine& body, const std::string& device) {
+  const std::size_t count = body.points.size();
+  if (count < 2 || count > kMostOfSize)
+    Refuse(device, fmt::format("found a line of {} points, expected 2 to {}", count, kMostOfSize));
+  Packet packet{"POLYDATA"};
+  const std::uint64_t lines_size = 4 * (1 + count);
+  // Points; vertices and their size; lines and their size; polygons, strips, attributes.
+  for (const std::uint64_t value :
+       {std::uint64_t{count}, std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{1}, lines_size,
+        std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{0}})
+    packet.AddUnsigned(value, 4);
+  for (const Eigen::Vector3d& point : body.points) {
+    for (int i = 0; i < 3; ++i) {
+      const auto value = static_cast<float>(kMillimetresPerMetre * point[i]);
+      if (!std::isfinite(value)) Refuse(device, fmt::format("found {} in its line", value));
+      packet.AddUnsigned(std::bit_cast<std::uint32_t>(value), 4);
+    }
+  }
+  packet.AddUnsigned(count, 4);
+  for (std::size_t i = 0; i < count; ++i) packet.AddUnsigned(i, 4);
+  return packet;
+}
+
 }  // namespace
 
 std::uint64_t IgtlStamp(TimeNs t_ns) {

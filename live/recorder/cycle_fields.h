@@ -131,6 +131,10 @@ void VisitValue(Io& io, const std::string& name, EmSample& em) {
   VisitValue(io, name + " q_RS", em.q_RS);
 }
 template <class Io>
+void VisitValue(Io& io, const std::string& name, GoalSample& goal) {
+  VisitVector(io, name + " p_RE", goal.p_RE);
+}
+template <class Io>
 void VisitValue(Io& io, const std::string& name, Eigen::Vector4d& moments) {
   VisitVector(io, name + " m", moments);
 }
@@ -159,6 +163,8 @@ void VisitStream(Io& io, const std::string& name, std::optional<Arrived<T>>& now
   now = before;
   if (is_new) now = sample;
 }
+
+inline constexpr const char* kLaterStream = "asked";
 
 template <class Io>
 void VisitRecord(Io& io, CycleRecord& record, const CycleRecord& before) {
@@ -195,6 +201,8 @@ void VisitRecord(Io& io, CycleRecord& record, const CycleRecord& before) {
                 [&](CrtkCommand& command) { VisitEnum(io, "state_command", command); });
   VisitFlag(io, "done", outputs.done);
   outputs.t_ns = record.inputs.t_ns;
+  // Older recordings lack what follows.
+  VisitStream(io, kLaterStream, streams.goal, last.goal);
 }
 
 }  // namespace flextip::live::fields

@@ -12,6 +12,14 @@ std::vector<std::string> ColumnNames() {
   return names.names;
 }
 
+/// Columns that recordings of earlier versions lack.
+CsvOptions MayLackLater() {
+  CsvOptions options;
+  for (const std::string& name : ColumnNames())
+    if (name.starts_with(fields::kLaterStream)) options.may_lack.push_back(name);
+  return options;
+}
+
 }  // namespace
 
 struct CycleTableWriter::Table {
@@ -33,7 +41,8 @@ void CycleTableWriter::Add(const CycleRecord& record) {
 std::string CycleTableWriter::TakeText() { return table_->csv.TakeText(); }
 
 struct CycleTableReader::Table {
-  Table(const std::filesystem::path& file, ReadLog& log) : csv(file, ColumnNames(), log) {}
+  Table(const std::filesystem::path& file, ReadLog& log)
+      : csv(file, ColumnNames(), log, MayLackLater()) {}
   CsvReader csv;
   CycleRecord before;
 };

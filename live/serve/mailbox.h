@@ -9,13 +9,18 @@
 #include <utility>
 #include <variant>
 
+#include "live/serve/outlets.h"
 #include "live/wire.h"
 
 namespace flextip::live {
 
 class Mailbox {
  public:
-  using Item = std::variant<WireMessage, WireEvent>;
+  struct Mail {
+    Outlets::Source source;
+    WireMessage message;
+  };
+  using Item = std::variant<Mail, WireEvent>;
 
   /// Waits where it is full: a client that floods is read no faster than it is served.
   void Put(Item item) {

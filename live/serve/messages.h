@@ -10,6 +10,7 @@ namespace flextip::live {
 
 inline constexpr const char* kMeasuredDevice = "PSM1/measured_cp";
 inline constexpr const char* kServoDevice = "PSM1/servo_cp";
+inline constexpr const char* kInterpolateDevice = "PSM1/interpolate_cp";
 inline constexpr const char* kStateDevice = "PSM1/operating_state";
 inline constexpr const char* kCommandDevice = "PSM1/state_command";
 inline constexpr const char* kLockstepDevice = "lockstep";

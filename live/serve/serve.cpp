@@ -8,9 +8,9 @@
 #include <mutex>
 #include <utility>
 
-#include "live/openigtlink/server.h"
 #include "live/serve/mailbox.h"
 #include "live/serve/messages.h"
+#include "live/serve/outlets.h"
 #include "live/serve/photographer.h"
 #include "live/serve/shift_times.h"
 #include "simulation/virtual_robot/virtual_robot.h"
@@ -31,7 +31,7 @@ simulation::VirtualRobotSetup RobotOf(const simulation::Scenario& scenario, bool
   setup.plant = loop.plant;
   setup.plant_options = loop.plant_options;
   setup.p_RW_start = loop.p_RW_start;
-  setup.max_wrist_speed_m_s = loop.max_wrist_speed_m_s;
+  setup.servo = loop.servo;
   setup.sensors = loop.sensors;
   setup.sensor_effects = loop.sensor_effects;
   setup.seed = loop.seed;
@@ -62,9 +62,11 @@ class Session {
         p_RE_start_(robot_.Shape().T_RE().p),
         p_RE_(p_RE_start_),
         p_RW_start_(scenario.loop.p_RW_start),
-        server_(
-            options.port, options.any_address,
-            [this](WireMessage&& message) { mailbox_.Put(std::move(message)); },
+        outlets_(
+            options,
+            [this](Outlets::Source source, WireMessage&& message) {
+              mailbox_.Put(Mailbox::Mail{source, std::move(message)});
+            },
             [this](WireEvent&& event) { mailbox_.Put(std::move(event)); }) {
     if (laparoscope != nullptr) {
       photographer_.emplace(*laparoscope, !options.lockstep,
@@ -77,7 +79,7 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   ServeResult Run() {
-    if (options_.serving) options_.serving(server_.port());
+    if (options_.serving) options_.serving(outlets_.port());
     if (options_.lockstep) {
       RunLockstep();
     } else {
@@ -129,10 +131,14 @@ class Session {
   }
 
   void RunLockstep() {
-    while (!Stopped() && server_.Clients() == 0) TakeOne();
+    // Not TakeOne: samples that are sent before a client is there come when they like.
+    while (!Stopped() && outlets_.Clients() == 0)
+      if (const auto item = mailbox_.TakeUntil(SteadyClock::now() + kLook)) Take(*item);
     while (!Stopped() && !Left() && !DurationOver()) {
-      server_.ForgetKept();
+      outlets_.ForgetKept();
       Send(robot_.Advance(kSimulationStart_ns + std::llround(figures_.cycles * 1e9 / rate_hz_)));
+      while (!outlets_.Settled() && !Stopped() && !Left()) {
+      }
       Publish({kLockstepDevice, robot_.Now(), WireText{fmt::format("cycle {}", figures_.cycles)}});
       answered_ = false;
       while (!answered_ && !Stopped() && !Left()) TakeOne();
@@ -142,8 +148,8 @@ class Session {
 
   /// Whether the client that commanded has gone, or all that were there.
   bool Left() {
-    commanded_ = commanded_ || server_.HasCommander();
-    return server_.Clients() == 0 || (commanded_ && !server_.HasCommander());
+    commanded_ = commanded_ || outlets_.HasCommander();
+    return outlets_.Clients() == 0 || (commanded_ && !outlets_.HasCommander());
   }
 
   void TakeOne() {
@@ -158,11 +164,17 @@ class Session {
       Say(event->what);
       return;
     }
-    const auto& message = std::get<WireMessage>(item);
+    const auto& [source, message] = std::get<Mailbox::Mail>(item);
+    if (!outlets_.IsHeard(source)) {
+      SayOnce(fmt::format("{}: a peer of another protocol commands, this one is not heard",
+                          message.device));
+      return;
+    }
     const auto* const text = std::get_if<WireText>(&message.body);
     const auto* const transform = std::get_if<WireTransform>(&message.body);
-    if (message.device == kServoDevice && transform != nullptr) {
-      TakeSetPoint(message.t_ns, *transform);
+    const bool moves = message.device == kServoDevice || message.device == kInterpolateDevice;
+    if (moves && transform != nullptr) {
+      TakeSetPoint(message, *transform);
     } else if (message.device == kCommandDevice && text != nullptr) {
       TakeCommand(text->text);
     } else {
@@ -170,12 +182,12 @@ class Session {
     }
   }
 
-  void TakeSetPoint(TimeNs t_ns, const WireTransform& set_point) {
+  void TakeSetPoint(const WireMessage& message, const WireTransform& set_point) {
     answered_ = true;
-    if (t_ns == 0) {
+    if (message.t_ns == 0) {
       ++figures_.set_points_off;
       SayOnce(fmt::format("{}: found the time 0, which means invalid data: not followed",
-                          kServoDevice));
+                          message.device));
       return;
     }
     ++(robot_.MoveTo(set_point.T_RD.p) ? figures_.set_points : figures_.set_points_off);
@@ -204,8 +216,7 @@ class Session {
   }
 
   void Publish(const WireMessage& message) {
-    // In lockstep time stands: who comes later must be given what this cycle has sent.
-    if (server_.Send(message, options_.lockstep) > 0) ++figures_.messages_sent;
+    if (outlets_.Send(message)) ++figures_.messages_sent;
   }
 
   /// From the photographer's thread, where there is one.
@@ -216,7 +227,7 @@ class Session {
       pictures_.push_back({t_ns + offset_ns_, fmt::format("{}.png", t_ns + offset_ns_)});
     }
     const WireMessage message{"cam0", t_ns + offset_ns_, WireImage{std::move(image)}};
-    if (server_.Send(message, options_.lockstep) > 0) ++figures_.pictures_sent;
+    if (outlets_.Send(message)) ++figures_.pictures_sent;
   }
 
   void Say(const std::string& line) const {
@@ -236,7 +247,7 @@ class Session {
     figures_.wrist_from_start_m = (shape.p_RW_measured - p_RW_start_).norm();
     figures_.state = Text(robot_.State());
     figures_.fault = robot_.FaultReason();
-    figures_.counts = server_.Counts();
+    figures_.counts = outlets_.Counts();
     ServeResult result{figures_, robot_.Kept(), robot_.Truth()};
     ShiftTimes(offset_ns_, result.recording, result.truth);
     if (result.recording.command0) result.recording.command0->rate_hz = rate_hz_;
@@ -257,7 +268,7 @@ class Session {
   std::mutex pictures_mutex_;
   Series<std::string> pictures_;
   Mailbox mailbox_;
-  OpenIgtLinkServer server_;
+  Outlets outlets_;
   std::optional<Photographer> photographer_;
 };
 

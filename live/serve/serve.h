@@ -1,4 +1,5 @@
-// A virtual robot behind OpenIGTLink: in real time, or as fast as its client answers.
+// A virtual robot behind OpenIGTLink, and ROS 2 and UDP where they are wanted: in real time, or as
+// fast as its client answers.
 #pragma once
 
 #include <functional>
@@ -15,8 +16,10 @@
 namespace flextip::live {
 
 struct ServeOptions {
-  int port = 0;  ///< 0: a free one
-  bool any_address = false;
+  int port = 0;                    ///< 0: a free one
+  bool any_address = false;        ///< with ROS 2: the network interface that DDS chooses
+  std::optional<int> ros2_domain;  ///< empty: no ROS 2
+  std::optional<int> udp_port;     ///< poses go to this port of this machine too
   bool lockstep = false;
   double rate_hz = 0.0;              ///< of lockstep's cycles; 0: the scenario's
   std::optional<double> duration_s;  ///< simulated; empty: until `stop`
@@ -59,7 +62,8 @@ struct ServeResult {
 /// client that commanded has left. Lockstep begins when the first client is there; then the same
 /// commands give the same samples, bit for bit. `laparoscope` null: no pictures, the tip by its
 /// figures where the scenario has `sensors.tip`. Throws InputError where the shaft has no
-/// equilibrium at the start and WorkError where the port is taken or without OpenIGTLink.
+/// equilibrium at the start and WorkError where the port is taken or without
+/// OpenIGTLink; and where ROS 2 is wanted and cannot be had.
 ServeResult Serve(const simulation::Scenario& scenario, const simulation::Laparoscope* laparoscope,
                   const ServeOptions& options);
 

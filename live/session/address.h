@@ -5,14 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "live/session/session.h"
-#include "recording/text/yaml_map.h"
+#include "live/protocols/protocol.h"
 
 namespace flextip::live {
 
-/// Reads `{openigtlink: {host, port, device}}` or `{udp: {host, port, device}}` of `map`; adds what
-/// was read to `sections`. Empty where `map` has neither. Throws InputError with file and line.
-std::optional<Address> ReadAddress(const YamlMap& map, std::vector<YamlMap>& sections);
+/// Reads `{openigtlink: {host, port, device}}`, or that of another protocol, of `map`; adds what
+/// was read to `sections`. Empty where `map` has none. Throws InputError with file and line, also
+/// for a protocol that does not carry `content`.
+std::optional<Address> ReadAddress(const YamlMap& map, std::vector<YamlMap>& sections,
+                                   Content content = Content::kPose);
 
 /// Returns "openigtlink 127.0.0.1:18944 em0".
 std::string Text(const Address& address);

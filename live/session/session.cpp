@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "core/error.h"
 #include "estimation/shaft_estimator.h"
 #include "live/session/address.h"
@@ -16,6 +18,22 @@ namespace {
 
 constexpr const char* kFormat = "flextip-session";
 constexpr std::int64_t kVersion = 1;
+
+Content ContentOf(StreamName stream) {
+  switch (stream) {
+    case StreamName::kTip:
+      return Content::kTip;
+    case StreamName::kStrain:
+      return Content::kMoments;
+    case StreamName::kLoad:
+      return Content::kForce;
+    case StreamName::kWrist:
+    case StreamName::kEm0:
+    case StreamName::kEm1:
+      break;
+  }
+  return Content::kPose;
+}
 
 /// Reads a file's sections and remembers them, to find the keys nobody asked for.
 class SessionReader {
@@ -31,6 +49,7 @@ class SessionReader {
     ReadRobot();
     ReadController();
     ReadLimits();
+    ReadPublish();
     ReadPath();
     ReadCalibrations();
     ReadModel();
@@ -89,14 +108,10 @@ class SessionReader {
     if (!sources.Has(key)) return {};
     const YamlMap map = Section(sources, key);
     StreamSetup& setup = session_.streams[static_cast<std::size_t>(stream)].emplace();
-    const auto address = ReadAddress(map, sections_);
-    if (!address) throw sources.Error(key, "found no source, expected openigtlink or udp");
+    const auto address = ReadAddress(map, sections_, ContentOf(stream));
+    if (!address)
+      throw sources.Error(key, fmt::format("found no source, expected {}", ProtocolKeys()));
     setup.address = *address;
-    const bool takes_udp =
-        stream == StreamName::kWrist || stream == StreamName::kEm0 || stream == StreamName::kEm1;
-    if (address->transport == Transport::kUdp && !takes_udp) {
-      throw map.Error("udp", "carries poses alone, expected openigtlink");
-    }
     setup.latency = ReadLatency(map);
     setup.stale_s = NumberInOr(map, "stale_s", kStale, default_stale_s);
     return map;
@@ -195,7 +210,7 @@ class SessionReader {
       throw sources.Error("cam0", "found a camera and vision0, expected one of them");
     }
     CameraSetup& camera = session_.camera.emplace();
-    camera.address = ReadAddress(map, sections_);
+    camera.address = ReadAddress(map, sections_, Content::kPicture);
     camera.video = map.TextOr("video", "");
     if (camera.address.has_value() == !camera.video.empty()) {
       throw sources.Error("cam0", "expected one source: video or openigtlink");
@@ -214,23 +229,31 @@ class SessionReader {
     vision.rate_hz = stream.calibration.rate_hz;
   }
 
-  std::optional<Address> RobotAddress(const YamlMap& map, const std::string& key) {
+  std::optional<Address> RobotAddress(const YamlMap& map, const std::string& key, Content content) {
     if (!map.Has(key)) return {};
-    const auto address = ReadAddress(Section(map, key), sections_);
-    if (!address || address->transport == Transport::kUdp) {
-      throw map.Error(key, "found no peer, expected openigtlink");
+    const auto address = ReadAddress(Section(map, key), sections_, content);
+    if (!address || !address->protocol->takes_commands) {
+      throw map.Error(key, "found no peer that takes commands, as openigtlink and ros2 do");
     }
     return address;
   }
 
+  static void ReadTransform(const YamlMap& map, const std::string& key, Pose& T) {
+    if (!map.Has(key)) return;
+    T = map.Transform(key);
+    RequireIn(map, key, kPlace, T.p.norm());
+  }
+
   void ReadRobot() {
     const YamlMap map = Section(top_, "robot");
-    const auto command = RobotAddress(map, "command");
+    const auto command = RobotAddress(map, "command", Content::kPose);
     if (!command) throw map.Error("command", "is missing: where do commands go?");
     session_.robot.command = *command;
-    session_.robot.state = RobotAddress(map, "state");
-    session_.robot.command_state = RobotAddress(map, "command_state");
-    session_.robot.lockstep = RobotAddress(map, "lockstep");
+    session_.robot.state = RobotAddress(map, "state", Content::kState);
+    session_.robot.command_state = RobotAddress(map, "command_state", Content::kText);
+    session_.robot.lockstep = RobotAddress(map, "lockstep", Content::kText);
+    ReadTransform(map, "T_RB", session_.robot.T_RB);
+    ReadTransform(map, "T_DW", session_.robot.T_DW);
     if (session_.robot.command_state && !session_.robot.state) {
       throw map.Error("command_state", "needs state: nobody commands a robot that is not seen");
     }
@@ -275,6 +298,18 @@ class SessionReader {
         .ReadFixtures(map);
   }
 
+  void ReadPublish() {
+    if (!top_.Has("publish")) return;
+    const YamlMap map = Section(Section(top_, "publish"), "openigtlink");
+    PublishSetup& publish = session_.publish.emplace();
+    const std::int64_t port = map.Integer("port");
+    if (port < 1 || port > 65535)
+      throw map.Error("port", fmt::format("found {}, expected 1 to 65535", port));
+    publish.port = static_cast<int>(port);
+    publish.any_address = ReadChoice(map, "address", {"127.0.0.1", "any"}) == 1;
+    publish.rate_hz = NumberInOr(map, "rate_hz", kRate, publish.rate_hz);
+  }
+
   void ReadPath() {
     TaskReader reader(file_.parent_path(), session_.task, sections_);
     const YamlMap controller = top_.Map("controller");
@@ -293,6 +328,11 @@ class SessionReader {
       }
       place.p_start = VectorIn(map, "start_m", kPlace);
     }
+    if (map.Has("goal")) {
+      ReadGoal(map);
+      reader.FinishDirection(controller, controller, "kind", {session_.task.controller.kind});
+      return;
+    }
     reader.ReadPath(map);
     const Plausible& range = place.frame == PathFrame::kRobot ? kPlace : kWay;
     for (const auto& waypoint : session_.task.path.waypoints_m) {
@@ -302,12 +342,31 @@ class SessionReader {
     reader.FinishDirection(controller, controller, "kind", {session_.task.controller.kind});
   }
 
+  void ReadGoal(const YamlMap& map) {
+    session_.goal = ReadAddress(Section(map, "goal"), sections_, Content::kPose);
+    if (!session_.goal)
+      throw map.Error("goal", fmt::format("found no source, expected {}", ProtocolKeys()));
+    PathSetup& path = session_.task.path;
+    path.speed_m_s = map.PositiveOr("speed_m_s", path.speed_m_s);
+    RequireIn(map, "speed_m_s", kSpeed, path.speed_m_s);
+  }
+
   void ReadCalibrations() {
     session_.uncalibrated = session_.base;
     if (!top_.Has("calibrations")) return;
     std::vector<std::filesystem::path> files;
     for (const std::string& name : top_.Texts("calibrations")) files.push_back(Beside(name));
     session_.calibrations = ApplyCalibrations(files, session_.base, session_.warnings);
+    if (session_.camera) ReadCameraClocks(*session_.camera);
+  }
+
+  void ReadCameraClocks(CameraSetup& camera) {
+    for (const UsedCalibration& used : session_.calibrations) {
+      const auto clock = ClockIn(used.calibration, "cam0");
+      if (!clock) continue;
+      camera.clocks.push_back(*clock);
+      camera.latency_known = true;
+    }
   }
 
   void ReadModel() {
@@ -337,10 +396,31 @@ const char* Name(StreamName stream) {
   return names[static_cast<std::size_t>(stream)];
 }
 
+TimeNs CameraSetup::TimeOf(TimeNs t_ns) const {
+  t_ns -= std::llround(1e9 * latency.value_s);
+  for (const FoundClock& clock : clocks) t_ns = clock.TimeOf(t_ns);
+  return t_ns;
+}
+
 Latency Session::LatencyOf(StreamName stream) const {
   if (const auto& setup = Of(stream)) return setup->latency;
-  if (stream == StreamName::kTip && camera) return camera->latency;
-  return {};
+  if (stream != StreamName::kTip || !camera) return {};
+  Latency latency = camera->latency;
+  if (camera->address) return latency;
+  for (const FoundClock& clock : camera->clocks)
+    latency.value_s -= 1e-9 * static_cast<double>(clock.offset_ns);
+  return latency;
+}
+
+double Session::TimeSdOf(StreamName stream, TimeNs t_ns) const {
+  const double sd_s = LatencyOf(stream).sd_s;
+  const auto with = [&](const auto& of) {
+    return of ? std::hypot(sd_s, of->clock.SdAt(t_ns)) : sd_s;
+  };
+  if (stream == StreamName::kWrist) return with(base.wrist0);
+  if (stream == StreamName::kTip) return with(base.vision0);
+  if (stream == StreamName::kEm0) return with(base.em0);
+  return sd_s;
 }
 
 bool Session::DelayIsUnknown() const {

@@ -9,8 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "core/pose.h"
 #include "diagnosis/model/extended_model.h"
+#include "live/protocols/protocol.h"
 #include "recording/calibrations/apply.h"
+#include "recording/calibrations/clock.h"
 #include "recording/recording.h"
 #include "task/task_reader.h"
 
@@ -19,22 +22,10 @@ namespace flextip::live {
 /// The streams that a cycle takes its measurements from.
 enum class StreamName : std::uint8_t { kWrist, kTip, kEm0, kEm1, kStrain, kLoad };
 inline constexpr int kStreams = 6;
+/// Beside the streams: the robot, and who says where the tip is to go.
+inline constexpr int kRobotPeer = kStreams, kGoalPeer = kStreams + 1;
 /// Returns the name as in session files and recordings: "wrist0", "vision0", "em0", ...
 const char* Name(StreamName stream);
-
-enum class Transport : std::uint8_t { kOpenIgtLink, kUdp };
-
-/// Where messages come from or go to.
-struct Address {
-  Transport transport = Transport::kOpenIgtLink;
-  std::string host = "127.0.0.1";  ///< of a server; with UDP the address that is listened on
-  int port = 0;
-  std::string device;  ///< the message's name; with UDP the key of the JSON object
-
-  bool SamePeer(const Address& other) const {
-    return transport == other.transport && host == other.host && port == other.port;
-  }
-};
 
 struct StreamSetup {
   Address address;
@@ -47,14 +38,27 @@ struct CameraSetup {
   std::string video;
   std::optional<Address> address;
   Latency latency;
-  bool latency_known = false;  ///< it is stated in the session
+  bool latency_known = false;  ///< it is stated in the session, or a calibration found its clock
+  std::vector<FoundClock> clocks;  ///< of the calibrations, one after the other
+
+  /// Returns when a picture that came with the stamp `t_ns` was taken.
+  TimeNs TimeOf(TimeNs t_ns) const;
   double stale_s = 0.2;
 };
 
 struct RobotSetup {
   Address command;
   std::optional<Address> state, command_state;
+  Pose T_RB;                        ///< R from the frame in which wrist0 and commands stand
+  Pose T_DW;                        ///< the shaft's held end W in the frame D whose pose they are
   std::optional<Address> lockstep;  ///< a cycle for each of its messages, in place of a clock
+};
+
+/// Where viewers see the run, by OpenIGTLink.
+struct PublishSetup {
+  int port = 0;              ///< 0: a free one
+  bool any_address = false;  ///< of other machines, too
+  double rate_hz = 30.0;
 };
 
 /// A box in R (m).
@@ -97,7 +101,9 @@ struct Session {
   int window_samples = 0;  ///< of the window estimator; 0: each sample by itself
   std::optional<diagnosis::ExtendedModel> model;
   LimitSetup limits;
+  std::optional<PublishSetup> publish;
   std::optional<PathPlace> path;  ///< of task.path; absent: the cycle only watches
+  std::optional<Address> goal;    ///< in place of task.path's waypoints: goals of a peer
   TipTask task;
   std::vector<std::string> warnings;
 
@@ -105,8 +111,12 @@ struct Session {
     return streams[static_cast<std::size_t>(stream)];
   }
   bool HasTip() const { return Of(StreamName::kTip).has_value() || camera.has_value(); }
-  /// Returns the latency of a stream, with the camera's for the tip.
+  /// Returns the latency of a stream as the session states it, with the camera's for the tip. By a
+  /// clock that was found, a camera of this machine is later by so much.
   Latency LatencyOf(StreamName stream) const;
+  /// Returns the deviation of the times of a stream's samples near `t_ns`, by its latency and, for
+  /// wrist, tip and EM sensor, its clock (s).
+  double TimeSdOf(StreamName stream, TimeNs t_ns) const;
   /// Returns whether the controller follows a tip whose age on arrival nobody knows: pictures of a
   /// camera that stamps them as they arrive, without a stated latency.
   bool DelayIsUnknown() const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <variant>
 
@@ -36,11 +37,17 @@ struct SeenTip {
   double direction_noise_rad = 0.0;
 };
 
+/// Where the tip is to go (m, in R), as a peer says.
+struct GoalSample {
+  Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();
+};
+
 /// A sample of any stream.
 using AnySample = std::variant<WristSample, SeenTip, EmSample, Eigen::Vector4d, Eigen::Vector3d>;
 
-/// Returns the sample in a message of `stream`, in SI units; empty where the body is of another
-/// kind, another size or not finite.
-std::optional<AnySample> SampleIn(StreamName stream, const WireMessage& message);
+/// Returns the sample in a message of `stream`, in SI units. Empty, with the values found in `why`,
+/// where the body is of another kind or size, not finite, or in another unit: no wrist is 600 m
+/// away.
+std::optional<AnySample> SampleIn(StreamName stream, const WireMessage& message, std::string& why);
 
 }  // namespace flextip::live

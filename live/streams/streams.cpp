@@ -1,5 +1,7 @@
 #include "live/streams/streams.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <ctime>
 
@@ -8,13 +10,30 @@
 namespace flextip::live {
 namespace {
 
+/// A sample whose time is further from that of its arrival is of another day or clock. Were it
+/// taken, a time to come would shut out all that are right.
+constexpr double kOtherClock_s = 20.0;
+
 template <class T>
 void LookAt(Newest<Arrived<T>>& newest, std::optional<Arrived<T>>& sample) {
   if (const Arrived<T>* value = newest.Look()) sample = *value;
 }
 
+/// Makes the wrist in R of the device's pose in the robot's frame. Says why it cannot.
+std::string PlaceInR(const RobotSetup& robot, WristSample& wrist) {
+  if (!wrist.q_RW) {
+    if (!robot.T_DW.p.isZero(0.0)) return "found no orientation, expected one for robot.T_DW";
+    wrist.p_RW = robot.T_RB * wrist.p_RW;
+    return {};
+  }
+  const Pose T_RW = robot.T_RB * Pose{wrist.q_RW->toRotationMatrix(), wrist.p_RW} * robot.T_DW;
+  wrist = {T_RW.p, T_RW.Quaternion()};
+  return {};
+}
+
 std::uint32_t AllOf(const Session& session) {
-  std::uint32_t bits = 1U << kStreams;
+  std::uint32_t bits = 1U << kRobotPeer;
+  if (session.goal) bits |= 1U << kGoalPeer;
   for (int i = 0; i < kStreams; ++i)
     if (session.streams[static_cast<std::size_t>(i)]) bits |= 1U << i;
   return bits;
@@ -32,22 +51,36 @@ double StreamCounts::Rate_hz() const {
 Streams::Streams(const Session& session, Observer observer)
     : session_(session), observer_(std::move(observer)), lost_(AllOf(session)) {}
 
-void Streams::Take(StreamName stream, const WireMessage& message, TimeNs arrived_ns) {
+std::string Streams::Take(StreamName stream, const WireMessage& message, TimeNs arrived_ns) {
   const auto i = static_cast<std::size_t>(stream);
   Counters& counters = counters_[i];
   ++counters.arrived;
   if (message.t_ns <= 0) {
     ++counters.invalid;
-    return;
+    return {};
   }
-  const auto sample = SampleIn(stream, message);
+  std::string why;
+  auto sample = SampleIn(stream, message, why);
   if (!sample) {
     ++counters.unusable;
-    return;
+    return why;
+  }
+  // In lockstep the robot's time is not that of arrivals.
+  const double off_s = 1e-9 * static_cast<double>(message.t_ns - arrived_ns);
+  if (!session_.robot.lockstep && std::abs(off_s) > kOtherClock_s) {
+    ++counters.unusable;
+    return fmt::format("found a time {:.6g} s {} this machine's, expected its clock within {:g} s",
+                       std::abs(off_s), off_s > 0.0 ? "after" : "before", kOtherClock_s);
+  }
+  if (stream == StreamName::kWrist) why = PlaceInR(session_.robot, std::get<WristSample>(*sample));
+  if (!why.empty()) {
+    ++counters.unusable;
+    return why;
   }
   const double latency_s = session_.streams[i] ? session_.streams[i]->latency.value_s : 0.0;
   const TimeNs t_ns = message.t_ns - std::llround(1e9 * latency_s);
   Accept(stream, Calibrate(session_, stream, {t_ns, arrived_ns, *sample}));
+  return {};
 }
 
 void Streams::TakeTip(TimeNs t_ns, const SeenTip& tip, TimeNs arrived_ns) {
@@ -100,6 +133,18 @@ void Streams::TakeState(std::string_view text, TimeNs t_ns, TimeNs arrived_ns) {
   }
 }
 
+void Streams::TakeGoal(const WireMessage& message, TimeNs arrived_ns) {
+  const auto* transform = std::get_if<WireTransform>(&message.body);
+  const bool usable = transform != nullptr && transform->T_RD.p.allFinite() &&
+                      message.t_ns > goal_t_ns_ && message.t_ns > 0;
+  if (!usable) {
+    ++bad_goals_;
+    return;
+  }
+  goal_t_ns_ = message.t_ns;
+  goal_.Put({message.t_ns, arrived_ns, {transform->T_RD.p}});
+}
+
 void Streams::SetThere(int stream, bool there) {
   const std::uint32_t bit = 1U << stream;
   if (there) {
@@ -118,6 +163,7 @@ StreamInputs Streams::Look() {
   LookAt(strain_, inputs.strain);
   LookAt(load_, inputs.load);
   LookAt(state_, inputs.state);
+  LookAt(goal_, inputs.goal);
   inputs.lost = lost_.load();
   return inputs;
 }

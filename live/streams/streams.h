@@ -33,7 +33,10 @@ struct StreamInputs {
   std::optional<Arrived<Eigen::Vector4d>> strain;
   std::optional<Arrived<Eigen::Vector3d>> load;
   std::optional<Arrived<CrtkOperatingState>> state;
-  std::uint32_t lost = 0;  ///< bit by bit: the stream's peer is gone; bit kStreams: the robot's
+  std::optional<Arrived<GoalSample>> goal;
+  /// Bit by bit: the stream's peer is gone; bit kRobotPeer: the robot's, kGoalPeer: that of the
+  /// goals.
+  std::uint32_t lost = 0;
 };
 
 /// Each stream has one thread that delivers it; Look belongs to the cycle's thread.
@@ -46,18 +49,22 @@ class Streams {
   explicit Streams(const Session& session, Observer observer = {});
 
   /// Takes a message of a stream that arrived at `arrived_ns`: calibrates it, takes the latency off
-  /// its time, drops and counts what is invalid, old or unusable.
-  void Take(StreamName stream, const WireMessage& message, TimeNs arrived_ns);
+  /// its time, drops and counts what is invalid, old or unusable (of another kind, unit or day).
+  /// Returns why a message is unusable, with the values found; otherwise nothing.
+  std::string Take(StreamName stream, const WireMessage& message, TimeNs arrived_ns);
   /// Takes a sample of the tip by the session's own camera.
   void TakeTip(TimeNs t_ns, const SeenTip& tip, TimeNs arrived_ns);
   /// Takes the robot's operating state; a text that is none is counted.
   void TakeState(std::string_view text, TimeNs t_ns, TimeNs arrived_ns);
-  /// Notes whether the peer of a stream (kStreams: of the robot) is there. At first it is not.
+  /// Takes a goal: a pose or position in R of which the place counts. Others are counted.
+  void TakeGoal(const WireMessage& message, TimeNs arrived_ns);
+  /// Notes whether the peer of a stream (kRobotPeer, kGoalPeer) is there. At first it is not.
   void SetThere(int stream, bool there);
 
   StreamInputs Look();
   StreamCounts Counts(StreamName stream) const;
   long BadStates() const { return bad_states_; }
+  long BadGoals() const { return bad_goals_; }
 
  private:
   struct Counters {
@@ -75,9 +82,11 @@ class Streams {
   Newest<Arrived<Eigen::Vector4d>> strain_;
   Newest<Arrived<Eigen::Vector3d>> load_;
   Newest<Arrived<CrtkOperatingState>> state_;
+  Newest<Arrived<GoalSample>> goal_;
   std::array<Counters, kStreams> counters_;
   std::atomic<std::uint32_t> lost_;
-  std::atomic<long> bad_states_{0};
+  std::atomic<long> bad_states_{0}, bad_goals_{0};
+  TimeNs goal_t_ns_ = 0;  // of the delivering thread
 };
 
 /// Returns the time since 1970.

@@ -18,17 +18,22 @@ namespace flextip::live {
 /// why a datagram has none.
 std::vector<WireMessage> PosesInJson(std::string_view datagram, std::string& problem);
 
-/// Listens on a port, on a thread of its own.
+/// Listens on a port, on a thread of its own. One address is heard at a time: the first that sends
+/// a pose, until it has sent none for a second. Poses of a device come in increasing time, as those
+/// of OpenIgtLinkClient.
 class UdpListener {
  public:
-  /// `host`: the address that is listened on. Calls come from the thread; kConnected comes with the
-  /// first datagram, kRefused for one that is none of the above. Throws WorkError where the port
-  /// cannot be had.
+  /// `host`: the address that is listened on. Calls come from the thread: kConnected with the first
+  /// pose, kLost after a second without any, kRefused for what is not taken, with its sender.
+  /// Throws WorkError where the port cannot be had.
   UdpListener(const std::string& host, int port, std::function<void(WireMessage&&)> message,
               std::function<void(WireEvent&&)> event);
   ~UdpListener();
   UdpListener(const UdpListener&) = delete;
   UdpListener& operator=(const UdpListener&) = delete;
+
+  /// Returns the counts since the start; of datagrams, those refused.
+  WireCounts Counts() const;
 
  private:
   class Worker;

@@ -11,10 +11,11 @@ using nlohmann::json;
 constexpr std::size_t kMostPoses = 32;   // in a datagram
 constexpr double kLatestTime_s = 9.0e9;  // the year 2255: more does not fit into nanoseconds
 
-bool AddNumbers(const json& list, std::vector<double>& numbers) {
+/// Adds the numbers of a list, and those of rows in it.
+bool AddNumbers(const json& list, bool has_rows, std::vector<double>& numbers) {
   for (const json& item : list) {
-    if (item.is_array()) {
-      if (numbers.size() > 9 || item.size() > 3 || !AddNumbers(item, numbers)) return false;
+    if (has_rows && item.is_array() && item.size() == 3) {
+      if (!AddNumbers(item, false, numbers)) return false;
     } else if (item.is_number()) {
       numbers.push_back(item.get<double>());
     } else {
@@ -36,7 +37,7 @@ std::optional<std::vector<double>> NumbersOf(const json& object, const char* key
   const auto found = object.find(key);
   if (found == object.end() || !found->is_array() || found->size() > count) return {};
   std::vector<double> numbers;
-  if (!AddNumbers(*found, numbers) || numbers.size() != count) return {};
+  if (!AddNumbers(*found, true, numbers) || numbers.size() != count) return {};
   for (const double number : numbers)
     if (!std::isfinite(number)) return {};
   return numbers;

@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "recording/calibrations/apply.h"
+#include "recording/calibrations/clock.h"
 
 namespace flextip {
 
@@ -51,7 +51,8 @@ class CalibrationUse {
   void SetDistortion(const std::string& name);
   void SetClock(const std::string& name);
   void CheckClock(const std::string& name) const;
-  void ShiftFrames(const std::string& name, const std::function<TimeNs(TimeNs)>& time);
+  void RetimeTips(const FoundClock& clock);
+  void ShiftFrames(const std::string& name, const FoundClock& clock);
   void MoveTip();
   void MoveTipOnCollar();
   void RegisterEm(const Pose& T_RF);

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <system_error>
 
@@ -93,6 +94,23 @@ void WritePng(const std::filesystem::path& file, const Image& image) {
   } catch (const cv::Exception&) {  // reported below
   }
   if (!written) throw WorkError(fmt::format("{}: cannot be written", file.string()));
+}
+
+std::string EncodeJpeg(const Image& image, int quality, int most_width_px) {
+  std::vector<std::uint8_t> bytes;
+  try {
+    cv::Mat picture = View(image);
+    if (image.width_px > most_width_px) {
+      const double scale = double(most_width_px) / image.width_px;
+      cv::Mat smaller;
+      cv::resize(picture, smaller, cv::Size(), scale, scale, cv::INTER_AREA);
+      picture = smaller;
+    }
+    cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+  } catch (const cv::Exception&) {  // reported below
+  }
+  if (bytes.empty()) throw WorkError("a picture cannot be written as JPEG");
+  return {bytes.begin(), bytes.end()};
 }
 
 namespace {

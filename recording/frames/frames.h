@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "core/image.h"
 
@@ -28,6 +29,10 @@ void SilenceVideoCodecs();
 
 /// Throws WorkError where the disk refuses.
 void WritePng(const std::filesystem::path& file, const Image& image);
+
+/// Returns the picture as the bytes of a JPEG file, `quality` 0 to 100, scaled down to
+/// `most_width_px` where it is wider. Throws WorkError where it is empty.
+std::string EncodeJpeg(const Image& image, int quality, int most_width_px);
 
 /// A video written frame by frame: H.264, or VP9 where there is no encoder of it, else MPEG-4
 /// part 2. A file not closed by Finish is of no use.

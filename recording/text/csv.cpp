@@ -15,7 +15,7 @@ CsvReader::CsvReader(const std::filesystem::path& file, const std::vector<std::s
       log_(&log),
       stream_(OpenTextFile(file)) {
   ReadHeader();
-  FindColumns(options.allow_other_columns);
+  FindColumns();
 }
 
 CsvReader::CsvReader(const std::filesystem::path& file, ReadLog& log, const CsvOptions& options)
@@ -58,16 +58,22 @@ void CsvReader::ReadHeader() {
   width_ = fields_.size();
 }
 
-void CsvReader::FindColumns(bool allow_other_columns) {
+void CsvReader::FindColumns() {
+  const auto& lacking = options_.may_lack;
   for (const auto& column : columns_) {
     const auto place = std::find(fields_.begin(), fields_.end(), column);
+    if (place == fields_.end() &&
+        std::find(lacking.begin(), lacking.end(), column) != lacking.end()) {
+      place_.push_back(kLacking);
+      continue;
+    }
     if (place == fields_.end()) throw Error(fmt::format("column \"{}\" is missing", column));
     if (std::find(place + 1, fields_.end(), column) != fields_.end()) {
       throw Error(fmt::format("column \"{}\" is there twice", column));
     }
     place_.push_back(static_cast<std::size_t>(place - fields_.begin()));
   }
-  if (allow_other_columns) return;
+  if (options_.allow_other_columns) return;
   for (const auto field : fields_) {
     if (std::find(columns_.begin(), columns_.end(), field) != columns_.end()) continue;
     throw Error(
@@ -146,7 +152,9 @@ bool CsvReader::Next() {
   return true;
 }
 
-std::string_view CsvReader::Text(std::size_t column) const { return fields_[place_[column]]; }
+std::string_view CsvReader::Text(std::size_t column) const {
+  return place_[column] == kLacking ? std::string_view() : fields_[place_[column]];
+}
 
 InputError CsvReader::FieldError(std::size_t column, const std::string& expected) const {
   return Error(fmt::format("found {} in column \"{}\", expected {}", Quoted(Text(column)),

@@ -21,7 +21,8 @@ struct CsvOptions {
   /// last line is torn where the line break after it or some of its fields are missing. Otherwise
   /// the '#' may be absent, the line break after the last line too, and every line must be whole.
   bool from_recorder = true;
-  bool allow_other_columns = false;  ///< ignore columns that were not asked for
+  bool allow_other_columns = false;        ///< ignore columns that were not asked for
+  std::vector<std::string> may_lack = {};  ///< columns asked for that are empty where not there
 };
 
 /// Reads a table row by row, and holds one row at a time. Columns are found by their names, in any
@@ -54,7 +55,7 @@ class CsvReader {
 
  private:
   void ReadHeader();
-  void FindColumns(bool allow_other_columns);
+  void FindColumns();
   bool TakeLine();
   bool OnlyBlanksFollow();
   bool IsTorn();
@@ -63,6 +64,7 @@ class CsvReader {
   std::string SplitLine();
   InputError FieldError(std::size_t column, const std::string& expected) const;
 
+  static constexpr std::size_t kLacking = static_cast<std::size_t>(-1);
   std::string file_;
   std::vector<std::string> columns_;
   CsvOptions options_;
@@ -72,7 +74,7 @@ class CsvReader {
   bool terminated_ = false;  ///< a line break ended it
   long line_ = 0;
   std::size_t width_ = 0;                 ///< fields in a row
-  std::vector<std::size_t> place_;        ///< of each wanted column in a row
+  std::vector<std::size_t> place_;        ///< of each wanted column in a row; or kLacking
   std::vector<std::string_view> fields_;  ///< of the current row, views into text_
 };
 

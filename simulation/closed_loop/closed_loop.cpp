@@ -26,11 +26,10 @@ class Loop {
         sensors_(WithoutTipIf(camera != nullptr, setup.sensors), setup.seed, setup.sensor_effects),
         controller_(ControllerOptionsOf(setup), setup.model ? setup.model() : nullptr,
                     TrackerOf(setup, camera != nullptr ? &camera->tracker : nullptr)),
-        p_RW_(setup.p_RW_start),
-        p_RW_command_(setup.p_RW_start) {
+        servo_(setup.servo, setup.p_RW_start, setup.seed) {
     result_.recording = setup.base;
     if (camera_ != nullptr) StartCamera();
-    shape_ = plant_.Solve(p_RW_);
+    shape_ = plant_.Solve(servo_.p_RW());
     if (!shape_.IsUsable()) {
       throw InputError(
           fmt::format("the shaft has no equilibrium at the start: {}", shape_.message));
@@ -40,11 +39,10 @@ class Loop {
 
   LoopResult Run(const std::function<void(int, int)>& progress) {
     const int total = path_->MaxUpdates();
-    TimeNs last_ns = t_ns_;
-    for (int updates = 0; !path_->Done(); last_ns = t_ns_) {
+    for (int updates = 0; !path_->Done();) {
       const TimeNs update_ns = UpdateTime(updates);
       t_ns_ = std::min(sensors_.NextDue().value_or(update_ns), update_ns);
-      if (t_ns_ > kSimulationStart_ns) MoveWrist(1e-9 * static_cast<double>(t_ns_ - last_ns));
+      if (t_ns_ > kSimulationStart_ns) MoveWrist();
       Sense();
       const bool at_update = t_ns_ == update_ns;
       if (at_update) {
@@ -75,11 +73,9 @@ class Loop {
     result_.recording.vision0->rate_hz = setup_.base.cam0->calibration.rate_hz;
   }
 
-  void MoveWrist(double dt_s) {
-    const Eigen::Vector3d left = p_RW_command_ - p_RW_;
-    const double reach = setup_.max_wrist_speed_m_s * dt_s;
-    p_RW_ += left.norm() > reach ? Eigen::Vector3d(reach / left.norm() * left) : left;
-    shape_ = plant_.Solve(p_RW_, 1e-9 * static_cast<double>(t_ns_ - kSimulationStart_ns));
+  void MoveWrist() {
+    servo_.Advance(t_ns_);
+    shape_ = plant_.Solve(servo_.p_RW(), 1e-9 * static_cast<double>(t_ns_ - kSimulationStart_ns));
     if (!shape_.IsUsable()) {
       throw WorkError(fmt::format("the shaft lost its equilibrium {:.3f} s into the run: {}",
                                   static_cast<double>(t_ns_ - kSimulationStart_ns) * 1e-9,
@@ -89,7 +85,7 @@ class Loop {
 
   void Sense() {
     sensors_.Sample(shape_, t_ns_, result_.recording);
-    result_.truth.push_back({t_ns_, {shape_.T_RE().p, shape_.T_RE().Quaternion(), p_RW_}});
+    result_.truth.push_back({t_ns_, {shape_.T_RE().p, shape_.T_RE().Quaternion(), servo_.p_RW()}});
   }
 
   /// The camera's frame, rendered and kept.
@@ -124,7 +120,7 @@ class Loop {
     if (frame) NoteTip(*controller_.Track());
     if (command.status != ControlStatus::kNoTip) p_RE_known_ = command.p_RE_used;
     // The arm is commanded from where its encoders say it is.
-    p_RW_command_ = command.p_RW_command + (p_RW_ - command.measurements.p_RW);
+    servo_.MoveTo(command.p_RW_command + (servo_.p_RW() - command.measurements.p_RW));
     Note(command);
   }
 
@@ -180,7 +176,7 @@ class Loop {
   InstrumentController controller_;
   std::optional<TipPath> path_;
   PlantShape shape_;
-  Eigen::Vector3d p_RW_, p_RW_command_;
+  WristServo servo_;
   Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();  // by the controller
   TimeNs t_ns_ = kSimulationStart_ns, next_picture_ns_ = kSimulationStart_ns;
   double squared_direction_noise_ = 0.0, squared_deviation_ = 0.0;

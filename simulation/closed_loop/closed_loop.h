@@ -22,6 +22,7 @@
 #include "simulation/plant/plant.h"
 #include "simulation/render/laparoscope.h"
 #include "simulation/sensors/sensors.h"
+#include "simulation/virtual_robot/wrist_servo.h"
 #include "vision/tracking/tip_tracker.h"
 
 namespace flextip::simulation {
@@ -31,7 +32,7 @@ struct LoopSetup {
   PlantSetup plant;
   PlantOptions plant_options;
   Eigen::Vector3d p_RW_start = Eigen::Vector3d::Zero();
-  double max_wrist_speed_m_s = 0.2;
+  WristServoSetup servo;
   SensorSetup sensors;
   SensorEffects sensor_effects;
   /// Makes the found model that estimator and controller know of; empty: none. The plant does not

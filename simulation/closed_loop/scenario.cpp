@@ -65,7 +65,14 @@ class ScenarioReader {
   void ReadWrist() {
     const YamlMap map = Section(top_, "wrist");
     scenario_.loop.p_RW_start = map.Vector3("start_m");
-    scenario_.loop.max_wrist_speed_m_s = map.PositiveOr("max_speed_m_s", 0.2);
+    WristServoSetup& servo = scenario_.loop.servo;
+    servo.max_speed_m_s = map.PositiveOr("max_speed_m_s", servo.max_speed_m_s);
+    servo.lag_s = map.NonNegativeOr("lag_s", 0.0);
+    if (map.Has("servo_rate_hz")) servo.rate_hz = map.Positive("servo_rate_hz");
+    servo.lost = map.NonNegativeOr("lost_commands", 0.0);
+    if (servo.lost >= 1.0) {
+      throw map.Error("lost_commands", fmt::format("found {}, expected below 1", servo.lost));
+    }
   }
 
   void ReadLoad() {

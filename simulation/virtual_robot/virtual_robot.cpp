@@ -27,11 +27,10 @@ VirtualRobot::VirtualRobot(const VirtualRobotSetup& setup)
       plant_(setup.plant, setup.plant_options),
       sensors_(setup.sensors, setup.seed, setup.sensor_effects),
       machine_(SpanNs(setup.homing_s)),
-      p_RW_(setup.p_RW_start),
+      servo_(setup.servo, setup.p_RW_start, setup.seed),
       p_RW_solved_(setup.p_RW_start),
-      p_RW_command_(setup.p_RW_start),
       kept_(setup.base) {
-  shape_ = plant_.Solve(p_RW_);
+  shape_ = plant_.Solve(servo_.p_RW());
   if (!shape_.IsUsable())
     throw InputError(fmt::format("the shaft has no equilibrium at the start: {}", shape_.message));
 }
@@ -63,18 +62,16 @@ std::vector<VirtualSample> VirtualRobot::Advance(TimeNs t_ns) {
 
 void VirtualRobot::MoveWrist(TimeNs t_ns) {
   if (t_ns <= now_ns_) return;
-  const Eigen::Vector3d left = p_RW_command_ - p_RW_;
-  const double reach = setup_.max_wrist_speed_m_s * 1e-9 * static_cast<double>(t_ns - now_ns_);
-  p_RW_ += left.norm() > reach ? Eigen::Vector3d(reach / left.norm() * left) : left;
+  servo_.Advance(t_ns);
   now_ns_ = t_ns;
 }
 
 void VirtualRobot::Solve(TimeNs t_ns) {
   const double t_s = 1e-9 * static_cast<double>(t_ns - kSimulationStart_ns);
-  PlantShape shape = plant_.Solve(p_RW_, t_s);
+  PlantShape shape = plant_.Solve(servo_.p_RW(), t_s);
   if (shape.IsUsable()) {
     shape_ = std::move(shape);
-    p_RW_solved_ = p_RW_;
+    p_RW_solved_ = servo_.p_RW();
     return;
   }
   if (machine_.State().state != CrtkState::kFault) {
@@ -83,7 +80,7 @@ void VirtualRobot::Solve(TimeNs t_ns) {
     machine_.Fail();
     SayState(t_ns);
   }
-  p_RW_ = p_RW_command_ = p_RW_solved_;
+  servo_.PutAt(p_RW_solved_);
 }
 
 void VirtualRobot::Sense(TimeNs t_ns, std::vector<VirtualSample>& samples) {
@@ -100,7 +97,8 @@ void VirtualRobot::Sense(TimeNs t_ns, std::vector<VirtualSample>& samples) {
   }
   for (VirtualSample& state : waiting_) samples.push_back(std::move(state));
   waiting_.clear();
-  if (setup_.keep) truth_.push_back({t_ns, {shape_.T_RE().p, shape_.T_RE().Quaternion(), p_RW_}});
+  if (setup_.keep)
+    truth_.push_back({t_ns, {shape_.T_RE().p, shape_.T_RE().Quaternion(), servo_.p_RW()}});
 }
 
 void VirtualRobot::TakeNew(TimeNs t_ns, std::vector<VirtualSample>& samples) {
@@ -127,14 +125,14 @@ void VirtualRobot::SayState(TimeNs t_ns) { waiting_.push_back({t_ns, machine_.St
 bool VirtualRobot::Command(CrtkCommand command) {
   const std::string before = Text(machine_.State());
   if (!machine_.Take(command, now_ns_)) return false;
-  p_RW_command_ = p_RW_;
+  servo_.Stay();
   if (Text(machine_.State()) != before) SayState(now_ns_);
   return true;
 }
 
 bool VirtualRobot::MoveTo(const Eigen::Vector3d& p_RW) {
   if (!machine_.Follows() || !p_RW.allFinite()) return false;
-  p_RW_command_ = p_RW;
+  servo_.MoveTo(p_RW);
   if (!setup_.keep) return true;
   if (!kept_.command0) {
     kept_.command0.emplace();

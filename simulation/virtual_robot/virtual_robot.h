@@ -16,6 +16,7 @@
 #include "simulation/plant/plant.h"
 #include "simulation/sensors/sensors.h"
 #include "simulation/virtual_robot/crtk_machine.h"
+#include "simulation/virtual_robot/wrist_servo.h"
 
 namespace flextip::simulation {
 
@@ -24,7 +25,7 @@ struct VirtualRobotSetup {
   PlantSetup plant;
   PlantOptions plant_options;
   Eigen::Vector3d p_RW_start = Eigen::Vector3d::Zero();
-  double max_wrist_speed_m_s = 0.2;
+  WristServoSetup servo;
   SensorSetup sensors;
   SensorEffects sensor_effects;
   double picture_rate_hz = 0.0;  ///< 0: no pictures are due
@@ -64,7 +65,7 @@ class VirtualRobot {
   explicit VirtualRobot(const VirtualRobotSetup& setup);
 
   /// Moves time on to `t_ns` and returns all samples that fell due since the last call, by time.
-  /// The wrist goes to its set-point at no more than the largest speed. Where the shaft loses its
+  /// The wrist goes to its set-points as its servo does. Where the shaft loses its
   /// equilibrium, the robot stays at the last one, in FAULT.
   std::vector<VirtualSample> Advance(TimeNs t_ns);
 
@@ -101,7 +102,8 @@ class VirtualRobot {
   Sensors sensors_;
   CrtkMachine machine_;
   PlantShape shape_;
-  Eigen::Vector3d p_RW_, p_RW_solved_, p_RW_command_;
+  WristServo servo_;
+  Eigen::Vector3d p_RW_solved_;
   TimeNs now_ns_ = kSimulationStart_ns;
   int pictures_ = 0, state_ticks_ = 0;
   std::string fault_reason_;

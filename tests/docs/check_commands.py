@@ -3,7 +3,7 @@
 
     check_commands.py --source ROOT --program build/ci/apps/flextip
 
-In README.md, docs/tour.md and docs/usage/ every command stands in a block of ```sh, so that
+In README.md, docs/tour.md, docs/live.md and docs/usage/ every command stands in a block of ```sh, so that
 run_page.py runs it, or in a block marked with a reason why not. Commands and options that the text
 of any page names are known to the program.
 """
@@ -19,7 +19,8 @@ HINT = "a command to copy stands in a block of ```sh, or below <!-- not run: WHY
 
 
 def pages_that_run(source):
-    return [source / "README.md", source / "docs/tour.md", *sorted(source.glob("docs/usage/*.md"))]
+    return [source / "README.md", source / "docs/tour.md", source / "docs/live.md",
+            *sorted(source.glob("docs/usage/*.md"))]
 
 
 class Help:

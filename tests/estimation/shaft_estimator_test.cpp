@@ -9,134 +9,21 @@
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "estimation/rod_fit.h"
+#include "sensor_bench.h"
 
 namespace flextip {
 namespace {
 
-constexpr double kL = 0.6, kEI = 0.304;
-const Eigen::Vector3d kPort(0.28, 0.0, 0.0);
-const Eigen::Vector3d kForce(0.3, -1.2, 0.5);
-
-RodProblem Shaft() { return {kL, kEI, {0, 0, 0}, kPort, kForce, {0, 0, 0}}; }
-
-enum Sensors {
-  kWristDirection = 1,
-  kTip = 2,
-  kTipDirection = 4,
-  kEm = 8,
-  kStrain = 16,
-  kLoad = 32,
-  kPortDirection = 64
-};
-
-/// Measurements of the rod itself (the estimator's own model: what is tested here is the fit, its
-/// covariance and its status; models against another physics meet in the closed loop's tests).
-class Bench {
- public:
-  Measurements Measure(const RodProblem& problem, int sensors, double noise_scale) {
-    RodSolver solver;
-    const RodState rod = solver.Solve(problem);
-    EXPECT_TRUE(rod.IsUsable());
-    Measurements z;
-    z.wrist_position_noise_m = 5e-5;
-    z.p_RW = problem.p_wrist + noise_scale * 5e-5 * Normal();
-    const Eigen::Matrix3d R_RW = RotationWithoutTwist(Eigen::Vector3d::UnitX(), rod.wrist.t);
-    if (sensors & (kWristDirection | kStrain)) {
-      z.R_RW = ExpRotation(noise_scale * 3e-4 * Normal()) * R_RW;
-      z.wrist_orientation_noise_rad = 3e-4;
-    }
-    if (sensors & (kTip | kTipDirection)) {
-      z.tip.emplace();
-      z.tip->status = TipStatus::kOk;
-      const Eigen::Vector3d sd(1e-4, 2e-4, 5e-4);
-      z.tip->covariance_m2 = sd.cwiseAbs2().asDiagonal();
-      z.tip->p_RE = rod.tip.p + noise_scale * sd.cwiseProduct(Normal());
-      if (sensors & kTipDirection) {
-        z.tip->d_RE = ExpRotation(noise_scale * 3e-3 * Normal()) * rod.tip.t;
-        z.tip_direction_noise_rad = 3e-3;
-      }
-    }
-    if (sensors & kEm) {
-      const RodSection s = solver.Section(kL - 0.02);
-      z.em.emplace();
-      z.em->distance_from_tip_m = 0.02;
-      z.em->position_noise_m = 1.3e-4;
-      z.em->orientation_noise_rad = 5.6e-4;
-      z.em->T_RS = {ExpRotation(noise_scale * 5.6e-4 * Normal()) *
-                        RotationWithoutTwist(Eigen::Vector3d::UnitX(), s.t),
-                    s.p + noise_scale * 1.3e-4 * Normal()};
-    }
-    if (sensors & kPortDirection) {
-      z.port_direction = ExpRotation(noise_scale * 5.6e-4 * Normal()) * rod.t_port;
-      z.port_direction_noise_rad = 5.6e-4;
-    }
-    if (sensors & kStrain) AddStrain(solver, R_RW, noise_scale, z);
-    if (sensors & kLoad)
-      z.load = LoadMeasurement{problem.f_tip + noise_scale * 0.005 * Normal(), 0.005};
-    return z;
-  }
-
- private:
-  /// The carried frame by small steps along the shaft, unlike the estimator's two rotations.
-  void AddStrain(RodSolver& solver, const Eigen::Matrix3d& R_RW, double noise_scale,
-                 Measurements& z) {
-    z.strain.emplace();
-    z.strain->moment_noise_Nm = 8e-4;
-    const double stations[2] = {0.12, 0.5};
-    Eigen::Matrix3d frame = R_RW;
-    const int steps = 300;
-    int next = 0;
-    for (int i = 1; i <= steps && next < 2; ++i) {
-      const double s = stations[1] * i / steps;
-      const RodSection section = solver.Section(s);
-      frame = RotationWithoutTwist(frame.col(0), section.t) * frame;
-      if (s < stations[next] - 1e-9) continue;
-      z.strain->station_from_wrist_m[next] = s;
-      z.strain->moments_Nm.segment<2>(2 * next) =
-          frame.rightCols<2>().transpose() * section.m + noise_scale * 8e-4 * Normal().head<2>();
-      ++next;
-    }
-  }
-  Eigen::Vector3d Normal() { return {normal_(rng_), normal_(rng_), normal_(rng_)}; }
-
-  std::mt19937_64 rng_{11};
-  std::normal_distribution<double> normal_;
-};
-
-EstimatorOptions Options(bool use_positions = true) {
-  EstimatorOptions options;
-  options.instrument = {kL, 0.00238, kEI, 0.0};
-  options.p_RP = kPort;
-  options.use_positions = use_positions;
-  return options;
-}
-
-struct SensorSet {
-  const char* name;
-  int sensors;
-  bool use_positions;
-};
-const SensorSet kSets[] = {
-    {"wrist direction, tip", kWristDirection | kTip, true},
-    {"wrist direction, tip and its direction", kWristDirection | kTip | kTipDirection, true},
-    {"wrist direction, EM", kWristDirection | kEm, true},
-    {"wrist direction, EM orientation only", kWristDirection | kEm, false},
-    {"strain", kStrain, false},
-    {"strain, tip", kStrain | kTip, true},
-    {"load", kLoad, false},
-    {"everything", 127, true},
-};
-
 TEST(ShaftEstimator, RecoversTheLoadFromEverySetOfSensorsWithoutNoise) {
   for (const SensorSet& set : kSets) {
-    Bench bench;
-    ShaftEstimator estimator(Options(set.use_positions));
-    const RodState truth = RodSolver().Solve(Shaft());
-    const ShaftEstimate e = estimator.Update(bench.Measure(Shaft(), set.sensors, 0.0));
+    SensorBench bench;
+    ShaftEstimator estimator(BenchOptions(set.use_positions));
+    const RodState truth = RodSolver().Solve(BenchShaft());
+    const ShaftEstimate e = estimator.Update(bench.Measure(BenchShaft(), set.sensors, 0.0));
     ASSERT_EQ(e.status, EstimateStatus::kOk) << set.name;
     // Without noise only the priors pull: the force along the shaft, which hardly bends it,
     // towards nothing. The error must be within what the covariance says of that.
-    const Eigen::Vector3d miss = e.model.f_tip_N - kForce;
+    const Eigen::Vector3d miss = e.model.f_tip_N - kBenchForce;
     const Eigen::Matrix3d covariance = e.covariance.bottomRightCorner<3, 3>();
     EXPECT_LT(MahalanobisSquared(miss, covariance), 1.0) << set.name;
     EXPECT_LT((e.p_RE - truth.tip.p).norm(), 2e-4) << set.name;
@@ -146,17 +33,17 @@ TEST(ShaftEstimator, RecoversTheLoadFromEverySetOfSensorsWithoutNoise) {
 
 TEST(ShaftEstimator, CovarianceMatchesMonteCarlo) {
   for (const SensorSet& set : kSets) {
-    Bench bench;
+    SensorBench bench;
     std::mt19937_64 rng(5);
     std::normal_distribution<double> normal;
-    const EstimatorOptions options = Options(set.use_positions);
-    const double unit = kEI / (kL * kL);
+    const EstimatorOptions options = BenchOptions(set.use_positions);
+    const double unit = kBenchStiffness / (kBenchLength * kBenchLength);
     double nees = 0.0;
     const int runs = 300;
     int used = 0;
     for (int i = 0; i < runs; ++i) {
       // Truth drawn from the priors as well: only then is the covariance the error's.
-      RodProblem problem = Shaft();
+      RodProblem problem = BenchShaft();
       const auto draw = [&] { return DrawVector<3>(normal, rng); };
       problem.p_port += options.port_prior_m * draw();
       problem.f_tip = 0.25 * options.force_prior_units * unit * draw();
@@ -177,10 +64,10 @@ TEST(ShaftEstimator, CovarianceMatchesMonteCarlo) {
 }
 
 TEST(ShaftEstimator, SaysWhenTheLoadCannotBeSeen) {
-  Bench bench;
-  ShaftEstimator estimator(Options(false));
+  SensorBench bench;
+  ShaftEstimator estimator(BenchOptions(false));
   // The tip's position may not be used, and nothing else is there.
-  const ShaftEstimate e = estimator.Update(bench.Measure(Shaft(), kTip, 0.0));
+  const ShaftEstimate e = estimator.Update(bench.Measure(BenchShaft(), kTip, 0.0));
   EXPECT_EQ(e.status, EstimateStatus::kUnobservable);
   EXPECT_FALSE(e.model.force_known);
   EXPECT_EQ(e.model.f_tip_N, Eigen::Vector3d::Zero());
@@ -189,40 +76,41 @@ TEST(ShaftEstimator, SaysWhenTheLoadCannotBeSeen) {
 }
 
 TEST(ShaftEstimator, UnloadedShaftGivesNoWildPort) {
-  Bench bench;
-  RodProblem problem = Shaft();
+  SensorBench bench;
+  RodProblem problem = BenchShaft();
   problem.f_tip.setZero();
   for (int i = 0; i < 50; ++i) {
-    ShaftEstimator estimator(Options());
+    ShaftEstimator estimator(BenchOptions());
     const ShaftEstimate e = estimator.Update(bench.Measure(problem, kWristDirection | kEm, 1.0));
     ASSERT_EQ(e.status, EstimateStatus::kOk);
-    EXPECT_LT((e.model.p_RP - kPort).norm(), 0.002);
+    EXPECT_LT((e.model.p_RP - kBenchPort).norm(), 0.002);
     EXPECT_LT(e.model.f_tip_N.norm(), 2.5);
   }
 }
 
 TEST(ShaftEstimator, BadInputAndUnreachablePortAreStatuses) {
-  Bench bench;
-  Measurements z = bench.Measure(Shaft(), kWristDirection | kTip, 0.0);
-  ShaftEstimator estimator(Options());
+  SensorBench bench;
+  Measurements z = bench.Measure(BenchShaft(), kWristDirection | kTip, 0.0);
+  ShaftEstimator estimator(BenchOptions());
   Measurements bad = z;
   bad.tip->p_RE.x() = std::nan("");
   EXPECT_EQ(estimator.Update(bad).status, EstimateStatus::kBadInput);
-  EstimatorOptions far = Options();
+  EstimatorOptions far = BenchOptions();
   far.p_RP = {0.9, 0, 0};
   EXPECT_EQ(ShaftEstimator(far).Update(z).status, EstimateStatus::kNotConverged);
   EXPECT_EQ(estimator.Update(z).status, EstimateStatus::kOk);
 }
 
 TEST(ShaftEstimator, FindsTheTissuesStiffness) {
-  Bench bench;
-  ShaftEstimator estimator(Options());
+  SensorBench bench;
+  ShaftEstimator estimator(BenchOptions());
   Eigen::Matrix3d K = Eigen::Matrix3d::Zero();
   K(1, 1) = -60.0;
-  const RodState start = RodSolver().Solve({kL, kEI, {0, 0, 0}, kPort, {0, 0, 0}, {0, 0, 0}});
+  const RodState start = RodSolver().Solve(
+      {kBenchLength, kBenchStiffness, {0, 0, 0}, kBenchPort, {0, 0, 0}, {0, 0, 0}});
   ShaftEstimate e;
   for (int i = 0; i < 40; ++i) {
-    RodProblem problem = Shaft();
+    RodProblem problem = BenchShaft();
     problem.f_tip.setZero();
     problem.p_wrist = {0, 0.0015 * i, 0};  // the tip goes down into the tissue
     RodSolver solver;
@@ -242,15 +130,15 @@ TEST(ShaftEstimator, FindsTheTissuesStiffness) {
 class RodFitDerivatives : public testing::TestWithParam<bool> {};
 
 TEST_P(RodFitDerivatives, AgreeWithDifferences) {
-  Bench bench;
-  const Measurements z = bench.Measure(Shaft(), 127, 1.0);
+  SensorBench bench;
+  const Measurements z = bench.Measure(BenchShaft(), 127, 1.0);
   RodPrior prior;
-  prior.mean << z.p_RW, kPort, Eigen::Vector3d::Zero();
+  prior.mean << z.p_RW, kBenchPort, Eigen::Vector3d::Zero();
   prior.sd << Eigen::Vector3d::Constant(5e-5), Eigen::Vector3d::Constant(3e-4), 4, 4, 4;
   ShaftRod solver;
   ShaftProblem shaft;
-  shaft.rod.rod.length_m = kL;
-  shaft.rod.rod.bending_stiffness_Nm2 = kEI;
+  shaft.rod.rod.length_m = kBenchLength;
+  shaft.rod.rod.bending_stiffness_Nm2 = kBenchStiffness;
   if (GetParam()) {
     RodEffects& effects = shaft.rod.effects;
     effects.y_wrist = z.R_RW->col(1);
@@ -264,7 +152,7 @@ TEST_P(RodFitDerivatives, AgreeWithDifferences) {
   }
   const RodFit fit(shaft, z, prior, true, solver);
   RodParameters x = prior.mean;
-  x.tail<3>() = kForce / fit.ForceUnit();
+  x.tail<3>() = kBenchForce / fit.ForceUnit();
   RodFit::Residuals r;
   RodFit::Jacobian J;
   ASSERT_TRUE(fit(x.data(), r.data(), J.data()));
@@ -284,7 +172,7 @@ INSTANTIATE_TEST_SUITE_P(PlainAndWithEffects, RodFitDerivatives, testing::Bool()
 /// The rod with an effect so small that it does nothing, against the plain solver: one answer.
 TEST(ShaftRod, BothSolversAgree) {
   ShaftProblem plain;
-  plain.rod.rod = Shaft();
+  plain.rod.rod = BenchShaft();
   plain.rod.rod.q_weight = {0.0, 0.0, -0.3};
   ShaftProblem other = plain;
   other.rod.effects.wrist_compliance_m_N = 1e-15;
@@ -310,7 +198,7 @@ TEST(ShaftRod, BothSolversAgree) {
 /// A taper alone is a matter of the effects' solver, whatever axes the instrument has.
 TEST(ShaftRod, TakesATaper) {
   ShaftProblem tapered;
-  tapered.rod.rod = Shaft();
+  tapered.rod.rod = BenchShaft();
   tapered.rod.rod.stiffness_taper = -0.4;
   ShaftProblem other = tapered;
   other.rod.effects.y_wrist = {0.1, 0.5, 0.8};
@@ -342,13 +230,13 @@ TEST(ShaftRod, TakesATaper) {
 
 TEST(ShaftRod, TipComplianceMovesTheTipAndNotTheShaft) {
   ShaftProblem problem;
-  problem.rod.rod = Shaft();
+  problem.rod.rod = BenchShaft();
   ShaftRod solver;
   const ShaftRodState stiff = solver.Solve(problem);
   problem.tip_compliance_m_N = 1e-3;
   const ShaftRodState soft = solver.Solve(problem);
   EXPECT_LT((stiff.end.p - soft.end.p).norm(), 1e-10);
-  EXPECT_LT((soft.p_RE - stiff.p_RE - 1e-3 * kForce).norm(), 1e-10);
+  EXPECT_LT((soft.p_RE - stiff.p_RE - 1e-3 * kBenchForce).norm(), 1e-10);
   const Eigen::Matrix3d more = (soft.dp_RE - stiff.dp_RE).rightCols<3>();
   EXPECT_LT((more - 1e-3 * Eigen::Matrix3d::Identity()).norm(), 1e-9);
 }
@@ -356,7 +244,7 @@ TEST(ShaftRod, TipComplianceMovesTheTipAndNotTheShaft) {
 /// Measured on a rod with effects, estimated with and without knowing of them.
 TEST(ShaftEstimator, FindsTheTipOfAShaftWhoseEffectsAreKnown) {
   ShaftProblem truth;
-  truth.rod.rod = Shaft();
+  truth.rod.rod = BenchShaft();
   truth.rod.rod.bending_stiffness_Nm2 *= 0.8;
   truth.rod.rod.length_m += 0.004;
   truth.rod.rod.p_port += Eigen::Vector3d(0.0, 0.003, -0.002);
@@ -373,7 +261,7 @@ TEST(ShaftEstimator, FindsTheTipOfAShaftWhoseEffectsAreKnown) {
   z.R_RW->col(0) = rod.wrist.t;
   z.R_RW->col(1) = rod.wrist.y;
   z.R_RW->col(2) = rod.wrist.t.cross(rod.wrist.y);
-  z.load = LoadMeasurement{kForce, 0.005};
+  z.load = LoadMeasurement{kBenchForce, 0.005};
   ShaftChange change;
   change.stiffness_scale = 0.8;
   change.length_delta_m = 0.004;
@@ -381,11 +269,11 @@ TEST(ShaftEstimator, FindsTheTipOfAShaftWhoseEffectsAreKnown) {
   change.effects = truth.rod.effects;
   change.effects.y_wrist = rod.wrist.y;
   change.tip_compliance_m_N = 5e-4;
-  const ShaftEstimate known = ShaftEstimator(Options(false)).Update(z, change);
+  const ShaftEstimate known = ShaftEstimator(BenchOptions(false)).Update(z, change);
   ASSERT_EQ(known.status, EstimateStatus::kOk);
   EXPECT_LT((known.p_RE - rod.p_RE).norm(), 1e-6);  // the force's prior pulls a little
-  EXPECT_DOUBLE_EQ(known.model.instrument.length_m, kL + 0.004);
-  const ShaftEstimate nominal = ShaftEstimator(Options(false)).Update(z);
+  EXPECT_DOUBLE_EQ(known.model.instrument.length_m, kBenchLength + 0.004);
+  const ShaftEstimate nominal = ShaftEstimator(BenchOptions(false)).Update(z);
   EXPECT_GT((nominal.p_RE - rod.p_RE).norm(), 5e-3);
 }
 

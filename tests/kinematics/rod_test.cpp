@@ -203,6 +203,51 @@ TEST(Rod, WarmStartAgreesWithCold) {
   }
 }
 
+/// Changes as a loop, a fit and a user make them, from none at all to another instrument.
+const std::pair<const char*, void (*)(RodProblem&)> kChanges[] = {
+    {"nothing", [](RodProblem&) {}},
+    {"wrist and port together",
+     [](RodProblem& p) {
+       const Eigen::Vector3d shift(0.03, -0.02, 0.01);
+       p.p_wrist += shift, p.p_port += shift;
+     }},
+    {"a rounding", [](RodProblem& p) { p.p_wrist.x() += 1e-16, p.f_tip.y() += 1e-17; }},
+    {"a nanometre", [](RodProblem& p) { p.p_wrist.y() += 1e-9; }},
+    {"length", [](RodProblem& p) { p.length_m *= 1.01; }},
+    {"stiffness", [](RodProblem& p) { p.bending_stiffness_Nm2 *= 1.1; }},
+    {"weight",
+     [](RodProblem& p) {
+       p.q_weight = {0.1, 0.2, -0.3};
+     }},
+    {"wrist", [](RodProblem& p) { p.p_wrist += Eigen::Vector3d(0.004, 0.002, -0.003); }},
+    {"the same way back", [](RodProblem& p) { p.p_wrist -= Eigen::Vector3d(4e-3, 2e-3, -3e-3); }},
+    {"a load let go", [](RodProblem& p) { p.f_tip.setZero(); }},
+    {"a load taken up",
+     [](RodProblem& p) {
+       p.f_tip = {0.2, -0.9, 0.4};
+     }},
+    {"a load turned round", [](RodProblem& p) { p.f_tip *= -1.0; }},
+};
+
+TEST(Rod, WarmStartAgreesWithColdAfterAnyChange) {
+  for (const RodProblem& start : RandomProblems(20)) {
+    for (const auto& [name, change] : kChanges) {
+      SCOPED_TRACE(name);
+      RodSolver warm;
+      RodProblem problem = start;
+      ASSERT_TRUE(warm.Solve(problem).IsUsable());
+      change(problem);
+      const RodState a = warm.Solve(problem), b = RodSolver().Solve(problem);
+      ASSERT_EQ(a.status, b.status);
+      if (!a.IsUsable()) continue;
+      EXPECT_LT((a.tip.p - b.tip.p).norm(), 1e-11);
+      EXPECT_LT((a.tip.dp - b.tip.dp).norm(), 1e-8 * b.tip.dp.norm());
+      EXPECT_LT((a.wrist.dt - b.wrist.dt).norm(), 1e-8 * b.wrist.dt.norm());
+      EXPECT_LT((a.f_port - b.f_port).norm(), 1e-9 * (1.0 + b.f_port.norm()));
+    }
+  }
+}
+
 TEST(Rod, UnloadedShaftIsStraight) {
   RodProblem problem{0.5, 0.3, {0, 0, 0}, {0.2, 0.1, 0.0}, {0, 0, 0}, {0, 0, 0}};
   const RodState state = RodSolver().Solve(problem);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/rotation.h"
 
 namespace flextip {
@@ -54,6 +56,31 @@ TEST(SensorReadings, ARegistrationAddsToTheNoise) {
   EXPECT_NEAR(z->port_direction_noise_rad, std::hypot(4e-4, 3e-3), 1e-15);
   EXPECT_NEAR(z->tip_direction_noise_rad, 5e-3, 1e-15);
   EXPECT_NEAR(z->tip->covariance_m2(1, 1), 2e-6, 1e-18);
+}
+
+TEST(SensorReadings, AClocksDeviationEntersByTheSpeed) {
+  Recording r = Small();
+  r.vision0->tips[1].value.p_RE += Eigen::Vector3d(0.01, 0.0, 0.0);          // 0.2 m/s along x
+  r.em0->clock.covariance(0, 0) = r.vision0->clock.covariance(0, 0) = 4e-6;  // 2 ms
+  r.em0->clock.covariance(1, 1) = 1e-4;                                      // and 1 % of 50 ms
+  const auto z = MeasurementsAt(r, 50'000'000), before = MeasurementsAt(Small(), 50'000'000);
+  ASSERT_TRUE(z && before);
+  Eigen::Matrix3d more = z->tip->covariance_m2 - before->tip->covariance_m2;
+  EXPECT_NEAR(more(0, 0), 4e-4 * 4e-4, 1e-12);
+  more(0, 0) = 0.0;
+  EXPECT_LT(more.norm(), 1e-15);
+  const double em_m = 20.0 * std::hypot(0.002, 0.01 * 0.05);  // em0 moves by 20 m/s
+  EXPECT_NEAR(z->em->position_noise_m,
+              std::hypot(before->em->position_noise_m, em_m / std::sqrt(3.0)), 1e-12);
+}
+
+TEST(SensorReadings, ALostTipHasNoSpeed) {
+  Recording r = Small();
+  r.vision0->clock.covariance(0, 0) = 4e-6;
+  r.vision0->tips[1].value.status = TipStatus::kLost;
+  r.vision0->tips[1].value.p_RE.setConstant(1e3);
+  EXPECT_EQ(MeasurementsAt(r, 50'000'000)->tip->covariance_m2,
+            MeasurementsAt(Small(), 50'000'000)->tip->covariance_m2);
 }
 
 TEST(SensorReadings, TheTipCountsAtItsOwnFramesOnly) {

@@ -235,6 +235,12 @@ TEST(CalibrationApply, FramesAndTheirTipsMoveInTime) {
             0);
   moved(before.vision0->tips, r.vision0->tips);
   EXPECT_EQ(r.wrist0->samples[0].t_ns, before.wrist0->samples[0].t_ns);
+  r = before;
+  r.cam0.reset();  // tips alone, as live or of another program
+  r.cam1.reset();
+  Apply(WithNumbers("cam0.time_offset_s", {-0.0125}), r);
+  moved(before.vision0->tips, r.vision0->tips);
+  r = before;
   r.cam0->filenames.clear();
   r.cam0->frame_numbers.clear();
   r.vision0.reset();
@@ -256,6 +262,14 @@ TEST(CalibrationApply, AStreamTakesItsClock) {
                 2.0);
   }
   EXPECT_EQ(r.wrist0->samples[0].t_ns, before.wrist0->samples[0].t_ns);
+  c.covariance = Eigen::Vector3d(4e-6, 1.0, 9e-10).asDiagonal();
+  r = before;
+  Apply(c, r);
+  EXPECT_NEAR(r.em0->clock.SdAt(origin_ns), 2e-3, 1e-12);
+  EXPECT_NEAR(r.em0->clock.SdAt(origin_ns + 100'000'000'000), std::hypot(2e-3, 3e-3), 1e-9);
+  Apply(c, r);  // a second one goes on from the first
+  EXPECT_NEAR(r.em0->clock.SdAt(origin_ns), std::sqrt(2.0) * 2e-3, 1e-9);
+  c.covariance.resize(0, 0);
   c.numbers.erase("em0.time_origin_s");
   EXPECT_THAT(ErrorOf(c, before), HasSubstr("there is no em0.time_origin_s with it"));
   c.numbers["em0.time_origin_s"] = {0.0};

@@ -107,6 +107,20 @@ TEST(Csv, HandMadeTablesMayEndWithoutALineBreakAndHoldOtherColumns) {
               HasSubstr("a.csv:3: found 1 fields, expected 2"));
 }
 
+TEST(Csv, ColumnsThatMayBeLackingAreEmpty) {
+  TemporaryFolder folder;
+  WriteText(folder / "t.csv", "#a,c\n1,3\n");
+  ReadLog log;
+  CsvOptions options;
+  EXPECT_THROW(CsvReader(folder / "t.csv", {"a", "b", "c"}, log, options), InputError);
+  options.may_lack = {"b"};
+  CsvReader reader(folder / "t.csv", {"a", "b", "c"}, log, options);
+  ASSERT_TRUE(reader.Next());
+  EXPECT_EQ(reader.Integer(0), 1);
+  EXPECT_TRUE(reader.Empty(1));
+  EXPECT_EQ(reader.Integer(2), 3);
+}
+
 TEST(Csv, BrokenFilesFailWithOneLine) {
   const TemporaryFolder folder;
   EXPECT_THAT(Failure(folder / "none.csv"), HasSubstr("none.csv: no such file"));

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <map>
 
 #include "core/error.h"
@@ -24,7 +25,7 @@ VirtualRobotSetup SmallRobot() {
   setup.base.p_RP = setup.plant.p_RP;
   setup.plant_options = {30, 30};
   setup.p_RW_start = {-0.2457, 0.0, 0.3421};
-  setup.max_wrist_speed_m_s = 0.05;
+  setup.servo.max_speed_m_s = 0.05;
   setup.sensors.wrist.emplace();
   setup.sensors.wrist->rate_hz = 100.0;
   setup.sensors.wrist->position_noise_m = 0.0;
@@ -227,7 +228,7 @@ TEST(VirtualRobot, SaysItsStateAtEachChangeAndOnceASecond) {
 
 TEST(VirtualRobot, GoesToFaultWhereTheShaftHasNoEquilibriumAndComesBack) {
   VirtualRobotSetup setup = SmallRobot();
-  setup.max_wrist_speed_m_s = 1.0;
+  setup.servo.max_speed_m_s = 1.0;
   VirtualRobot robot(setup);
   MakeReady(robot);
   robot.MoveTo({-1.2, 0.0, 0.8});  // beyond the shaft's length from the port
@@ -280,6 +281,51 @@ TEST(VirtualRobot, RefusesAStartWithoutEquilibrium) {
   VirtualRobotSetup setup = SmallRobot();
   setup.p_RW_start = {-3.0, 0.0, 0.3};
   EXPECT_THROW(VirtualRobot{setup}, InputError);
+}
+
+Eigen::Vector3d After(const WristServoSetup& setup, TimeNs t_ns, TimeNs step_ns) {
+  WristServo servo(setup, Eigen::Vector3d::Zero(), 5);
+  servo.MoveTo({0.01, 0.0, 0.0});
+  for (TimeNs t = step_ns; t <= t_ns; t += step_ns) servo.Advance(kStart_ns + t);
+  return servo.p_RW();
+}
+
+TEST(WristServo, ApproachesByItsLagWhateverTheSteps) {
+  const WristServoSetup setup{10.0, 0.05, 0.0, 0.0};
+  const TimeNs t_ns = 80'000'000;
+  const double expected = 0.01 * (1.0 - std::exp(-0.08 / 0.05));
+  EXPECT_NEAR(After(setup, t_ns, t_ns).x(), expected, 1e-15);
+  EXPECT_NEAR(After(setup, t_ns, 1'000'000).x(), expected, 1e-15);
+}
+
+TEST(WristServo, KeepsItsLargestSpeed) {
+  EXPECT_NEAR(After({0.02, 0.001, 0.0, 0.0}, 100'000'000, 1'000'000).x(), 0.002, 1e-12);
+  EXPECT_NEAR(After({0.02, 0.0, 0.0, 0.0}, 100'000'000, 7'000'000).x(), 0.02 * 0.098, 1e-12);
+}
+
+TEST(WristServo, TakesSetPointsUpAtItsOwnTicks) {
+  WristServo servo({10.0, 0.0, 100.0, 0.0}, Eigen::Vector3d::Zero(), 5);
+  servo.Advance(kStart_ns + 1'000'000);
+  servo.MoveTo({0.01, 0.0, 0.0});
+  servo.Advance(kStart_ns + 9'999'999);
+  EXPECT_EQ(servo.p_RW().x(), 0.0);
+  servo.Advance(kStart_ns + 12'000'000);
+  EXPECT_NEAR(servo.p_RW().x(), 0.01, 1e-12);
+  servo.MoveTo({0.02, 0.0, 0.0});
+  servo.Stay();  // what was sent and not taken up is forgotten, too
+  servo.Advance(kStart_ns + 50'000'000);
+  EXPECT_NEAR(servo.p_RW().x(), 0.01, 1e-12);
+}
+
+TEST(WristServo, LosesThePartOfItsSetPointsThatItIsTold) {
+  WristServo servo({1e6, 0.0, 0.0, 0.3}, Eigen::Vector3d::Zero(), 5);
+  int lost = 0;
+  for (int i = 1; i <= 4000; ++i) {
+    servo.MoveTo({static_cast<double>(i), 0.0, 0.0});
+    servo.Advance(kStart_ns + TimeNs{i} * 1'000'000);
+    lost += servo.p_RW().x() != i;
+  }
+  EXPECT_NEAR(lost, 1200, 4 * std::sqrt(4000 * 0.3 * 0.7));
 }
 
 }  // namespace

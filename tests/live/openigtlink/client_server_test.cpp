@@ -7,8 +7,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -16,6 +14,7 @@
 #include "live/openigtlink/client.h"
 #include "live/openigtlink/codec.h"
 #include "live/openigtlink/server.h"
+#include "tests/live/inbox.h"
 
 namespace flextip::live {
 namespace {
@@ -23,60 +22,6 @@ namespace {
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 using Kind = WireEvent::Kind;
-
-/// What one end was given.
-class Inbox {
- public:
-  std::function<void(WireMessage&&)> OnMessage() {
-    return [this](WireMessage&& message) {
-      const std::lock_guard lock(mutex_);
-      messages_.push_back(std::move(message));
-      changed_.notify_all();
-    };
-  }
-  std::function<void(WireEvent&&)> OnEvent() {
-    return [this](WireEvent&& event) {
-      const std::lock_guard lock(mutex_);
-      events_.push_back(std::move(event));
-      changed_.notify_all();
-    };
-  }
-  /// Waits until so many messages are there, 10 s at most.
-  bool Await(std::size_t count) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, 10s, [&] { return messages_.size() >= count; });
-  }
-  /// Waits for the `count`-th event of a kind and returns its line.
-  std::string AwaitEvent(Kind kind, int count = 1) {
-    std::unique_lock lock(mutex_);
-    std::string found;
-    changed_.wait_for(lock, 10s, [&] {
-      int seen = 0;
-      for (const WireEvent& event : events_) {
-        if (event.kind != kind || ++seen != count) continue;
-        found = event.what;
-        return true;
-      }
-      return false;
-    });
-    return found;
-  }
-  std::vector<WireMessage> Messages() {
-    const std::lock_guard lock(mutex_);
-    return messages_;
-  }
-  int Events(Kind kind) {
-    const std::lock_guard lock(mutex_);
-    return static_cast<int>(std::count_if(events_.begin(), events_.end(),
-                                          [&](const WireEvent& e) { return e.kind == kind; }));
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<WireMessage> messages_;
-  std::vector<WireEvent> events_;
-};
 
 /// A listening socket of the test's own, for peers that misbehave.
 class RawServer {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "core/error.h"
 #include "tests/live/session/sample_session.h"
 
@@ -48,6 +50,40 @@ TEST(Session, NumbersInAnotherUnitAreRefusedWithTheirLine) {
               HasSubstr("found 50"));
 }
 
+/// The session with the strain gages by another protocol.
+std::string StrainBy(const std::string& address) {
+  return Complaint("openigtlink: {port: 18944, device: strain0}", address);
+}
+
+TEST(Session, EachProtocolHasItsOwnKeys) {
+  std::string text = SessionText();
+  const std::string before = "openigtlink: {port: 18944, device: strain0}";
+  text.replace(text.find(before), before.size(), "ros2: {topic: /arm/strain0, domain: 5}");
+  const Session session = ReadSession(WriteSession(text));
+  const Address& strain = session.Of(StreamName::kStrain)->address;
+  EXPECT_STREQ(strain.protocol->key, "ros2");
+  EXPECT_EQ(strain.device, "arm/strain0");
+  EXPECT_EQ(strain.port, 5);
+  EXPECT_EQ(strain.host, "lo");
+  EXPECT_FALSE(strain.SamePeer(session.robot.command));
+  EXPECT_EQ(ProtocolKeys(), "openigtlink, ros2 or udp");
+}
+
+TEST(Session, AddressesThatAreNoneAreRefused) {
+  EXPECT_THAT(StrainBy("ros2: {topic: strain 0}"), HasSubstr("found 'strain 0'"));
+  EXPECT_THAT(StrainBy("ros2: {topic: a//b}"), HasSubstr("a topic of ROS 2"));
+  EXPECT_THAT(StrainBy("ros2: {topic: /9a}"), HasSubstr("a topic of ROS 2"));
+  EXPECT_THAT(StrainBy("ros2: {topic: a, domain: 233}"), HasSubstr("found 233, expected 0 to 232"));
+  EXPECT_THAT(StrainBy("ros2: {topic: a, type: std_msgs/String}"),
+              HasSubstr("found 'std_msgs/String', expected sensor_msgs/JointState"));
+  EXPECT_THAT(StrainBy("ros2: {topic: a, port: 5}"), HasSubstr("port"));
+  EXPECT_THAT(StrainBy("udp: {port: 5000, device: a}"), HasSubstr("does not carry this"));
+  EXPECT_THAT(StrainBy("openigtlink: {port: 70000, device: a}"), HasSubstr("found 70000"));
+  EXPECT_THAT(Complaint("openigtlink: {port: 18944, device: PSM1/servo_cp}",
+                        "udp: {port: 5000, device: servo_cp}"),
+              HasSubstr("found no peer that takes commands"));
+}
+
 TEST(Session, UnknownKeysAreRefused) {
   EXPECT_THAT(Complaint("rate_hz: 100", "rate_hz: 100, rat: 2"),
               HasSubstr("unknown key \"controller.rat\""));
@@ -65,6 +101,18 @@ TEST(Session, WhatIsMissingIsNamed) {
   EXPECT_THAT(Complaint("flextip-session", "flextip-recording"), HasSubstr("session.yaml:1"));
   EXPECT_THAT(Complaint("port: 18944, device: strain0", "port: 0, device: strain0"),
               HasSubstr("found 0"));
+}
+
+TEST(Session, ThoseOfTheDocsAreRead) {
+  int files = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(FLEXTIP_SOURCE_DIR "/testdata/sessions")) {
+    if (entry.path().extension() != ".yaml") continue;
+    SCOPED_TRACE(entry.path());
+    EXPECT_THAT(ReadSession(entry.path()).warnings, testing::IsEmpty());
+    ++files;
+  }
+  EXPECT_GE(files, 5);
 }
 
 }  // namespace

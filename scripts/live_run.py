@@ -1,0 +1,101 @@
+"""The virtual robot of press.yaml and `flextip control --page` that steers it: two processes."""
+import pathlib
+import re
+import signal
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SQUARE = ("[{to_m: [0, 0, -0.002]}, {to_m: [0.004, 0, -0.003]}, {to_m: [0.004, 0.006, -0.003]}, "
+          "{to_m: [0, 0.003, -0.001]}, {to_m: [0, 0, 0]}]")
+
+
+def session_text(port, camera=True, lockstep=False, rate_hz=120, speed_m_s=0.002,
+                 waypoints=SQUARE):
+    """Returns a session on the robot at `port`; the path starts where the tip is."""
+    def device(name):
+        return f"openigtlink: {{port: {port}, device: {name}}}"
+    tip = (f"cam0: {{{device('cam0')}, sensor: {ROOT}/testdata/cameras/laparoscope.yaml, "
+           f"collar: {ROOT}/testdata/collars/hexagon/sensor.yaml, stale_s: 0.5}}"
+           if camera else f"vision0: {{{device('vision0')}}}")
+    beat = f"\n  lockstep: {{{device('lockstep')}}}" if lockstep else ""
+    return f"""format: flextip-session
+version: 1
+instrument: {{length_m: 0.6, outer_diameter_m: 0.00238, bending_stiffness_Nm2: 0.304}}
+port: {{position_m: [0.0, 0.0, 0.17]}}
+gravity_m_s2: [0.0, 0.0, -9.81]
+sources:
+  wrist0: {{{device('PSM1/measured_cp')}, position_noise_m: 0.00005, orientation_noise_rad: 0.0003}}
+  em0: {{{device('em0')}, distance_from_tip_m: 0.02, position_noise_m: 0.00013,
+        orientation_noise_rad: 0.00056}}
+  strain0: {{{device('strain0')}, stations_from_wrist_m: [0.15, 0.5], moment_noise_Nm: 0.0008}}
+  {tip}
+robot:
+  command: {{{device('PSM1/servo_cp')}}}
+  state: {{{device('PSM1/operating_state')}}}
+  command_state: {{{device('PSM1/state_command')}}}{beat}
+controller: {{kind: rod-track, rate_hz: {rate_hz}}}
+limits: {{max_step_m: 0.02, max_speed_m_s: 0.1, max_acceleration_m_s2: 10}}
+path: {{frame: start, average_s: 0.3, speed_m_s: {speed_m_s}, waypoints: {waypoints}}}
+"""
+
+
+class LiveRun:
+    """Use it in a `with` block, which ends both programs. `address` is the page's, with its token;
+    empty without a page. `recording` is the folder that control writes."""
+
+    def __init__(self, program, folder, page=True, options=(), **session):
+        self.program, self.folder, self.page = str(program), pathlib.Path(folder), page
+        self.options, self.session = options, session
+        self.recording = self.folder / "run"
+        self.address, self.programs, self.said = "", [], ""
+
+    def __enter__(self):
+        try:
+            self._begin()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def _begin(self):
+        camera, lockstep = (self.session.get(key, default)
+                            for key, default in (("camera", True), ("lockstep", False)))
+        robot = self._start("simulate", ROOT / "testdata/scenarios/press.yaml", "--serve", "0",
+                            *["--render"] * camera, *["--lockstep"] * lockstep)
+        port = self._wait_for(robot, r"serving on 127\.0\.0\.1:(\d+)")
+        file = self.folder / "session.yaml"
+        file.write_text(session_text(port, **self.session), encoding="utf-8")
+        self.control = self._start("control", *["--page"] * self.page, file, "-o", self.recording,
+                                   *["--page-port", "0"] * self.page, *self.options)
+        if self.page:
+            self.address = self._wait_for(self.control, r"page: (\S+)")
+
+    def __exit__(self, *_):
+        for program in reversed(self.programs):
+            if program.poll() is None:
+                program.send_signal(signal.SIGINT)
+            try:
+                program.communicate(timeout=60)
+            except subprocess.TimeoutExpired:
+                program.kill()
+                program.communicate(timeout=60)
+
+    def wait(self, seconds):
+        """Waits until control has ended; returns its exit code. `said` is what it printed."""
+        self.said += self.control.communicate(timeout=seconds)[0]
+        return self.control.returncode
+
+    def _start(self, *arguments):
+        program = subprocess.Popen([self.program, *map(str, arguments)], stdout=subprocess.PIPE,
+                                   text=True)
+        self.programs.append(program)
+        return program
+
+    @staticmethod
+    def _wait_for(program, pattern):
+        """Returns the first group of the first line that fits."""
+        for line in program.stdout:
+            found = re.search(pattern, line)
+            if found:
+                return found.group(1)
+        raise RuntimeError(f"{program.args[1]} ended without saying {pattern}")
