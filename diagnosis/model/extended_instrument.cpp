@@ -241,6 +241,8 @@ Measurements ExtendedInstrument::Correct(const Measurements& measured) const {
   return z;
 }
 
-double ExtendedInstrument::LengthSd() const { return spread_.row(kLength).norm(); }
+double ExtendedInstrument::LengthSd() const {
+  return spread_.cols() == 0 ? 0.0 : spread_.row(kLength).norm();
+}
 
 }  // namespace flextip::diagnosis
