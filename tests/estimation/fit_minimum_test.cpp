@@ -50,7 +50,7 @@ void CountFits(double force_N, const SensorSet& set, Tally& tally) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   SensorBench bench;
   ShaftEstimator carried(BenchOptions(set.use_positions));  // starts each fit at the last load
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 40; ++i) {
     RodProblem truth = BenchShaft();
     truth.f_tip = force_N * DrawVector<3>(uniform, rng);
     truth.p_wrist = 0.02 * DrawVector<3>(uniform, rng);
