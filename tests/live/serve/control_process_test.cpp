@@ -30,6 +30,15 @@ std::string SessionOf(int port, const std::string& kind, int rate_hz, bool locks
 class ControlledRobot : public testing::TestWithParam<const char*> {
  protected:
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  /// Waits until the run has written an event with these words; false after two minutes.
+  bool WaitsFor(const std::string& words) const {
+    const fs::path events = folder_ / "run" / "session0" / "events.csv";
+    for (int i = 0; i < 1200; ++i) {
+      if (fs::exists(events) && ReadText(events).find(words) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+  }
   TestFolder folder_;
 };
 
@@ -93,7 +102,7 @@ TEST_F(ControlledRobot, IsPausedByCtrlCInRealTime) {
           nullptr);
     _exit(127);
   }
-  std::this_thread::sleep_for(std::chrono::seconds(4));
+  EXPECT_TRUE(WaitsFor("hold: none"));  // it moves
   kill(control, SIGINT);
   int status = 0;
   waitpid(control, &status, 0);
@@ -108,7 +117,7 @@ TEST_F(ControlledRobot, IsNotEnabledByATiming) {
   ServedProgram robot({kPressScenario, "--serve", "0"});
   const std::string session =
       folder_.Write("session.yaml", SessionOf(robot.port(), "rod-track", 120, false));
-  const ProgramResult run = RunProgram({"control", session, "--timing", "1"});
+  const ProgramResult run = RunProgram({"control", session, "--timing", "3"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("wrist's sample to command sent"));
   robot.Interrupt();
