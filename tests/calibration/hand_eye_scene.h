@@ -41,7 +41,8 @@ inline CameraCalibration Camera() {
 inline std::function<Pose(double)> Steps(double period_s, double distance_m, double tilt_rad,
                                          unsigned seed, const Eigen::Vector3d& middle_B) {
   return [=](double t) {
-    std::mt19937 random(seed + 1000 * static_cast<unsigned>(std::floor(t / period_s + 0.5)));
+    std::mt19937 random(seed +
+                        1000 * static_cast<unsigned>(std::lround(std::floor(t / period_s + 0.5))));
     std::uniform_real_distribution<double> u(-1, 1);
     Pose T;
     T.R = ExpRotation({tilt_rad * u(random), tilt_rad * u(random), 1.2 * tilt_rad * u(random)});
