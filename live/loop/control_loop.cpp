@@ -6,6 +6,7 @@
 #include "live/camera/tip_camera.h"
 #include "live/loop/beat.h"
 #include "live/loop/real_time.h"
+#include "live/loop/set_point.h"
 #include "live/protocols/reports.h"
 #include "live/publish/publisher.h"
 #include "live/session/address.h"
@@ -87,9 +88,7 @@ class Loop {
       const auto& stream = session_.streams[at];
       if (!stream || !is_of(stream->address)) continue;
       const std::string why = streams_.Take(static_cast<StreamName>(i), message, now_ns);
-      if (why.empty()) continue;
-      const auto note = [&](WireEvent&& event) { Note(peer, event); };
-      reports_[at].Tell(note, fmt::format("{}: {}", Text(stream->address), why), message.device);
+      if (!why.empty()) Refuse(peer, stream->address, why, reports_[at]);
     }
     const auto* picture = std::get_if<WireImage>(&message.body);
     const bool of_camera = session_.camera && session_.camera->address &&
@@ -99,8 +98,16 @@ class Loop {
     const auto* text = std::get_if<WireText>(&message.body);
     if (robot.state && is_of(*robot.state) && text != nullptr)
       streams_.TakeState(text->text, message.t_ns, now_ns);
-    if (session_.goal && is_of(*session_.goal)) streams_.TakeGoal(message, now_ns);
+    if (session_.goal && is_of(*session_.goal)) {
+      const std::string why = streams_.TakeGoal(message, now_ns);
+      if (!why.empty()) Refuse(peer, *session_.goal, why, goal_reports_);
+    }
     if (robot.lockstep && is_of(*robot.lockstep)) beats_.Give(message.t_ns, now_ns);
+  }
+
+  void Refuse(const Address& peer, const Address& from, const std::string& why, Reports& reports) {
+    const auto note = [&](WireEvent&& event) { Note(peer, event); };
+    reports.Tell(note, fmt::format("{}: {}", Text(from), why), from.device);
   }
 
   void Note(const Address& peer, const WireEvent& event) {
@@ -170,13 +177,20 @@ class Loop {
     bool sent = false;
     if (has_one && (!options_.only_timing || known_still)) {
       WireTransform transform;
-      transform.T_RD = T_BR_ * Pose{outputs.R_RW, outputs.p_RW_command} * T_WD_;
+      transform.T_RD = T_BR_ * SetPointOf(record) * T_WD_;
       set_point_.t_ns = outputs.has_command ? outputs.t_ns : 0;
       set_point_.body = transform;
       sent = peers_->Send(session_.robot.command, set_point_);
       report_.unsent += !sent;
     }
     return sent;
+  }
+
+  Pose SetPointOf(const CycleRecord& record) const {
+    const CycleOutputs& outputs = record.outputs;
+    const auto& wrist = record.inputs.streams.wrist;
+    if (!wrist || !wrist->value.q_RW) return {outputs.R_RW, outputs.p_RW_command};
+    return SetPoint({outputs.R_RW, wrist->value.p_RW}, outputs.p_RW_command, session_.base.p_RP);
   }
 
   /// The person's command at the page comes before the cycle's own.
@@ -254,6 +268,7 @@ class Loop {
   Recorder* recorder_;
   Page* page_;
   Streams streams_;
+  Reports goal_reports_;
   std::array<Reports, kStreams> reports_;  // each of the thread that delivers the stream
   GivenBeats beats_;
   Cycle cycle_;

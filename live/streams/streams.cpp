@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "live/session/plausible.h"
 #include "live/streams/calibrate.h"
 
 namespace flextip::live {
@@ -65,14 +66,9 @@ std::string Streams::Take(StreamName stream, const WireMessage& message, TimeNs 
     ++counters.unusable;
     return why;
   }
-  // In lockstep the robot's time is not that of arrivals.
-  const double off_s = 1e-9 * static_cast<double>(message.t_ns - arrived_ns);
-  if (!session_.robot.lockstep && std::abs(off_s) > kOtherClock_s) {
-    ++counters.unusable;
-    return fmt::format("found a time {:.6g} s {} this machine's, expected its clock within {:g} s",
-                       std::abs(off_s), off_s > 0.0 ? "after" : "before", kOtherClock_s);
-  }
-  if (stream == StreamName::kWrist) why = PlaceInR(session_.robot, std::get<WristSample>(*sample));
+  why = OtherClock(message.t_ns, arrived_ns);
+  if (why.empty() && stream == StreamName::kWrist)
+    why = PlaceInR(session_.robot, std::get<WristSample>(*sample));
   if (!why.empty()) {
     ++counters.unusable;
     return why;
@@ -81,6 +77,15 @@ std::string Streams::Take(StreamName stream, const WireMessage& message, TimeNs 
   const TimeNs t_ns = message.t_ns - std::llround(1e9 * latency_s);
   Accept(stream, Calibrate(session_, stream, {t_ns, arrived_ns, *sample}));
   return {};
+}
+
+/// Says where a time is not of this machine's clock. In lockstep the robot's is not that of
+/// arrivals.
+std::string Streams::OtherClock(TimeNs t_ns, TimeNs arrived_ns) const {
+  const double off_s = 1e-9 * static_cast<double>(t_ns - arrived_ns);
+  if (session_.robot.lockstep || std::abs(off_s) <= kOtherClock_s) return {};
+  return fmt::format("found a time {:.6g} s {} this machine's, expected its clock within {:g} s",
+                     std::abs(off_s), off_s > 0.0 ? "after" : "before", kOtherClock_s);
 }
 
 void Streams::TakeTip(TimeNs t_ns, const SeenTip& tip, TimeNs arrived_ns) {
@@ -133,16 +138,23 @@ void Streams::TakeState(std::string_view text, TimeNs t_ns, TimeNs arrived_ns) {
   }
 }
 
-void Streams::TakeGoal(const WireMessage& message, TimeNs arrived_ns) {
+std::string Streams::TakeGoal(const WireMessage& message, TimeNs arrived_ns) {
+  if (message.t_ns <= 0) return "found the stamp 0, which means invalid data";
   const auto* transform = std::get_if<WireTransform>(&message.body);
-  const bool usable = transform != nullptr && transform->T_RD.p.allFinite() &&
-                      message.t_ns > goal_t_ns_ && message.t_ns > 0;
-  if (!usable) {
-    ++bad_goals_;
-    return;
+  if (transform == nullptr) return "found no pose or position, expected one";
+  const Eigen::Vector3d& p_RE = transform->T_RD.p;
+  if (!(p_RE.norm() <= kPlace.most)) {
+    return fmt::format(
+        "found a goal {:.6g} m from R, expected at most {:g} m: is it in another unit?",
+        p_RE.norm(), kPlace.most);
   }
+  if (message.t_ns <= goal_t_ns_)
+    return fmt::format("found the time {} after {}, expected a later one", message.t_ns,
+                       goal_t_ns_);
+  if (std::string why = OtherClock(message.t_ns, arrived_ns); !why.empty()) return why;
   goal_t_ns_ = message.t_ns;
-  goal_.Put({message.t_ns, arrived_ns, {transform->T_RD.p}});
+  goal_.Put({message.t_ns, arrived_ns, {p_RE}});
+  return {};
 }
 
 void Streams::SetThere(int stream, bool there) {

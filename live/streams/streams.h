@@ -56,15 +56,14 @@ class Streams {
   void TakeTip(TimeNs t_ns, const SeenTip& tip, TimeNs arrived_ns);
   /// Takes the robot's operating state; a text that is none is counted.
   void TakeState(std::string_view text, TimeNs t_ns, TimeNs arrived_ns);
-  /// Takes a goal: a pose or position in R of which the place counts. Others are counted.
-  void TakeGoal(const WireMessage& message, TimeNs arrived_ns);
+  /// Takes a goal: a pose or position in R of which the place counts. Returns why it is unusable.
+  std::string TakeGoal(const WireMessage& message, TimeNs arrived_ns);
   /// Notes whether the peer of a stream (kRobotPeer, kGoalPeer) is there. At first it is not.
   void SetThere(int stream, bool there);
 
   StreamInputs Look();
   StreamCounts Counts(StreamName stream) const;
   long BadStates() const { return bad_states_; }
-  long BadGoals() const { return bad_goals_; }
 
  private:
   struct Counters {
@@ -72,6 +71,7 @@ class Streams {
     std::atomic<TimeNs> first_arrived_ns{0}, last_arrived_ns{0};
     TimeNs last_t_ns = 0;  // of the delivering thread
   };
+  std::string OtherClock(TimeNs t_ns, TimeNs arrived_ns) const;
   void Accept(StreamName stream, const Arrived<AnySample>& sample);
 
   const Session& session_;
@@ -85,7 +85,7 @@ class Streams {
   Newest<Arrived<GoalSample>> goal_;
   std::array<Counters, kStreams> counters_;
   std::atomic<std::uint32_t> lost_;
-  std::atomic<long> bad_states_{0}, bad_goals_{0};
+  std::atomic<long> bad_states_{0};
   TimeNs goal_t_ns_ = 0;  // of the delivering thread
 };
 

@@ -1,4 +1,5 @@
 // The tip goes where a peer wants it.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -10,6 +11,8 @@
 
 namespace flextip::live {
 namespace {
+
+using testing::HasSubstr;
 
 std::string TextWithGoal() {
   std::string text = SessionText();
@@ -50,13 +53,16 @@ TEST_F(Goal, APeerThatIsGoneHoldsTheRobot) {
   EXPECT_EQ(last.held_by, kGoalPeer);
 }
 
-TEST_F(Goal, OldAndBrokenOnesAreCountedAndLeftOut) {
+TEST_F(Goal, OldAndBrokenOnesAreRefusedWithTheirValues) {
   RunUntilMoving();
-  peer.Want(peer.Tip());
-  peer.Want(peer.Tip() + Eigen::Vector3d(1, 0, 0));  // of the same time
+  EXPECT_EQ(peer.Want(peer.Tip()), "");
+  EXPECT_THAT(peer.Want(peer.Tip()), HasSubstr("expected a later one"));  // of the same time
   Step();
-  peer.Want(Eigen::Vector3d::Constant(std::nan("")));
-  EXPECT_EQ(peer.BadGoals(), 2);
+  EXPECT_THAT(peer.Want(Eigen::Vector3d::Constant(std::nan(""))), HasSubstr("found a goal nan m"));
+  EXPECT_THAT(peer.Want({250.0, 0.0, 0.0}), HasSubstr("found a goal 250 m from R"));
+  Step();
+  ASSERT_TRUE(last.p_RE_goal);
+  EXPECT_LT((*last.p_RE_goal - peer.Tip()).norm(), 2e-3);
 }
 
 TEST_F(Goal, ReplaysBitForBit) {

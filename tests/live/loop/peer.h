@@ -64,12 +64,12 @@ class Peer {
   Eigen::Vector3d Wrist() const { return p_RW_; }
   /// A stream, or kGoalPeer.
   void Lose(int stream) { streams_.SetThere(stream, false); }
-  void Want(const Eigen::Vector3d& p_RE) {
+  /// Returns why the goal is refused; empty where it is taken.
+  std::string Want(const Eigen::Vector3d& p_RE) {
     WireTransform goal;
     goal.T_RD.p = p_RE;
-    streams_.TakeGoal({"", t_ns_, goal}, t_ns_);
+    return streams_.TakeGoal({"", t_ns_, goal}, t_ns_);
   }
-  long BadGoals() const { return streams_.BadGoals(); }
 
   CrtkOperatingState state;
   bool wrist_there = true, tip_there = true, strain_there = true;

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/rotation.h"
 #include "live/loop/control_loop.h"
+#include "live/loop/set_point.h"
 #include "tests/live/session/sample_session.h"
 
 namespace flextip::live {
@@ -76,6 +77,24 @@ TEST(RobotFrame, ASetPointGoesOutInTheRobotsFrame) {
   RunLoop(session, options, nullptr, open);  // held: the wrist as measured is commanded
   EXPECT_LT((commanded.p - kT_BD.p).norm(), 1e-12);
   EXPECT_LT((commanded.R - kT_BD.R).norm(), 1e-12);
+}
+
+TEST(SetPoint, OfAStraightShaftKeepsItThroughThePort) {
+  const Eigen::Vector3d p_RP(0.02, -0.01, 0.3), p_RW(-0.2, 0.05, 0.1), p_command(-0.17, 0.01, 0.12);
+  constexpr double kLength_m = 0.6;
+  const auto end_of = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    return p + kLength_m * (p_RP - p).normalized();  // by the lever
+  };
+  const Pose T_RW{RotationWithoutTwist(Eigen::Vector3d::UnitX(), (p_RP - p_RW).normalized()), p_RW};
+  const Pose T_WD{Eigen::Matrix3d::Identity(), {kLength_m, 0.0, 0.0}};
+  EXPECT_LT(((T_RW * T_WD).p - end_of(p_RW)).norm(), 1e-12);
+  EXPECT_LT(((SetPoint(T_RW, p_command, p_RP) * T_WD).p - end_of(p_command)).norm(), 1e-12);
+}
+
+TEST(SetPoint, AtThePortKeepsItsOrientation) {
+  const Pose set_point = SetPoint(kT_BD, kT_BD.p, kT_BD.p);
+  EXPECT_EQ(set_point.R, kT_BD.R);
+  EXPECT_EQ(set_point.p, kT_BD.p);
 }
 
 TEST(RobotFrame, OfATurnedDeviceNeedsAnOrientation) {
