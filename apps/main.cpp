@@ -1,17 +1,5 @@
 // flextip: the program. Exit codes: 0 done, 1 the work failed, 2 wrong usage or unreadable input.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "apps/common/commands.h"
-#include "apps/common/defaults.h"
-#include "apps/common/exit_code.h"
-#include "apps/common/run_facts.h"
-#include "apps/common/usage.h"
-#include "core/version.h"
+#include "apps/common/program.h"
 
 namespace flextip {
 namespace {
@@ -41,49 +29,11 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddTrack(app, context);
 }
 
-/// Takes off what is behind "--" of flextip batch: options of another command.
-std::vector<std::string> TakeOptionsOfItems(std::vector<std::string>& arguments) {
-  const auto dashes = std::find(arguments.begin(), arguments.end(), "--");
-  auto command = arguments.begin();
-  while (command != dashes && command->starts_with("-")) {
-    command += *command == "--defaults" && command + 1 != dashes ? 2 : 1;
-  }
-  if (dashes == arguments.end() || command == dashes || *command != "batch") return {};
-  std::vector<std::string> behind(dashes + 1, arguments.end());
-  arguments.erase(dashes, arguments.end());
-  return behind;
-}
-
-int Run(const std::vector<std::string>& typed) {
-  AppContext context;
-  context.program = [](const auto& others) { return ExitCodeOf([&] { return Run(others); }); };
-  NoteTyped("flextip", typed);
-  CLI::App app("Control of thin, bending surgical instruments by sight", "flextip");
-  app.set_version_flag("--version", std::string("flextip ") + kVersion);
-  app.add_flag("-q,--quiet", context.quiet, "No progress bar and no remarks, only errors");
-  AddDefaults(app, context);
-  app.footer("Every command explains itself: flextip help COMMAND\n");
-  app.require_subcommand(1);
-  app.fallthrough();
-  AddCommands(app, context);
-  try {
-    std::vector<std::string> arguments = typed;
-    context.behind_dashes = TakeOptionsOfItems(arguments);
-    arguments = WithHelpAndVersion(std::move(arguments));
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
-    app.parse(std::move(arguments));
-  } catch (const CLI::Success& done) {  // --help, --version
-    return app.exit(done);
-  } catch (const CLI::ParseError& e) {
-    return Complain(UsageMessage(app, e), kBadUsage);
-  }
-  context.work();
-  return kDone;
-}
-
 }  // namespace
 }  // namespace flextip
 
 int main(int argc, char** argv) {
-  return flextip::ExitCodeOf([&] { return flextip::Run({argv + 1, argv + argc}); });
+  return flextip::RunProgram({"flextip", "Control of thin, bending surgical instruments by sight",
+                              "Every command explains itself: flextip help COMMAND\n"},
+                             flextip::AddCommands, {argv + 1, argv + argc});
 }

@@ -1,5 +1,5 @@
 // The commands of the program and what they share. A command is one file, apps/<name>.cpp, that
-// reads its options, composes the libraries and writes its results; it is registered in main.cpp.
+// reads its options, composes the libraries and writes its results; main.cpp adds it.
 #pragma once
 
 #include <CLI/CLI.hpp>

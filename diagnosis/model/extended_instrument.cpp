@@ -8,7 +8,7 @@
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "diagnosis/model/extended_effect.h"
-#include "diagnosis/replay/geometry.h"
+#include "diagnosis/model/geometry.h"
 
 namespace flextip::diagnosis {
 

@@ -12,7 +12,7 @@
 
 namespace flextip::diagnosis {
 
-/// Made for one run: effects have a memory. Advance does the work of diagnosis/replay/geometry,
+/// Made for one run: effects have a memory. Advance does the work of diagnosis/model/geometry,
 /// Correct that of sensor_prediction, backwards. The doubt in what is within tolerance of a sensor
 /// adds to the sensor's noise.
 class ExtendedInstrument : public InstrumentModel {

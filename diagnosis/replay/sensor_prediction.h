@@ -1,7 +1,7 @@
 // From the rod's geometry to what each sensor says of it, with derivatives by all model inputs.
 #pragma once
 
-#include "diagnosis/replay/geometry.h"
+#include "diagnosis/model/geometry.h"
 
 namespace flextip::diagnosis {
 

@@ -1,4 +1,4 @@
-#include "diagnosis/replay/geometry.h"
+#include "diagnosis/model/geometry.h"
 
 #include <cmath>
 
