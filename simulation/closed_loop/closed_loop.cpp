@@ -84,7 +84,10 @@ class Loop {
   }
 
   void Sense() {
+    const auto& readings = result_.recording.wrist0;
+    const std::size_t before = readings ? readings->samples.size() : 0;
     sensors_.Sample(shape_, t_ns_, result_.recording);
+    if (readings && readings->samples.size() > before) p_RW_at_reading_ = servo_.p_RW();
     result_.truth.push_back({t_ns_, {shape_.T_RE().p, shape_.T_RE().Quaternion(), servo_.p_RW()}});
   }
 
@@ -119,8 +122,8 @@ class Loop {
     const ControllerCommand command = controller_.Step(inputs);
     if (frame) NoteTip(*controller_.Track());
     if (command.status != ControlStatus::kNoTip) p_RE_known_ = command.p_RE_used;
-    // The arm is commanded from where its encoders say it is.
-    servo_.MoveTo(command.p_RW_command + (servo_.p_RW() - command.measurements.p_RW));
+    // The arm is commanded in its encoders' figures, whose error is that of the newest reading.
+    servo_.MoveTo(command.p_RW_command + (p_RW_at_reading_ - command.measurements.p_RW));
     Note(command);
   }
 
@@ -178,6 +181,7 @@ class Loop {
   PlantShape shape_;
   WristServo servo_;
   Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();  // by the controller
+  Eigen::Vector3d p_RW_at_reading_ = Eigen::Vector3d::Zero();
   TimeNs t_ns_ = kSimulationStart_ns, next_picture_ns_ = kSimulationStart_ns;
   double squared_direction_noise_ = 0.0, squared_deviation_ = 0.0;
   int directions_ = 0, scored_ = 0;
