@@ -26,6 +26,16 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_flag("--each", a.each, "print a line for each stream of each session, on stderr");
 }
 
+void PrintRow(const ClockRow& row) {
+  if (!row.found) {
+    fmt::print(stderr, "{:8} refused: {}; {}\n", row.stream, row.reason, row.session);
+    return;
+  }
+  fmt::print(stderr, "{:8} error {:9.3f} sd {:7.3f} ms z {:6.2f} zr {:6.2f}; {}\n", row.stream,
+             1e3 * row.error_s, 1e3 * row.sd_s, row.error_s / row.sd_s,
+             row.rate_error / row.rate_sd, row.session);
+}
+
 void Run(Arguments& a) {
   fmt::print("{}", MarkdownHead());
   for (const bool fast : {true, false}) {
@@ -38,10 +48,7 @@ void Run(Arguments& a) {
                                                  a.first_seed + static_cast<std::uint64_t>(i));
         for (const ClockRow& row : MeasureSession(session)) {
           rows.push_back(row);
-          if (!a.each) continue;
-          fmt::print(stderr, "{:8} error {:9.3f} sd {:7.3f} ms z {:6.2f} zr {:6.2f} {}; {}\n",
-                     row.stream, 1e3 * row.error_s, 1e3 * row.sd_s, row.error_s / row.sd_s,
-                     row.rate_error / row.rate_sd, row.found ? "" : row.reason, row.session);
+          if (a.each) PrintRow(row);
         }
       }
       fmt::print("{}", MarkdownLines(fmt::format("{}, {}", fast ? "fast" : "ordinary",

@@ -153,8 +153,13 @@ std::unique_ptr<SharedController> MakeController(
     double port_prior_m, int window_samples, const std::vector<AnyFixture>& fixtures,
     double margin_m, double margin_sd, const std::optional<DirectionOptions>& direction,
     const Eigen::Vector3d& direction_free_axis, bool em_is_tip, bool straight_at_registered_port,
-    const std::optional<ExtendedModel>& model, const std::optional<TrackerOptions>& tracker) {
+    const std::optional<ExtendedModel>& model, const std::optional<TrackerOptions>& tracker,
+    double rate_hz, double tip_time_sd_s, double em0_time_sd_s, bool em0_is_late) {
   InstrumentControllerOptions options;
+  options.rate_hz = NotNegative("rate_hz", rate_hz);
+  options.late.tip_time_sd_s = NotNegative("tip_time_sd_s", tip_time_sd_s);
+  options.late.em0_time_sd_s = NotNegative("em0_time_sd_s", em0_time_sd_s);
+  options.late.carry_em0 = em0_is_late || em0_time_sd_s > 0.0;
   options.estimator =
       EstimatorOptionsFor(recording.instrument, recording.p_RP, recording.gravity_m_s2,
                           Positive("port_prior_m", port_prior_m));
@@ -231,6 +236,8 @@ void AddController(py::module_& module) {
            py::arg("direction_free_axis") = Eigen::Vector3d::Zero().eval(),
            py::arg("em_is_tip") = false, py::arg("straight_at_registered_port") = false,
            py::arg("model") = std::nullopt, py::arg("tracker") = std::nullopt,
+           py::arg("rate_hz") = 0.0, py::arg("tip_time_sd_s") = 0.0, py::arg("em0_time_sd_s") = 0.0,
+           py::arg("em0_is_late") = false,
            R"doc(recording: instrument, port and gravity (cameras and collar, too, with tracker);
 its samples are not read.
 
@@ -240,6 +247,11 @@ fixtures: HalfSpace, Sphere, PathGuidance, Mesh; margin_m and margin_sd (standar
 tip) are kept from forbidden regions. direction: the tip's direction counts, too; rod kinds only.
 em_is_tip: without vision em0, carried to the tip, is the tip. model: what a diagnosis found.
 tracker: step() sees the tip in pictures.
+
+A sample's time is when it was measured, its latency taken off. tip_time_sd_s and em0_time_sd_s:
+standard deviations of these times; they enter the covariance by the speed, and with rate_hz, cycles
+a second, they bound the gain (0: the gain stays as it is). em0_is_late: em0 is carried on to the
+wrist's time as the tip is; without it em0 counts as simultaneous with the wrist.
 
 Raises InputError.)doc")
       .def("step", &Step, py::arg("t_ns"), py::arg("readings"),

@@ -964,6 +964,10 @@ class Controller:
         straight_at_registered_port: bool = ...,
         model: Optional[Model] = ...,
         tracker: Optional[TrackerOptions] = ...,
+        rate_hz: float = ...,
+        tip_time_sd_s: float = ...,
+        em0_time_sd_s: float = ...,
+        em0_is_late: bool = ...,
     ) -> None: ...
     def step(
         self,

@@ -44,6 +44,31 @@ def test_tracking_controllers_arrive(kind):
     np.testing.assert_allclose(command.p_RE_measured, command.p_RE_used, atol=1e-3)
 
 
+def late_loop(**options):
+    """A loop whose tip is two cycles late; returns the tip's distances from the goal."""
+    rod, controller = flextip.Rod(0.6, 0.304), flextip.Controller(setup(), **options)
+    goal, wrist, tips, distances = start() + [0.0, 0.006, 0.008], np.zeros(3), [], []
+    for cycle in range(40):
+        t_ns = cycle * 33_000_000
+        tips.append((t_ns, rod.solve(wrist, PORT, FORCE).tip.p))
+        distances.append(np.linalg.norm(tips[-1][1] - goal))
+        now = flextip.WristReading(t_ns, wrist, position_noise_m=5e-5)
+        tip = flextip.TipReading(*tips[max(cycle - 2, 0)], 1e-8 * np.eye(3))
+        command = controller.step(t_ns, flextip.Readings(wrist=now, tip=tip), goal)
+        wrist = command.p_RW_command
+    return np.array(distances)
+
+
+def test_a_late_tip_costs_little_and_a_doubtful_one_gain():
+    told = late_loop()
+    assert told[-1] < 1e-4
+    doubtful = late_loop(rate_hz=30, tip_time_sd_s=0.03)
+    assert doubtful[-1] < 1e-3
+    assert doubtful[4] > 1.5 * told[4]  # by the smaller gain
+    with pytest.raises(flextip.InputError, match="tip_time_sd_s"):
+        flextip.Controller(setup(), tip_time_sd_s=-1)
+
+
 def test_calculating_with_a_straight_shaft_does_not():
     left, _ = closed_loop("straight-calculate", start() + [0.0, 0.006, 0.008])
     assert left > 1e-3
