@@ -10,10 +10,6 @@
 namespace flextip {
 namespace {
 
-// The other sensors' tip is off by the same amount then and now, as far as port and shaft are off.
-// So twice its variance is more than that of its way: what they say weighs rather too little.
-constexpr double kWayOverPlace = 2.0;
-
 double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 
 /// A place on the shaft and what moves it.
@@ -68,7 +64,10 @@ std::optional<LateSamples::TipBySensors> LateSamples::TipBySensorsAt(TimeNs t_ns
     if (after == nullptr || Seconds(after->t_ns - tip.t_ns) > kFarthest_s) return {};
     const double u =
         static_cast<double>(t_ns - tip.t_ns) / static_cast<double>(after->t_ns - tip.t_ns);
-    return TipBySensors{t_ns, Interpolate(tip.p_RE, after->p_RE, u), tip.covariance_m2};
+    // As for the wrist: the step between the two may have been at any moment.
+    const Eigen::Vector3d doubt_m = std::sqrt(u * (1.0 - u)) * (after->p_RE - tip.p_RE);
+    return TipBySensors{t_ns, Interpolate(tip.p_RE, after->p_RE, u),
+                        tip.covariance_m2 + doubt_m * doubt_m.transpose()};
   }
   return {};
 }
@@ -112,7 +111,9 @@ std::optional<LateSamples::Motion> LateSamples::MotionByRod(TimeNs t_ns, double 
   Motion motion;
   motion.way_m = b.p - a.p + b.by_force * df_N;
   motion.turn = RotationWithoutTwist(a.t, b.t);
-  motion.covariance_m2 = time_sd_s * time_sd_s * speed_m_s * speed_m_s.transpose();
+  const Eigen::Vector3d doubt_m = J * history_.WristDoubtAt(t_ns);
+  motion.covariance_m2 =
+      time_sd_s * time_sd_s * speed_m_s * speed_m_s.transpose() + doubt_m * doubt_m.transpose();
   if (wrist.t_ns <= t_ns) return motion;
   const double gone_m = options_.way_error * motion.way_m.norm();
   const double unit_N = model.instrument.bending_stiffness_Nm2 /
@@ -129,11 +130,13 @@ std::optional<LateSamples::Motion> LateSamples::MotionByRod(TimeNs t_ns, double 
   return motion;
 }
 
-/// Joins the way by the rod and the way that the other sensors saw, by their covariances.
+/// Joins the way by the rod and the way that the other sensors saw, by their covariances. The other
+/// sensors' tip is off by the same amount then and now, as far as port and shaft are off. So the
+/// sum of both variances is more than that of the way: what they say weighs rather too little.
 void LateSamples::JoinSensors(TimeNs from_ns, TimeNs to_ns, Motion& motion) const {
   const auto from = TipBySensorsAt(from_ns), to = TipBySensorsAt(to_ns);
   if (!from || !to || to_ns <= from_ns) return;
-  const Eigen::Matrix3d seen_m2 = kWayOverPlace * to->covariance_m2;
+  const Eigen::Matrix3d seen_m2 = from->covariance_m2 + to->covariance_m2;
   const Eigen::Matrix3d& P = motion.covariance_m2;
   const Eigen::Matrix3d gain = Ldlt(Eigen::Matrix3d(P + seen_m2)).Solve(P).transpose();
   motion.way_m += gain * (to->p_RE - from->p_RE - motion.way_m);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace flextip {
 namespace {
@@ -70,6 +71,18 @@ std::optional<WristMeasurement> ReadingsHistory::WristAt(TimeNs t_ns) const {
   const auto wrist = SampleAt(&SensorReadings::wrist, t_ns);
   if (!wrist) return {};
   return wrist->value;
+}
+
+Eigen::Vector3d ReadingsHistory::WristDoubtAt(TimeNs t_ns) const {
+  for (std::size_t i = count_; i-- > 1;) {
+    const Sample<WristMeasurement>&before = *Of(i - 1).wrist, &after = *Of(i).wrist;
+    if (t_ns >= after.t_ns) break;
+    if (t_ns <= before.t_ns) continue;
+    const double u =
+        static_cast<double>(t_ns - before.t_ns) / static_cast<double>(after.t_ns - before.t_ns);
+    return std::sqrt(u * (1.0 - u)) * (after.value.p_RW - before.value.p_RW);
+  }
+  return Eigen::Vector3d::Zero();
 }
 
 std::optional<SensorReadings> ReadingsHistory::At(TimeNs t_ns) const {

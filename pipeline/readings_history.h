@@ -21,8 +21,12 @@ class ReadingsHistory {
   /// samples; the last sample where there is none behind it yet. Empty before the oldest wrist.
   std::optional<SensorReadings> At(TimeNs t_ns) const;
 
-  /// Returns the wrist at `t_ns`, as At.
+  /// Returns the wrist at `t_ns`, as At, with the noise of its samples.
   std::optional<WristMeasurement> WristAt(TimeNs t_ns) const;
+
+  /// Returns how far the wrist may have been from WristAt (m, in R): the standard deviation, along
+  /// its way, of a step that it took at any moment between the two samples. Zero at a sample.
+  Eigen::Vector3d WristDoubtAt(TimeNs t_ns) const;
 
   /// Returns the wrist's velocity (m/s, in R) about `t_ns`, over 40 ms; zero where it is not known.
   Eigen::Vector3d WristVelocityAt(TimeNs t_ns) const;

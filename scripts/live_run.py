@@ -10,7 +10,7 @@ SQUARE = ("[{to_m: [0, 0, -0.002]}, {to_m: [0.004, 0, -0.003]}, {to_m: [0.004, 0
 
 
 def session_text(port, camera=True, lockstep=False, rate_hz=120, speed_m_s=0.002,
-                 waypoints=SQUARE):
+                 waypoints=SQUARE, kind="rod-track"):
     """Returns a session on the robot at `port`; the path starts where the tip is."""
     def device(name):
         return f"openigtlink: {{port: {port}, device: {name}}}"
@@ -33,7 +33,7 @@ robot:
   command: {{{device('PSM1/servo_cp')}}}
   state: {{{device('PSM1/operating_state')}}}
   command_state: {{{device('PSM1/state_command')}}}{beat}
-controller: {{kind: rod-track, rate_hz: {rate_hz}}}
+controller: {{kind: {kind}, rate_hz: {rate_hz}}}
 limits: {{max_step_m: 0.02, max_speed_m_s: 0.1, max_acceleration_m_s2: 10}}
 path: {{frame: start, average_s: 0.3, speed_m_s: {speed_m_s}, waypoints: {waypoints}}}
 """

@@ -146,6 +146,7 @@ class Loop {
     update.p_RE_desired = command.goal.p_RE_desired;
     update.p_RE = shape_.T_RE().p;
     update.status = command.status;
+    update.tip = command.measurements.tip;
     result_.updates.push_back(update);
   }
 

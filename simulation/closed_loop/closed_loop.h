@@ -64,6 +64,7 @@ struct LoopUpdate {
   Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();          ///< true
   double deviation_m = 0.0;                                ///< of the true tip from the path
   ControlStatus status = ControlStatus::kOk;
+  std::optional<TipObservation> tip;  ///< as the controller had it, carried on to now where late
 };
 
 struct LoopResult {

@@ -159,6 +159,28 @@ TEST(ReadingsHistory, InterpolatesEachSensorByItsOwnTimes) {
   EXPECT_LT((v - expected).norm(), 5e-3 * expected.norm());
 }
 
+// A step at a random moment between two samples: what its place scatters by about the line.
+TEST(ReadingsHistory, DoubtsTheWristBetweenTwoSamples) {
+  ReadingsHistory history;
+  for (int i = 0; i < 20; ++i) history.Add(WristOnly(i));
+  EXPECT_EQ(history.WristDoubtAt(kStart_ns + 10 * kPeriod_ns), Eigen::Vector3d::Zero());
+  EXPECT_EQ(history.WristDoubtAt(kStart_ns + 25 * kPeriod_ns), Eigen::Vector3d::Zero());
+  for (const double u : {0.1, 0.5, 0.8}) {
+    const Eigen::Vector3d a = WristAt(10), b = WristAt(11);
+    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+    constexpr int kSteps = 10'000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double when = (i + 0.5) / kSteps;
+      const Eigen::Vector3d off = (when < u ? b : a) - ((1.0 - u) * a + u * b);
+      scatter += off * off.transpose() / kSteps;
+    }
+    const TimeNs t_ns =
+        kStart_ns + 10 * kPeriod_ns + std::llround(u * static_cast<double>(kPeriod_ns));
+    const Eigen::Vector3d doubt = history.WristDoubtAt(t_ns);
+    EXPECT_LT((doubt * doubt.transpose() - scatter).norm(), 1e-3 * scatter.norm()) << u;
+  }
+}
+
 TEST(ReadingsHistory, KeepsTheNewestOfAFastCycle) {
   ReadingsHistory history;
   constexpr TimeNs kFast_ns = 1'000'000;

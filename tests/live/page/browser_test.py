@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Looks at the page of a running session in Chromium, as a person does:
 
-    browser_test.py --program build/ci/apps/flextip --work FOLDER
+    browser_test.py --program build/ci/apps/flextip --work FOLDER [--controller rod-track]
 
 The virtual robot is steered in lockstep, with its laparoscope. What the page shows of some cycles
 is compared with the rows that the recording has of them.
@@ -71,7 +71,7 @@ def cycles_of(recording):
 
 
 class PageInABrowser(unittest.TestCase):
-    program = work = None
+    program = work = controller = None
 
     def press(self, browser, button, times=1):
         for _ in range(times):
@@ -95,9 +95,13 @@ class PageInABrowser(unittest.TestCase):
             self.assertTrue(browser.value(f"document.getElementById('{button}').disabled"))
         browser.open(root + "?token=" + "0" * 32)
         self.assertTrue(browser.until("!document.getElementById('enable').disabled"))
-        self.press(browser, "enable", 2)
-        self.assertTrue(browser.until("document.getElementById('answer').textContent.startsWith("
-                                      "'Refused')"))
+        # As a person does: once more where the connection was away for a moment.
+        refused = "document.getElementById('answer').textContent.startsWith('Refused')"
+        for _ in range(5):
+            self.press(browser, "enable", 2)
+            if browser.until(refused, 6):
+                break
+        self.assertTrue(browser.value(refused))
         self.assertEqual(browser.value("location.search"), "")
         self.assertNotIn("person", browser.value("document.getElementById('events').textContent"))
 
@@ -105,7 +109,8 @@ class PageInABrowser(unittest.TestCase):
         shutil.rmtree(self.work, ignore_errors=True)
         self.work.mkdir(parents=True)
         with LiveRun(self.program, self.work, options=["--wait"], lockstep=True, rate_hz=30,
-                     speed_m_s=0.0005, waypoints="[{to_m: [0, 0, -0.02]}]") as run, \
+                     speed_m_s=0.0005, waypoints="[{to_m: [0, 0, -0.02]}]",
+                     kind=self.controller) as run, \
                 Browser() as browser:
             browser.open("about:blank")
             browser.call("Page.addScriptToEvaluateOnNewDocument", source=ERRORS)
@@ -165,12 +170,17 @@ class PageInABrowser(unittest.TestCase):
             self.assertAlmostEqual(float(seen["sensors"][stream]["age"]), age_s, delta=1e-12)
 
     def compare_deviation(self, looks, cycles):
-        """The path is straight down: off it is whatever the recorded tip is beside its goal."""
+        """The path is straight down: off it is whatever the recorded tip is beside its goal, and more
+        where the tip is above the path's start."""
+        top = max(float(c["goal [m]_2"]) for c in cycles.values() if c["goal [m]_2"])
         for seen in looks:
             cycle = cycles[seen["t_ns"]]
             off = math.hypot(*(float(cycle[f"p_RE [m]_{axis}"]) - float(cycle[f"goal [m]_{axis}"])
                                for axis in (0, 1)))
-            self.assertAlmostEqual(float(seen["deviation"]["exact"]), off, delta=1e-9)
+            shown = float(seen["deviation"]["exact"])
+            if float(cycle["p_RE [m]_2"]) <= top:
+                self.assertAlmostEqual(shown, off, delta=1e-9)
+            self.assertGreaterEqual(shown, off - 1e-9)
             self.assertGreater(float(seen["sd"]["exact"]), 0.0)
             self.assertLess(float(seen["sd"]["exact"]), 0.005)
             self.assertGreater(float(seen["worst"]["exact"]), 0.0)
@@ -190,6 +200,8 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser.add_argument("--controller", default="rod-track")
     options, rest = parser.parse_known_args()
     PageInABrowser.program, PageInABrowser.work = options.program, options.work
+    PageInABrowser.controller = options.controller
     unittest.main(argv=[sys.argv[0], *rest])
