@@ -1,0 +1,23 @@
+// How often a test repeats a trial that it takes statistics of.
+#pragma once
+
+namespace flextip {
+
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
+/// Returns `whole`, or a tenth of it under the address sanitizer: a tenth of the trials runs
+/// through the same code, and a trial takes ten times as long there. Bounds must follow from the
+/// number.
+constexpr int Repetitions(int whole) { return kSanitized ? (whole + 9) / 10 : whole; }
+
+}  // namespace flextip
