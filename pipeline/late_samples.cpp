@@ -64,10 +64,7 @@ std::optional<LateSamples::TipBySensors> LateSamples::TipBySensorsAt(TimeNs t_ns
     if (after == nullptr || Seconds(after->t_ns - tip.t_ns) > kFarthest_s) return {};
     const double u =
         static_cast<double>(t_ns - tip.t_ns) / static_cast<double>(after->t_ns - tip.t_ns);
-    // As for the wrist: the step between the two may have been at any moment.
-    const Eigen::Vector3d doubt_m = std::sqrt(u * (1.0 - u)) * (after->p_RE - tip.p_RE);
-    return TipBySensors{t_ns, Interpolate(tip.p_RE, after->p_RE, u),
-                        tip.covariance_m2 + doubt_m * doubt_m.transpose()};
+    return TipBySensors{t_ns, Interpolate(tip.p_RE, after->p_RE, u), tip.covariance_m2};
   }
   return {};
 }
@@ -112,7 +109,7 @@ std::optional<LateSamples::Motion> LateSamples::MotionByRod(TimeNs t_ns, double 
   motion.way_m = b.p - a.p + b.by_force * df_N;
   motion.turn = RotationWithoutTwist(a.t, b.t);
   const Eigen::Vector3d doubt_m = J * history_.WristDoubtAt(t_ns);
-  motion.covariance_m2 =
+  motion.by_time_m2 =
       time_sd_s * time_sd_s * speed_m_s * speed_m_s.transpose() + doubt_m * doubt_m.transpose();
   if (wrist.t_ns <= t_ns) return motion;
   const double gone_m = options_.way_error * motion.way_m.norm();
@@ -170,7 +167,7 @@ bool LateSamples::CarryTip(const ShaftModel& model, SensorReadings& readings) {
   JoinSensors(tip_->t_ns, wrist.t_ns, *motion);
   TipObservation& tip = readings.tip->value.tip;
   tip.p_RE += motion->way_m;
-  tip.covariance_m2 += motion->covariance_m2;
+  tip.covariance_m2 += motion->covariance_m2 + motion->by_time_m2;
   if (tip.d_RE) tip.d_RE = motion->turn * *tip.d_RE;
   double& direction_noise_rad = readings.tip->value.direction_noise_rad;
   direction_noise_rad = std::hypot(direction_noise_rad, motion->turn_sd_rad);
@@ -187,8 +184,8 @@ void LateSamples::CarryEm0(const ShaftModel& model, SensorReadings& readings) {
   }
   em.T_RS.p += motion->way_m;
   em.T_RS.R = motion->turn * em.T_RS.R;
-  em.position_noise_m =
-      std::hypot(em.position_noise_m, std::sqrt(motion->covariance_m2.trace() / 3.0));
+  em.position_noise_m = std::hypot(
+      em.position_noise_m, std::sqrt((motion->covariance_m2 + motion->by_time_m2).trace() / 3.0));
   em.orientation_noise_rad = std::hypot(em.orientation_noise_rad, motion->turn_sd_rad);
 }
 

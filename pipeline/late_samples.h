@@ -71,8 +71,11 @@ class LateSamples {
   struct Motion {
     Eigen::Vector3d way_m = Eigen::Vector3d::Zero();
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< of the way
-    double turn_sd_rad = 0.0;                                 ///< of the turn, about each axis
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< of the way between two times
+    /// Of the way because the time, or the wrist at that time, is not known: the same error whoever
+    /// saw the way.
+    Eigen::Matrix3d by_time_m2 = Eigen::Matrix3d::Zero();
+    double turn_sd_rad = 0.0;  ///< of the turn, about each axis
   };
   struct Rods {
     ShaftRod then, now;
