@@ -19,9 +19,11 @@ constexpr double kStill_s = 1e-7, kStillRate = 1e-9, kStill_m = 1e-7, kStillPart
 constexpr double kLongestStep_s = 0.1, kLongestStep_m = 5e-4, kWidest_m = 6e-3;
 constexpr Index kLeastRows = 40;
 constexpr double kBlock_s = 1.0;
-// The model's own error, as parts of how far play and the small predictors move the clock, of the
-// time in which the motion makes the residual where forces are predicted by motion, and at least.
-constexpr double kPlayPart = 0.03, kSmallPart = 0.2, kForcePart = 0.7, kLeast_s = 2e-5;
+// The model's own error, as parts of how far play and the small predictors move the clock, and of
+// the time in which the motion makes the residual: much of it where forces are predicted by motion,
+// a little, without its noise, where a load of its own moves the tip; and at least.
+constexpr double kPlayPart = 0.03, kSmallPart = 0.2, kForcePart = 0.7, kMotionPart = 0.02,
+                 kLeast_s = 2e-5;
 
 /// The features over their sizes, with a constant.
 MatrixXd Scaled(const MatrixXd& x, const VectorXd& size, double constant) {
@@ -66,6 +68,7 @@ class Fit {
   void Begin();
   Eigen::Vector3d Change(const ClockPoint& point, bool free_play) const;
   double ModelSd(const ClockPoint& point, bool free_play, const MatrixXd& inverse) const;
+  double RememberedNorm() const;
   double LikelihoodAlone() const;
 
   const Motion& target_;
@@ -171,9 +174,21 @@ double Fit::ModelSd(const ClockPoint& point, bool free_play, const MatrixXd& inv
   }
   // Friction and soft tissue rule a force, and little of them is known.
   const bool alike = target_.is_force == reference_.IsForce();
-  const double force_s = alike ? 0.0 : residual_.norm() / std::max(1e-300, speed_);
-  return std::hypot(std::hypot(kPlayPart * play_s, kSmallPart * small_s), kForcePart * force_s,
-                    kLeast_s);
+  const double moved = alike ? kMotionPart * RememberedNorm() : kForcePart * residual_.norm();
+  return std::hypot(std::hypot(kPlayPart * play_s, kSmallPart * small_s),
+                    moved / std::max(1e-300, speed_), kLeast_s);
+}
+
+/// Returns the norm of what the residual has from its own past: what moves on its own, without the
+/// noise of single samples.
+double Fit::RememberedNorm() const {
+  double square = 0.0;
+  for (Index a = 0; a < target_.own_rows; ++a) {
+    const Autoregression& past = axis_[static_cast<std::size_t>(a)].noise;
+    const double new_square = past.Innovations(residual_.col(a), rows_.before).squaredNorm();
+    square += std::max(0.0, residual_.col(a).squaredNorm() - new_square);
+  }
+  return std::sqrt(square);
 }
 
 /// As Likelihood, of the target alone: each axis by its own past.
