@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "pipeline/instrument_controller.h"
+#include "simulation/plant/curve_history.h"
 
 namespace flextip::simulation {
 namespace {
@@ -26,7 +27,8 @@ class Loop {
         sensors_(WithoutTipIf(camera != nullptr, setup.sensors), setup.seed, setup.sensor_effects),
         controller_(ControllerOptionsOf(setup), setup.model ? setup.model() : nullptr,
                     TrackerOf(setup, camera != nullptr ? &camera->tracker : nullptr)),
-        servo_(setup.servo, setup.p_RW_start, setup.seed) {
+        servo_(setup.servo, setup.p_RW_start, setup.seed),
+        curves_(setup.sensor_effects.camera_latency_s) {
     result_.recording = setup.base;
     if (camera_ != nullptr) StartCamera();
     shape_ = plant_.Solve(servo_.p_RW());
@@ -87,15 +89,16 @@ class Loop {
     const auto& readings = result_.recording.wrist0;
     const std::size_t before = readings ? readings->samples.size() : 0;
     sensors_.Sample(shape_, t_ns_, result_.recording);
+    if (camera_ != nullptr) curves_.Add(t_ns_, shape_.Curve());
     if (readings && readings->samples.size() > before) p_RW_at_reading_ = servo_.p_RW();
     result_.truth.push_back({t_ns_, {shape_.T_RE().p, shape_.T_RE().Quaternion(), servo_.p_RW()}});
   }
 
-  /// The camera's frame, rendered and kept.
+  /// The camera's frame, rendered and kept. With a latency it shows the shaft as it was before.
   Image TakePicture() {
     const int number = static_cast<int>(result_.recording.cam0->filenames.size());
     next_picture_ns_ = CameraTime(number + 1);
-    Image frame = camera_->laparoscope.Render(shape_.Curve(), number);
+    Image frame = camera_->laparoscope.Render(curves_.Before(t_ns_), number);
     result_.recording.cam0->filenames.push_back({t_ns_, fmt::format("{}.png", t_ns_)});
     if (camera_->save) camera_->save(t_ns_, frame);
     return frame;
@@ -181,6 +184,7 @@ class Loop {
   std::optional<TipPath> path_;
   PlantShape shape_;
   WristServo servo_;
+  CurveHistory curves_;
   Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();  // by the controller
   Eigen::Vector3d p_RW_at_reading_ = Eigen::Vector3d::Zero();
   TimeNs t_ns_ = kSimulationStart_ns, next_picture_ns_ = kSimulationStart_ns;

@@ -20,11 +20,8 @@ void RequireRunnable(const Scenario& scenario, const std::filesystem::path& file
     return;
   }
   if (!scenario.has_camera) refuse("rendered, the scenario needs a section camera");
-  const bool late = loop.sensor_effects.camera_latency_s != 0.0;
-  if (late || loop.plant.effects.tip_compliance_m_N != 0.0) {
-    refuse(fmt::format("effects: {} does not show in rendered frames: run it not rendered",
-                       late ? "camera_latency" : "tip_compliance"));
-  }
+  if (loop.plant.effects.tip_compliance_m_N != 0.0)
+    refuse("effects: tip_compliance does not show in rendered frames: run it not rendered");
 }
 
 void UseModel(const diagnosis::ExtendedModel& model, Scenario& scenario) {

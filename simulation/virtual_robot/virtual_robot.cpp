@@ -29,6 +29,7 @@ VirtualRobot::VirtualRobot(const VirtualRobotSetup& setup)
       machine_(SpanNs(setup.homing_s)),
       servo_(setup.servo, setup.p_RW_start, setup.seed),
       p_RW_solved_(setup.p_RW_start),
+      curves_(setup.sensor_effects.camera_latency_s),
       kept_(setup.base) {
   shape_ = plant_.Solve(servo_.p_RW());
   if (!shape_.IsUsable())
@@ -86,8 +87,9 @@ void VirtualRobot::Solve(TimeNs t_ns) {
 void VirtualRobot::Sense(TimeNs t_ns, std::vector<VirtualSample>& samples) {
   sensors_.Sample(shape_, t_ns, kept_);
   TakeNew(t_ns, samples);
+  if (setup_.picture_rate_hz > 0.0) curves_.Add(t_ns, shape_.Curve());
   if (setup_.picture_rate_hz > 0.0 && PictureTime() <= t_ns) {
-    samples.push_back({t_ns, PictureDue{shape_.Curve(), pictures_}});
+    samples.push_back({t_ns, PictureDue{curves_.Before(t_ns), pictures_}});
     ++pictures_;
   }
   if (machine_.Advance(t_ns)) SayState(t_ns);

@@ -13,6 +13,7 @@
 #include "core/tip_observation.h"
 #include "recording/recording.h"
 #include "recording/truth.h"
+#include "simulation/plant/curve_history.h"
 #include "simulation/plant/plant.h"
 #include "simulation/sensors/sensors.h"
 #include "simulation/virtual_robot/crtk_machine.h"
@@ -104,6 +105,7 @@ class VirtualRobot {
   PlantShape shape_;
   WristServo servo_;
   Eigen::Vector3d p_RW_solved_;
+  CurveHistory curves_;
   TimeNs now_ns_ = kSimulationStart_ns;
   int pictures_ = 0, state_ticks_ = 0;
   std::string fault_reason_;

@@ -11,6 +11,7 @@
 #include "pipeline/instrument_tracker.h"
 #include "simulation/closed_loop/replay.h"
 #include "simulation/closed_loop/scenario.h"
+#include "simulation/closed_loop/scenario_run.h"
 
 namespace flextip::simulation {
 namespace {
@@ -212,6 +213,40 @@ TEST(ClosedLoop, ThroughTheLaparoscope) {
     EXPECT_EQ(track.tip.status, tips[i].value.status);
     EXPECT_LT((track.tip.p_RE - tips[i].value.p_RE).norm(), 1e-9);
   }
+}
+
+/// A picture shows the shaft of a latency ago. Told of it, the loop stays on its path.
+TEST(ClosedLoop, ThroughALateLaparoscope) {
+  Scenario scenario = ReadScenario(kScenarios + "press.yaml");
+  scenario.loop.controller.kind = ControllerKind::kStraightTrack;
+  scenario.loop.path.waypoints_m = {{0.0, 0.0, -0.004}};
+  const auto run = [&](double latency_s, double told_s) {
+    scenario.loop.sensor_effects.camera_latency_s = latency_s;
+    scenario.loop.tip_latency = {told_s, 0.0};
+    const Laparoscope laparoscope = LaparoscopeOf(scenario);
+    const LoopCamera camera{laparoscope, scenario.tracker, {}};
+    return RunClosedLoop(scenario.loop, &camera);
+  };
+  const LoopResult prompt = run(0.0, 0.0), told = run(0.062, 0.062), untold = run(0.062, 0.0);
+  EXPECT_LT(told.rms_deviation_m, 1.3 * prompt.rms_deviation_m);
+  EXPECT_GT(untold.rms_deviation_m, 1.5 * prompt.rms_deviation_m);
+  // The pictures show the true tip of then, not that of now.
+  const auto off_m = [&](const LoopResult& of, TimeNs age_ns) {
+    double square_m2 = 0.0;
+    for (const auto& [t_ns, tip] : of.recording.vision0->tips) {
+      const TimeNs then_ns = std::max(of.truth.front().t_ns, t_ns - age_ns);
+      const auto after = std::find_if(of.truth.begin() + 1, of.truth.end() - 1,
+                                      [&](const auto& truth) { return truth.t_ns >= then_ns; });
+      const auto before = after - 1;
+      const double u = static_cast<double>(then_ns - before->t_ns) /
+                       static_cast<double>(after->t_ns - before->t_ns);
+      const Eigen::Vector3d p_RE = Interpolate(before->value.p_RE, after->value.p_RE, u);
+      square_m2 += (tip.p_RE - p_RE).squaredNorm();
+    }
+    return std::sqrt(square_m2 / static_cast<double>(of.recording.vision0->tips.size()));
+  };
+  EXPECT_LT(off_m(told, 62'000'000), 0.05e-3);
+  EXPECT_GT(off_m(told, 0), 0.3e-3);
 }
 
 TEST(ClosedLoop, AToldLatencyCostsLittle) {
