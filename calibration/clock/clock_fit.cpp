@@ -185,8 +185,12 @@ double Fit::RememberedNorm() const {
   double square = 0.0;
   for (Index a = 0; a < target_.own_rows; ++a) {
     const Autoregression& past = axis_[static_cast<std::size_t>(a)].noise;
+    double whole = 0.0;  // of the rows that have an innovation
+    for (Index i = 0; i < residual_.rows(); ++i)
+      if (rows_.before[static_cast<std::size_t>(i)] >= past.Order())
+        whole += residual_(i, a) * residual_(i, a);
     const double new_square = past.Innovations(residual_.col(a), rows_.before).squaredNorm();
-    square += std::max(0.0, residual_.col(a).squaredNorm() - new_square);
+    square += std::max(0.0, whole - new_square);
   }
   return std::sqrt(square);
 }

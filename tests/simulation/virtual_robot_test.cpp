@@ -158,6 +158,33 @@ TEST(VirtualRobot, EverySensorKeepsItsClock) {
   EXPECT_EQ(count[6], 1);    // state, once a second
 }
 
+TEST(VirtualRobot, ItsPicturesAreAsLateAsTheCamera) {
+  VirtualRobotSetup setup = SmallRobot();
+  setup.picture_rate_hz = 25.0;
+  setup.sensor_effects.camera_latency_s = 0.06;  // six samples of the wrist
+  VirtualRobot robot(setup);
+  MakeReady(robot);
+  ASSERT_TRUE(robot.MoveTo(setup.p_RW_start + Eigen::Vector3d(0.0, 0.03, 0.0)));
+  std::map<TimeNs, Eigen::Vector3d> shown;
+  for (const VirtualSample& sample : robot.Advance(robot.Now() + kSecond_ns / 2))
+    if (const auto* due = std::get_if<PictureDue>(&sample.value))
+      shown[sample.t_ns] = due->curve.T_RE.p;
+  double moved_m = 0.0;
+  int compared = 0;
+  for (const auto& [t_ns, p_RE] : shown) {
+    for (const auto& truth : robot.Truth()) {
+      const double apart_m = (p_RE - truth.value.p_RE).norm();
+      if (truth.t_ns == t_ns - 60'000'000) {
+        EXPECT_LT(apart_m, 1e-9) << t_ns;
+        ++compared;
+      }
+      if (truth.t_ns == t_ns) moved_m = std::max(moved_m, apart_m);
+    }
+  }
+  EXPECT_GT(compared, 10);
+  EXPECT_GT(moved_m, 0.001);
+}
+
 TEST(VirtualRobot, DoesNotMoveBeforeItIsEnabledAndHomed) {
   VirtualRobot robot(SmallRobot());
   const Eigen::Vector3d p = SmallRobot().p_RW_start + Eigen::Vector3d(0.0, 0.0, 0.001);

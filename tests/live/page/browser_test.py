@@ -74,8 +74,8 @@ class PageInABrowser(unittest.TestCase):
     program = work = controller = None
 
     def press(self, browser, button, times=1):
-        for _ in range(times):
-            browser.value(f"document.getElementById('{button}').click()")
+        """All clicks at once: on a slow machine one by one would come after the page's 4 s."""
+        browser.value(f"document.getElementById('{button}').click();" * times)
 
     def watch(self, browser, samples):
         """Looks at cycles that follow one another until there are so many."""
@@ -95,13 +95,9 @@ class PageInABrowser(unittest.TestCase):
             self.assertTrue(browser.value(f"document.getElementById('{button}').disabled"))
         browser.open(root + "?token=" + "0" * 32)
         self.assertTrue(browser.until("!document.getElementById('enable').disabled"))
-        # As a person does: once more where the connection was away for a moment.
-        refused = "document.getElementById('answer').textContent.startsWith('Refused')"
-        for _ in range(5):
-            self.press(browser, "enable", 2)
-            if browser.until(refused, 6):
-                break
-        self.assertTrue(browser.value(refused))
+        self.press(browser, "enable", 2)
+        answer = "document.getElementById('answer').textContent"
+        self.assertTrue(browser.until(answer + ".startsWith('Refused')"), browser.value(answer))
         self.assertEqual(browser.value("location.search"), "")
         self.assertNotIn("person", browser.value("document.getElementById('events').textContent"))
 
@@ -170,17 +166,19 @@ class PageInABrowser(unittest.TestCase):
             self.assertAlmostEqual(float(seen["sensors"][stream]["age"]), age_s, delta=1e-12)
 
     def compare_deviation(self, looks, cycles):
-        """The path is straight down: off it is whatever the recorded tip is beside its goal, and more
-        where the tip is above the path's start."""
+        """The path is straight down: off it is whatever the recorded tip is beside its goal, or
+        how far it is from the path's start where it is above. The first goal is at most one cycle
+        below the start."""
         top = max(float(c["goal [m]_2"]) for c in cycles.values() if c["goal [m]_2"])
+        cycle_m = 0.0005 / 30
         for seen in looks:
             cycle = cycles[seen["t_ns"]]
             off = math.hypot(*(float(cycle[f"p_RE [m]_{axis}"]) - float(cycle[f"goal [m]_{axis}"])
                                for axis in (0, 1)))
             shown = float(seen["deviation"]["exact"])
-            if float(cycle["p_RE [m]_2"]) <= top:
-                self.assertAlmostEqual(shown, off, delta=1e-9)
-            self.assertGreaterEqual(shown, off - 1e-9)
+            above = float(cycle["p_RE [m]_2"]) - top
+            self.assertGreaterEqual(shown, math.hypot(off, max(0.0, above - cycle_m)) - 1e-9)
+            self.assertLessEqual(shown, math.hypot(off, max(0.0, above)) + 1e-9)
             self.assertGreater(float(seen["sd"]["exact"]), 0.0)
             self.assertLess(float(seen["sd"]["exact"]), 0.005)
             self.assertGreater(float(seen["worst"]["exact"]), 0.0)
