@@ -83,6 +83,16 @@ const std::vector<Labelled>& Labels() {
       {"failed_samples", "samples without an equilibrium"},
       // shape
       {"shape ok", "shapes solved"},
+      // control
+      {"only_timing", "only timed, the robot not moved"},
+      {"path_done", "path followed to its end"},
+      {"robot_not_enabled_at_end", "robot not enabled at the end"},
+      {"missed_cycles", "missed cycles"},
+      {"unsent_commands", "commands not sent"},
+      {"duration_s", "duration"},
+      {"bad_states", "states of the robot that were not understood"},
+      {"real_time_priority", "real-time priority given"},
+      {"locked_memory", "memory kept in place"},
       // align
       {"offset_standard_deviation_s", "its standard deviation"},
       {"rate_standard_deviation", "standard deviation of the rate"},

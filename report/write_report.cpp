@@ -26,6 +26,7 @@ const std::vector<CommandPage>& Pages() {
       {"track", WriteTrackReport, {"vision0/data.csv", "frames.csv"}},
       {"estimate", WriteEstimateReport, {"state0/data.csv"}},
       {"check", WriteCheckReport},
+      {"control", WriteControlReport, {"session0/cycles.csv"}},
       {"shape", WriteShapeReport, {"shapes.csv"}},
       {"detect", WriteDetectReport, {"tags.csv"}},
       {"calibrate", WriteCalibrateReport},

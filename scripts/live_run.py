@@ -10,13 +10,16 @@ SQUARE = ("[{to_m: [0, 0, -0.002]}, {to_m: [0.004, 0, -0.003]}, {to_m: [0.004, 0
 
 
 def session_text(port, camera=True, lockstep=False, rate_hz=120, speed_m_s=0.002,
-                 waypoints=SQUARE, kind="rod-track"):
-    """Returns a session on the robot at `port`; the path starts where the tip is."""
+                 waypoints=SQUARE, kind="rod-track", tip_by_em=False):
+    """Returns a session on the robot at `port`; the path starts where the tip is. `tip_by_em`: the
+    EM sensor near the tip is its measurement, in the place of what sees the tip."""
     def device(name):
         return f"openigtlink: {{port: {port}, device: {name}}}"
     tip = (f"cam0: {{{device('cam0')}, sensor: {ROOT}/testdata/cameras/laparoscope.yaml, "
            f"collar: {ROOT}/testdata/collars/hexagon/sensor.yaml, stale_s: 0.5}}"
            if camera else f"vision0: {{{device('vision0')}}}")
+    if tip_by_em:
+        tip = ""
     beat = f"\n  lockstep: {{{device('lockstep')}}}" if lockstep else ""
     return f"""format: flextip-session
 version: 1

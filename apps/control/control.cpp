@@ -8,9 +8,12 @@
 
 #include "apps/common/commands.h"
 #include "apps/common/output.h"
+#include "apps/control/figures.h"
 #include "apps/control/tables.h"
 #include "core/error.h"
 #include "live/loop/control_loop.h"
+#include "report/figure.h"
+#include "report/pages.h"
 
 namespace flextip {
 namespace {
@@ -74,7 +77,9 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
   if (recorder.Dropped() > 0)
     output.Warn(fmt::format("{} samples and cycles were not recorded: the disk was too slow",
                             recorder.Dropped()));
-  output.WriteSummary(ReportJson(session, report));
+  output.WriteSummary(ReportJson(session, report, loop.only_timing));
+  report::WriteFigures(output.folder() / "figures.json", TimeFigures(report));
+  report::WriteControlReport(output.folder());
   output.Commit();
   if (quiet) return;
   if (loop.only_timing) {
@@ -82,6 +87,7 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
   } else {
     PrintRun(report);
   }
+  fmt::print("{}\n", (options.out / "report.html").string());
 }
 
 }  // namespace

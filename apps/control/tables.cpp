@@ -51,7 +51,8 @@ void PrintLacking(const live::LoopReport& report) {
 
 }  // namespace
 
-nlohmann::ordered_json ReportJson(const live::Session& session, const live::LoopReport& report) {
+nlohmann::ordered_json ReportJson(const live::Session& session, const live::LoopReport& report,
+                                  bool only_timing) {
   nlohmann::ordered_json streams = nlohmann::ordered_json::object();
   for (int i = 0; i < live::kStreams; ++i) {
     const auto& counts = report.streams[static_cast<std::size_t>(i)];
@@ -69,6 +70,7 @@ nlohmann::ordered_json ReportJson(const live::Session& session, const live::Loop
   }
   return {{"session", session.file.filename().string()},
           {"controller", Name(session.task.controller.kind)},
+          {"only_timing", only_timing},
           {"path_done", report.done},
           {"robot_not_enabled_at_end", report.ends_paused},
           {"duration_s", report.seconds},

@@ -7,8 +7,9 @@
 
 namespace flextip {
 
-/// Returns the summary of a run.
-nlohmann::ordered_json ReportJson(const live::Session& session, const live::LoopReport& report);
+/// Returns the summary of a run. `only_timing`: of one that moved nothing.
+nlohmann::ordered_json ReportJson(const live::Session& session, const live::LoopReport& report,
+                                  bool only_timing);
 
 /// Prints how the run went.
 void PrintRun(const live::LoopReport& report);

@@ -15,6 +15,7 @@
 #include "live/page/picture_json.h"
 #include "live/page/server.h"
 #include "live/page/state_json.h"
+#include "live/page/watcher_texts.h"
 #include "live/page/web_files.h"
 #include "live/streams/newest.h"
 #include "recording/frames/frames.h"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -16,6 +15,7 @@
 #include <websocketpp/server.hpp>
 
 #include "core/error.h"
+#include "live/page/watcher_texts.h"
 
 namespace flextip::live {
 namespace {
@@ -44,18 +44,6 @@ struct Watcher {
   long on_the_way = 0;
   Clock::time_point heard = Clock::now();
 };
-
-/// The number of {"seen": N}; empty for any other text.
-std::optional<long> SeenIn(std::string_view text) {
-  constexpr std::string_view begin = "{\"seen\":";
-  if (text.substr(0, begin.size()) != begin || text.back() != '}') return {};
-  text.remove_prefix(begin.size());
-  text.remove_suffix(1);
-  long n = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
-  if (error != std::errc() || end != text.data() + text.size()) return {};
-  return n;
-}
 
 }  // namespace
 
@@ -233,7 +221,7 @@ class PageServer::Worker {
     std::optional<std::string> answer;
     if (message.get_opcode() == ws::frame::opcode::text) {
       const std::string& text = message.get_payload();
-      if (const auto seen = SeenIn(text)) {
+      if (const auto seen = ReadSeen(text)) {
         if (*seen > watcher.sent || *seen <= watcher.seen || watcher.on_the_way == 0)
           return Dismiss(from, ws::close::status::policy_violation, "seen before it was sent");
         watcher.seen = *seen;

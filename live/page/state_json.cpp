@@ -221,13 +221,4 @@ std::string AnswerText(const std::string& wish, const char* why) {
   return TextOf({{"type", "answer"}, {"do", wish}, {"accepted", *why == '\0'}, {"why", why}});
 }
 
-std::optional<PageWish> ReadWish(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object() || !json.contains("do") || !json["do"].is_string()) return {};
-  PageWish wish{json["do"], ""};
-  if (wish.what != "enable" && wish.what != "pause" && wish.what != "stop") return {};
-  if (json.contains("token") && json["token"].is_string()) wish.token = json["token"];
-  return wish;
-}
-
 }  // namespace flextip::live

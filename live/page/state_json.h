@@ -1,10 +1,8 @@
-// What the page's watchers are told and say, as JSON. Lengths in m, angles in rad, in R; every
+// What the page's watchers are told, as JSON. Lengths in m, angles in rad, in R; every
 // number as it is, so that it reads back to the same bits. Private to live/page/.
 #pragma once
 
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "live/page/findings.h"
@@ -22,12 +20,5 @@ std::string StateText(long n, const Session& session, const PageSnapshot& snapsh
 
 /// What became of a person's wish. `why` it was refused: "token", "session"; "" where it was not.
 std::string AnswerText(const std::string& wish, const char* why);
-
-/// What a person asks for.
-struct PageWish {
-  std::string what, token;
-};
-/// Reads {"do": "pause", "token": "..."}; nothing where the text is no wish.
-std::optional<PageWish> ReadWish(std::string_view text);
 
 }  // namespace flextip::live

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/shell_text.h"
+#include "report/leads/control.h"
 #include "report/leads/numbers.h"
 #include "report/leads/simulate.h"
 #include "report/result_files.h"
@@ -234,6 +235,7 @@ std::string Filled(const std::string& command, const Json& summary) {
 
 Head LeadFor(const std::string& command, const Json& summary, const std::filesystem::path& folder) {
   if (command == "simulate") return SimulateLead(folder);
+  if (command == "control") return ControlLead(folder);
   if (command == "check") return CheckLead(summary);
   if (command == "shape") return ShapeLead(summary, folder);
   if (command == "detect") return DetectLead(summary);

@@ -1,6 +1,5 @@
-// The kept inputs of the fuzzing program, as a test of every build.
-#include <gtest/gtest.h>
-
+// The kept inputs of the fuzzing programs, as a test of every build.
+#include "tests/fuzz/connection_input.h"
 #include "tests/fuzz/corpus_files.h"
 #include "tests/fuzz/openigtlink_input.h"
 
@@ -8,11 +7,11 @@ namespace flextip {
 namespace {
 
 TEST(OpenIgtLinkCorpus, BreaksNoPromiseOfTheCodec) {
-  const auto files = CorpusFiles("openigtlink");
-  int messages = 0;
-  for (const auto& bytes : files) messages += CheckOpenIgtLinkInput(bytes);
-  EXPECT_GE(files.size(), 20u);
-  EXPECT_GE(messages, 10);
+  CheckCorpus("openigtlink", CheckOpenIgtLinkInput, 20, 10);
+}
+
+TEST(ConnectionCorpus, ArrivesTheSameHoweverItIsCut) {
+  CheckCorpus("connection", CheckConnectionInput, 15, 20);
 }
 
 }  // namespace

@@ -58,6 +58,7 @@ TEST_F(ControlledRobot, LeavesARecordingThatOtherCommandsOpen) {
   const std::string session =
       folder_.Write("session.yaml", SessionOf(robot.port(), "rod-track", 30, true));
   ASSERT_EQ(RunProgram({"control", session, "-o", Path("run"), "--duration", "60"}).exit_code, 0);
+  EXPECT_TRUE(PageIsMadeAgain(folder_ / "run"));
   const ProgramResult check = RunProgram({"check", Path("run"), "-o", Path("check")});
   EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
   const ProgramResult estimate = RunProgram({"estimate", Path("run"), "-o", Path("states")});
