@@ -84,7 +84,6 @@ const std::vector<Labelled>& Labels() {
       // shape
       {"shape ok", "shapes solved"},
       // control
-      {"only_timing", "only timed, the robot not moved"},
       {"path_done", "path followed to its end"},
       {"robot_not_enabled_at_end", "robot not enabled at the end"},
       {"missed_cycles", "missed cycles"},
@@ -93,6 +92,7 @@ const std::vector<Labelled>& Labels() {
       {"bad_states", "states of the robot that were not understood"},
       {"real_time_priority", "real-time priority given"},
       {"locked_memory", "memory kept in place"},
+      {"only_timing", "only timed, the robot not moved"},
       // align
       {"offset_standard_deviation_s", "its standard deviation"},
       {"rate_standard_deviation", "standard deviation of the rate"},

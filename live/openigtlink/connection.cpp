@@ -25,20 +25,19 @@ Connection::Connection(Descriptor socket, std::string peer, std::size_t longest_
     : socket_(std::move(socket)),
       peer_(std::move(peer)),
       longest_queue_(longest_queue),
-      counts_(counts) {}
+      counts_(counts),
+      chunk_(std::make_unique_for_overwrite<std::uint8_t[]>(kChunk)) {}
 
 bool Connection::Read(const OnMessage& message, const OnEvent& event) {
   for (int chunk = 0; chunk < kChunksAtOnce; ++chunk) {
-    const std::size_t before = in_.size();
-    in_.resize(before + kChunk);
-    const ssize_t got = ::recv(socket_.get(), in_.data() + before, kChunk, 0);
-    in_.resize(before + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+    const ssize_t got = ::recv(socket_.get(), chunk_.get(), kChunk, 0);
     if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)) return true;
     if (got <= 0) {
       why_ = fmt::format("{}: {}{}", peer_, got == 0 ? "closed" : std::strerror(errno),
                          in_.empty() ? "" : " in mid-message");
       return false;
     }
+    in_.insert(in_.end(), chunk_.get(), chunk_.get() + got);
     if (!Decode(message, event)) return false;
   }
   return true;

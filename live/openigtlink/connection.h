@@ -58,6 +58,7 @@ class Connection {
   std::size_t longest_queue_;
   SharedCounts& counts_;
   StampFilter filter_;
+  std::unique_ptr<std::uint8_t[]> chunk_;  // as received
   std::vector<std::uint8_t> in_;
   std::optional<WireClock::time_point> begun_;  // the message under way
   std::string why_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/videoio.hpp>
 #include <opencv2/videoio/registry.hpp>
+#include <thread>
 #include <utility>
 
 #include "core/error.h"
@@ -14,6 +15,8 @@ namespace flextip {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kMostRate_hz = 1e5;  // that a video file may state
 
 Image FromMat(const cv::Mat& picture) {
   Image image(picture.cols, picture.rows, picture.channels());
@@ -121,6 +124,10 @@ class LiveFrames : public FrameSource {
     if (source.empty() || !Open(device)) {
       throw InputError(fmt::format("live source {}: cannot be opened", Quoted(source)));
     }
+    if (!fs::is_regular_file(source)) return;
+    const double own = video_.get(cv::CAP_PROP_FPS);
+    const double rate_hz = own > 0 && own < kMostRate_hz ? own : camera.rate_hz;
+    period_ = std::chrono::nanoseconds(std::llround(1e9 / rate_hz));
   }
 
   std::size_t Count() const override { return 0; }
@@ -128,6 +135,7 @@ class LiveFrames : public FrameSource {
     for (std::size_t i = 0; i < frames; ++i) (void)video_.grab();
   }
   std::optional<Frame> Next() override {
+    AwaitTurn();
     if (!video_.grab()) return {};
     using std::chrono::nanoseconds;
     const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -141,6 +149,13 @@ class LiveFrames : public FrameSource {
   }
 
  private:
+  /// A file gives its frames at its own rate, as a camera would.
+  void AwaitTurn() {
+    if (period_.count() == 0) return;
+    std::this_thread::sleep_until(next_);
+    next_ = std::max(next_, std::chrono::steady_clock::now() - period_) + period_;
+  }
+
   bool Open(bool device) {
     if (!device) return OpenVideo(video_, source_);
     const auto number = ParseInteger(source_);
@@ -162,6 +177,8 @@ class LiveFrames : public FrameSource {
   CameraCalibration camera_;
   cv::VideoCapture video_;
   TimeNs last_ns_ = 0;
+  std::chrono::nanoseconds period_{0};  // 0: the source has a pace of its own
+  std::chrono::steady_clock::time_point next_{};
 };
 
 bool IsPicture(const fs::path& file) {
@@ -286,7 +303,7 @@ std::unique_ptr<FrameSource> OpenPlainFrames(const fs::path& source,
   }
   auto video = std::make_unique<VideoFrames>(source, camera, Series<int>{});
   const double own = video->OwnRate();
-  video->SetRate(rate_hz.value_or(own > 0 && own < 1e5 ? own : camera.rate_hz));
+  video->SetRate(rate_hz.value_or(own > 0 && own < kMostRate_hz ? own : camera.rate_hz));
   return video;
 }
 

@@ -62,7 +62,8 @@ Series<std::string> PicturesInFolder(const std::filesystem::path& folder, double
 /// the order of the numbers in their names. Throws InputError for a folder without any.
 std::vector<std::filesystem::path> PictureFiles(const std::vector<std::filesystem::path>& paths);
 
-/// Opens a device number, a URL or a pipe. Stamps by the clock (nanoseconds since 1970).
+/// Opens a device number, a URL, a pipe, or a video file, which then gives its frames at its own
+/// rate. Stamps by the clock (nanoseconds since 1970).
 std::unique_ptr<FrameSource> OpenLiveFrames(const std::string& source,
                                             const CameraCalibration& camera);
 

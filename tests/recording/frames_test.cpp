@@ -4,6 +4,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "core/error.h"
+#include "recording/frames/frame_source.h"
 #include "recording/frames/image_head.h"
 #include "recording/recording_reader.h"
 #include "recording/recording_writer.h"
@@ -162,6 +163,21 @@ TEST(Frames, OfAVideoAreReadAndChecked) {
   EXPECT_THAT(Failure(folder.path()), HasSubstr("frames.avi is not a video"));
   WriteRecording(folder.path(), WithVideo({0, 1, 1}));
   EXPECT_THAT(Failure(folder.path()), HasSubstr("data.csv:4: found frame 1, expected more than 1"));
+}
+
+TEST(Frames, OfAFileThatStandsInForACameraComeAtItsRate) {
+  const TemporaryFolder folder;
+  constexpr int kFrames = 6;
+  WriteVideo(folder / "v.avi", kWidth, kFrames);
+  CameraCalibration camera;
+  camera.width_px = kWidth;
+  camera.height_px = kHeight;
+  const auto frames = OpenLiveFrames((folder / "v.avi").string(), camera);
+  std::vector<TimeNs> times;
+  while (const auto frame = frames->Next()) times.push_back(frame->t_ns);
+  ASSERT_EQ(times.size(), static_cast<std::size_t>(kFrames));
+  constexpr TimeNs kPeriod_ns = 40'000'000;  // 25 Hz; a busy machine is later, never earlier
+  EXPECT_GE(times.back() - times.front(), (kFrames - 2) * kPeriod_ns);
 }
 
 }  // namespace
