@@ -5,17 +5,19 @@ import signal
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+CAMERA = ROOT / "testdata/cameras/laparoscope.yaml"
+SCENARIO = ROOT / "testdata/scenarios/press.yaml"
 SQUARE = ("[{to_m: [0, 0, -0.002]}, {to_m: [0.004, 0, -0.003]}, {to_m: [0.004, 0.006, -0.003]}, "
           "{to_m: [0, 0.003, -0.001]}, {to_m: [0, 0, 0]}]")
 
 
 def session_text(port, camera=True, lockstep=False, rate_hz=120, speed_m_s=0.002,
-                 waypoints=SQUARE, kind="rod-track", tip_by_em=False):
+                 waypoints=SQUARE, kind="rod-track", tip_by_em=False, camera_file=CAMERA):
     """Returns a session on the robot at `port`; the path starts where the tip is. `tip_by_em`: the
     EM sensor near the tip is its measurement, in the place of what sees the tip."""
     def device(name):
         return f"openigtlink: {{port: {port}, device: {name}}}"
-    tip = (f"cam0: {{{device('cam0')}, sensor: {ROOT}/testdata/cameras/laparoscope.yaml, "
+    tip = (f"cam0: {{{device('cam0')}, sensor: {camera_file}, "
            f"collar: {ROOT}/testdata/collars/hexagon/sensor.yaml, stale_s: 0.5}}"
            if camera else f"vision0: {{{device('vision0')}}}")
     if tip_by_em:
@@ -42,14 +44,41 @@ path: {{frame: start, average_s: 0.3, speed_m_s: {speed_m_s}, waypoints: {waypoi
 """
 
 
+def smaller_camera(folder, width_px):
+    """Writes the laparoscope with pictures of this width, and press.yaml with it, into `folder`;
+    returns camera and scenario."""
+    text = CAMERA.read_text(encoding="utf-8")
+    was_px = int(re.search(r"resolution: \[(\d+)", text).group(1))
+    scale = width_px / was_px
+    numbers = lambda found: [float(v) for v in found.group(2).split(",")]  # noqa: E731
+    def resolution(found):
+        return found.group(1) + ", ".join(str(round(scale * v)) for v in numbers(found))
+    def intrinsics(found):
+        fx, fy, cx, cy = numbers(found)  # of pixels with whole numbers at their middles
+        return found.group(1) + ", ".join(f"{v:.6f}" for v in (
+            scale * fx, scale * fy, scale * (cx + 0.5) - 0.5, scale * (cy + 0.5) - 0.5))
+    text = re.sub(r"(resolution: \[)([^]]*)", resolution, text)
+    text = re.sub(r"(intrinsics: \[)([^]]*)", intrinsics, text)
+    camera, scenario = folder / "camera.yaml", folder / "scenario.yaml"
+    camera.write_text(text, encoding="utf-8")
+    scenario.write_text(SCENARIO.read_text(encoding="utf-8")
+                        .replace("../cameras/laparoscope.yaml", str(camera))
+                        .replace("../", f"{SCENARIO.parent}/../"), encoding="utf-8")
+    return camera, scenario
+
+
 class LiveRun:
     """Use it in a `with` block, which ends both programs. `address` is the page's, with its token;
-    empty without a page. `recording` is the folder that control writes."""
+    empty without a page. `recording` is the folder that control writes. `picture_width_px`: of the
+    laparoscope; empty: its own."""
 
-    def __init__(self, program, folder, page=True, options=(), **session):
+    def __init__(self, program, folder, page=True, options=(), picture_width_px=None, **session):
         self.program, self.folder, self.page = str(program), pathlib.Path(folder), page
         self.options, self.session = options, session
         self.recording = self.folder / "run"
+        self.scenario = SCENARIO
+        if picture_width_px:
+            self.session["camera_file"], self.scenario = smaller_camera(self.folder, picture_width_px)
         self.address, self.programs, self.said = "", [], ""
 
     def __enter__(self):
@@ -63,7 +92,7 @@ class LiveRun:
     def _begin(self):
         camera, lockstep = (self.session.get(key, default)
                             for key, default in (("camera", True), ("lockstep", False)))
-        robot = self._start("simulate", ROOT / "testdata/scenarios/press.yaml", "--serve", "0",
+        robot = self._start("simulate", self.scenario, "--serve", "0",
                             *["--render"] * camera, *["--lockstep"] * lockstep)
         port = self._wait_for(robot, r"serving on 127\.0\.0\.1:(\d+)")
         file = self.folder / "session.yaml"

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Steers the virtual robot for a long time, and says what grew, what was lost and what it took.
 
-    endurance.py --program build/ci/apps/flextip [--seconds 3600] [--rate 120] [--camera]
-                 [--controller rod-track] [--work FOLDER]
+    endurance.py --program build/ci/apps/flextip [--seconds 3600] [--rate 120]
+                 [--camera [WIDTH_PX]] [--controller rod-track] [--work FOLDER]
 
 The tip follows the square of the page's picture round and round. Resident memory of both programs is
 read every ten seconds; its slope is of the last nine tenths of the run. The session is replayed
-afterwards. --work keeps the recording.
+afterwards. --work keeps the recording. The virtual laparoscope at 30 Hz needs a core for pictures of
+640 pixels and more than two for its own 1280.
 """
 import argparse
 import json
@@ -65,7 +66,8 @@ def endure(options, folder):
     waypoints = "[" + ", ".join([SQUARE[1:-1]] * loops) + "]"
     print(f"load at the start: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     with LiveRun(options.program, folder, page=False, options=["--duration", options.seconds],
-                 camera=options.camera, rate_hz=options.rate, waypoints=waypoints,
+                 camera=options.camera is not None,
+                 picture_width_px=options.camera, rate_hz=options.rate, waypoints=waypoints,
                  kind=options.controller) as run:
         memory = watch(run, options.seconds)
         print(run.said)
@@ -77,6 +79,9 @@ def endure(options, folder):
     print(f"missed {summary['missed_cycles']} of {summary['cycles']} cycles, "
           f"{summary['unsent_commands']} commands not sent, holds {summary['holds']}, "
           f"priority {summary['real_time_priority']}, memory locked {summary['locked_memory']}")
+    print(f"warnings: {summary.get('warnings') or 'none'}; camera: {summary['camera']}; samples by "
+          "stream: " + ", ".join(f"{name} {s['accepted']} of {s['arrived']}, {s['rate_hz']:.1f} Hz"
+                                 for name, s in summary["streams"].items()))
     for name, (times, sizes) in memory.items():
         print(f"memory of {name}: {sizes[len(sizes) // 10]:.1f} MB after a tenth, {sizes[-1]:.1f} at "
               f"the end, {slope_mb_per_hour(times, sizes):+.2f} MB an hour")
@@ -92,7 +97,7 @@ def main():
     parser.add_argument("--program", required=True)
     parser.add_argument("--seconds", type=int, default=3600)
     parser.add_argument("--rate", type=int, default=120)
-    parser.add_argument("--camera", action="store_true")
+    parser.add_argument("--camera", type=int, nargs="?", const=1280, metavar="WIDTH_PX")
     parser.add_argument("--controller", default="rod-track")
     parser.add_argument("--work", type=pathlib.Path)
     options = parser.parse_args()
