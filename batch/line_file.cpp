@@ -55,7 +55,8 @@ LineFile::LineFile(const fs::path& file) : file_(file) {
   descriptor_ = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) Refuse(file, errno);
   const std::string text = ReadAll(file);
-  size_ = static_cast<long long>(text.rfind('\n') + 1);  // npos + 1 is 0
+  const std::size_t whole = text.rfind('\n') + 1;  // npos + 1 is 0
+  size_ = static_cast<long long>(whole);
   if (ftruncate(descriptor_, size_) != 0) {
     const int error = errno;
     close(descriptor_);

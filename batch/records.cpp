@@ -52,6 +52,7 @@ void Records::Forget(const std::set<std::string>& names) {
 
 void Records::Add(const std::vector<Ended>& ended) {
   std::vector<std::string> lines;
+  lines.reserve(ended.size());
   for (const Ended& one : ended) lines.push_back(Pack(one.outcome));
   lines_->Append(lines);
   for (const Ended& one : ended) outcomes_.insert_or_assign(one.outcome.name, one.outcome);

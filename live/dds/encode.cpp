@@ -92,9 +92,11 @@ geometry_msgs_msg_dds__PoseWithCovarianceStamped_ TipOf(const WireMessage& messa
   }
   PutPose(p_RE, q_RE, out.pose.pose.position, out.pose.pose.orientation);
   Eigen::Map<Matrix6d> covariance(out.pose.covariance);
-  for (int i = 0; i < 9; ++i) {
-    covariance(i / 3, i % 3) =
-        kMetresPerMillimetre * kMetresPerMillimetre * v[static_cast<std::size_t>(3 + i)];
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      const std::size_t at = std::size_t{3} + static_cast<std::size_t>(3 * row + column);
+      covariance(row, column) = kMetresPerMillimetre * kMetresPerMillimetre * v[at];
+    }
   }
   covariance.bottomRightCorner<3, 3>() = CovarianceOf(seen);
   return out;

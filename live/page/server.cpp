@@ -62,13 +62,16 @@ class PageServer::Worker {
     endpoint_.set_max_message_size(kLongestMessage);
     endpoint_.set_max_http_body_size(0);
     endpoint_.set_open_handshake_timeout(kHandshake_ms);
-    endpoint_.set_tcp_pre_init_handler([this](ws::connection_hdl to) { Greet(to); });
-    endpoint_.set_http_handler([this](ws::connection_hdl to) { ServeFile(to); });
-    endpoint_.set_validate_handler([this](ws::connection_hdl from) { return IsWelcome(from); });
-    endpoint_.set_open_handler([this](ws::connection_hdl to) { Begin(to); });
-    endpoint_.set_close_handler([this](ws::connection_hdl from) { watchers_.erase(from); });
+    endpoint_.set_tcp_pre_init_handler([this](const ws::connection_hdl& to) { Greet(to); });
+    endpoint_.set_http_handler([this](const ws::connection_hdl& to) { ServeFile(to); });
+    endpoint_.set_validate_handler(
+        [this](const ws::connection_hdl& from) { return IsWelcome(from); });
+    endpoint_.set_open_handler([this](const ws::connection_hdl& to) { Begin(to); });
+    endpoint_.set_close_handler([this](const ws::connection_hdl& from) { watchers_.erase(from); });
     endpoint_.set_message_handler(
-        [this](ws::connection_hdl from, Endpoint::message_ptr message) { Hear(from, *message); });
+        [this](const ws::connection_hdl& from, const Endpoint::message_ptr& message) {
+          Hear(from, *message);
+        });
     Listen(port);
     thread_ = std::thread([this] { Run(); });
   }

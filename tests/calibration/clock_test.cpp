@@ -136,8 +136,9 @@ TEST(Clocks, ThatShareNoMotionAreRefused) {
   ClockScene again{.periodic = true};
   ClockScene brief{.seconds = 3.0};
   for (const ClockScene& scene : {elsewhere, still, again, brief}) {
-    for (std::uint64_t seed : {1, 2, 3, 4, 5}) {
-      const ClockResult result = AlignClocks(Without(DrawClocks(scene, seed), true));
+    for (int seed = 1; seed <= Repetitions(5); ++seed) {
+      const auto drawn = DrawClocks(scene, static_cast<std::uint64_t>(seed));
+      const ClockResult result = AlignClocks(Without(drawn, true));
       const StreamClock& clock = Of(result, "em0");
       EXPECT_FALSE(clock.IsUsable()) << clock.offset_s;
       EXPECT_FALSE(clock.reason.empty());
