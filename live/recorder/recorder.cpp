@@ -41,7 +41,7 @@ void CopySession(const Session& session, bool wait, const fs::path& to) {
 
 }  // namespace
 
-Recorder::Recorder(fs::path folder, const Session& session, bool wait)
+Recorder::Recorder(const fs::path& folder, const Session& session, bool wait)
     : folder_(MadeSession0(folder)),
       session_(session),
       samples_{Ring<Arrived<AnySample>>(kSamples), Ring<Arrived<AnySample>>(kSamples),

@@ -21,7 +21,7 @@ class Recorder {
  public:
   /// Makes the files in `folder`, which is there and empty. Throws WorkError where the disk
   /// refuses. `session` must outlive the recorder. `wait`: as the cycle is told.
-  Recorder(std::filesystem::path folder, const Session& session, bool wait = false);
+  Recorder(const std::filesystem::path& folder, const Session& session, bool wait = false);
   /// Writes what is left.
   ~Recorder();
   Recorder(const Recorder&) = delete;

@@ -20,8 +20,9 @@ WireCounts Sum(const WireCounts& a, const WireCounts& b) {
 
 }  // namespace
 
-Outlets::Outlets(const ServeOptions& options, std::function<void(Source, WireMessage&&)> message,
-                 std::function<void(WireEvent&&)> event)
+Outlets::Outlets(const ServeOptions& options,
+                 const std::function<void(Source, WireMessage&&)>& message,
+                 const std::function<void(WireEvent&&)>& event)
     : options_(options),
       server_(
           options.port, options.any_address,

@@ -18,8 +18,8 @@ class Outlets {
   enum class Source { kNobody, kOpenIgtLink, kRos2 };
 
   /// `message` and `event` are called from a thread of each protocol. Throws as the protocols.
-  Outlets(const ServeOptions& options, std::function<void(Source, WireMessage&&)> message,
-          std::function<void(WireEvent&&)> event);
+  Outlets(const ServeOptions& options, const std::function<void(Source, WireMessage&&)>& message,
+          const std::function<void(WireEvent&&)>& event);
 
   /// Sends to all who listen. Returns whether somebody does, UDP left out. In lockstep who comes
   /// later is given it too, until ForgetKept.

@@ -32,7 +32,7 @@ class SessionReader {
     ReadModel();
     RejectUnknownKeys();
     if (file_.session.DelayIsUnknown()) {
-      file_.session.warnings.push_back(
+      file_.session.warnings.emplace_back(
           file_.top.Map("sources")
               .Error("cam0",
                      "has no latency_s: the robot will not be enabled; state how old a "
