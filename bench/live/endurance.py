@@ -7,7 +7,7 @@
 The tip follows the square of the page's picture round and round. Resident memory of both programs is
 read every ten seconds; its slope is of the last nine tenths of the run. The session is replayed
 afterwards. --work keeps the recording. The virtual laparoscope at 30 Hz needs a core for pictures of
-640 pixels and more than two for its own 1280.
+640 pixels and about two for its own 1280.
 """
 import argparse
 import json

@@ -34,6 +34,12 @@ void CheckSize(const std::string& what, const Image& image, const CameraCalibrat
                                    image.height_px, camera.width_px, camera.height_px));
 }
 
+/// Returns the rate that the file states; the camera's where it states none that can be.
+double RateOf(const cv::VideoCapture& video, const CameraCalibration& camera) {
+  const double own_hz = video.get(cv::CAP_PROP_FPS);
+  return own_hz > 0 && own_hz < kMostRate_hz ? own_hz : camera.rate_hz;
+}
+
 bool OpenVideo(cv::VideoCapture& video, const std::string& name) {
   const QuietStderr quiet;
   try {
@@ -80,7 +86,7 @@ class VideoFrames : public FrameSource {
     }
   }
 
-  double OwnRate() const { return video_.get(cv::CAP_PROP_FPS); }
+  double OwnRate() const { return RateOf(video_, camera_); }
   void SetRate(double rate_hz) { rate_hz_ = rate_hz; }
 
   std::size_t Count() const override {
@@ -124,10 +130,8 @@ class LiveFrames : public FrameSource {
     if (source.empty() || !Open(device)) {
       throw InputError(fmt::format("live source {}: cannot be opened", Quoted(source)));
     }
-    if (!fs::is_regular_file(source)) return;
-    const double own = video_.get(cv::CAP_PROP_FPS);
-    const double rate_hz = own > 0 && own < kMostRate_hz ? own : camera.rate_hz;
-    period_ = std::chrono::nanoseconds(std::llround(1e9 / rate_hz));
+    if (fs::is_regular_file(source))
+      period_ = std::chrono::nanoseconds(std::llround(1e9 / RateOf(video_, camera)));
   }
 
   std::size_t Count() const override { return 0; }
@@ -153,7 +157,9 @@ class LiveFrames : public FrameSource {
   void AwaitTurn() {
     if (period_.count() == 0) return;
     std::this_thread::sleep_until(next_);
-    next_ = std::max(next_, std::chrono::steady_clock::now() - period_) + period_;
+    const auto now = std::chrono::steady_clock::now();
+    const bool keeps_up = now - next_ < period_;  // not so at the first frame
+    next_ = (keeps_up ? next_ : now) + period_;
   }
 
   bool Open(bool device) {
@@ -302,8 +308,7 @@ std::unique_ptr<FrameSource> OpenPlainFrames(const fs::path& source,
                          "no such folder or file, expected a recording, pictures or a video");
   }
   auto video = std::make_unique<VideoFrames>(source, camera, Series<int>{});
-  const double own = video->OwnRate();
-  video->SetRate(rate_hz.value_or(own > 0 && own < kMostRate_hz ? own : camera.rate_hz));
+  video->SetRate(rate_hz.value_or(video->OwnRate()));
   return video;
 }
 

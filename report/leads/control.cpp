@@ -29,7 +29,7 @@ Head TimingLead(const Json& summary, Head head) {
   const double missed = Number(summary, "missed_cycles"), cycles = Number(summary, "cycles");
   head.says = missed == 0.0 ? fmt::format("None of {:.0f} cycles was missed.", cycles)
                             : fmt::format("{:.0f} of {:.0f} cycles were missed.", missed, cycles);
-  head.more = TimesText(summary) + " The robot was not enabled.";
+  head.more = TimesText(summary) + " It enabled nothing.";
   head.next = "watch the streams while somebody else moves the robot";
   head.command = "flextip control RECORDING --wait --page -o RESULT-watched";
   if (missed > 0.0) {
@@ -50,8 +50,9 @@ Head ControlLead(const std::filesystem::path& folder) {
     head.reasons.push_back(why);
   };
   if (Number(summary, "missed_cycles") > 0.0)
-    beware(fmt::format("{:.0f} cycles were missed: one before them took too long",
-                       Number(summary, "missed_cycles")));
+    beware(fmt::format(
+        "{:.0f} missed cycles: the one before took too long, or the system woke it late",
+        Number(summary, "missed_cycles")));
   if (Number(summary, "unsent_commands") > 0.0)
     beware(fmt::format("{:.0f} commands were not sent: the robot was gone, or did not read",
                        Number(summary, "unsent_commands")));

@@ -1,10 +1,8 @@
 #include "tests/fuzz/connection_input.h"
 
-#include <fcntl.h>
 #include <igtl_header.h>
 #include <igtl_util.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "report/pages.h"
 #include "report/result_files.h"
+#include "tests/report/page_plots.h"
 
 namespace flextip::report {
 namespace {
@@ -67,15 +68,7 @@ class ControlPage : public testing::Test {
     WriteReport(folder_);
     return ReadBytes(folder_ / "report.html");
   }
-  std::vector<nlohmann::json> Plots() const {
-    const std::string html = Page(), begin = "<script type=\"application/json\">";
-    std::vector<nlohmann::json> plots;
-    for (auto at = html.find(begin); at != std::string::npos; at = html.find(begin, at)) {
-      at += begin.size();
-      plots.push_back(nlohmann::json::parse(html.substr(at, html.find("</script>", at) - at)));
-    }
-    return plots;
-  }
+  std::vector<nlohmann::json> Plots() const { return PlotsIn(Page()); }
 
   std::filesystem::path folder_;
 };
@@ -110,7 +103,7 @@ TEST_F(ControlPage, SaysWhatWentWrong) {
   const std::string page = Page();
   EXPECT_THAT(page, HasSubstr("<section class=\"verdict beware\">"));
   EXPECT_THAT(page, HasSubstr("The run ended after 12 s, before the path was done."));
-  EXPECT_THAT(page, HasSubstr("3 cycles were missed"));
+  EXPECT_THAT(page, HasSubstr("3 missed cycles"));
 }
 
 TEST_F(ControlPage, OfTimesAloneGoesOnWithWatching) {

@@ -12,6 +12,7 @@
 #include "report/labels.h"
 #include "report/report.h"
 #include "report/result_files.h"
+#include "tests/report/page_plots.h"
 
 namespace flextip::report {
 namespace {
@@ -38,15 +39,7 @@ class Pages : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
   std::string Page() const { return ReadBytes(folder_ / "report.html"); }
-  std::vector<nlohmann::json> Plots() const {
-    const std::string html = Page(), begin = "<script type=\"application/json\">";
-    std::vector<nlohmann::json> plots;
-    for (auto at = html.find(begin); at != std::string::npos; at = html.find(begin, at)) {
-      at += begin.size();
-      plots.push_back(nlohmann::json::parse(html.substr(at, html.find("</script>", at) - at)));
-    }
-    return plots;
-  }
+  std::vector<nlohmann::json> Plots() const { return PlotsIn(Page()); }
 
   std::filesystem::path folder_;
 };
