@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "report/pages.h"
+#include "report/result_files.h"
 #include "report/summary_parts.h"
 
 namespace flextip::report {
