@@ -21,7 +21,8 @@ set(FLEXTIP_TEST_TIMEOUT_S 300 CACHE STRING "Seconds a test may take")
 option(FLEXTIP_TESTS_BY_FOLDER "One ctest entry a test program, not one a case" OFF)
 
 # ccache where there is one. What it does not look at with precompiled headers is told to it here;
-# g++ says which header it took only with -fpch-preprocess.
+# g++ says which header it took only with -fpch-preprocess, and clang writes the time into them unless
+# it is told not to.
 find_program(FLEXTIP_CCACHE ccache)
 if(FLEXTIP_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
@@ -31,6 +32,9 @@ endif()
 if(CMAKE_CXX_COMPILER_LAUNCHER AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU"
     AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
   add_compile_options(-fpch-preprocess)
+elseif(CMAKE_CXX_COMPILER_LAUNCHER AND CMAKE_CXX_COMPILER_ID MATCHES "Clang"
+    AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+  add_compile_options("SHELL:-Xclang -fno-pch-timestamp")
 endif()
 
 # flextip_pch(NAME HEADERS ... LIBS ... [OPTIONS ...]): headers compiled once, for all targets of a kind.

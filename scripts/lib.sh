@@ -4,7 +4,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # Compiler and libraries of the program, as Debian 12 names them.
 BUILD_PACKAGES=(
-  cmake ninja-build g++ libopencv-dev libapriltag-dev libeigen3-dev libceres-dev libcli11-dev
+  cmake ninja-build clang libopencv-dev libapriltag-dev libeigen3-dev libceres-dev libcli11-dev
   libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev libcairo2-dev
   liblz4-dev libzstd-dev libopenigtlink-dev cyclonedds-dev cyclonedds-tools libwebsocketpp-dev
   pkg-config
@@ -20,7 +20,7 @@ PYTHON_PACKAGES=(
 # ROS 1, Open MPI spreads batches, parallel is their peer in bench/, opencv-doc holds real chessboard pictures, poppler-utils turns printed pages into pictures.
 TEST_PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev librosbag-storage-dev
-  libopenmpi-dev openmpi-bin parallel clang libclang-rt-14-dev llvm clang-format clang-tidy groff-base opencv-doc poppler-utils chromium
+  libopenmpi-dev openmpi-bin parallel g++ libclang-rt-14-dev llvm clang-format clang-tidy groff-base opencv-doc poppler-utils chromium
   "${SITE_PACKAGES[@]}" "${PYTHON_PACKAGES[@]}"
 )
 NODE_PACKAGES=(nodejs npm)
