@@ -40,6 +40,12 @@ set(FLEXTIP_PUBLIC_HEADERS
   control/direction_controller.h
   control/fixtures.h
   control/motion_error.h
+  control/supervision/chi_squared.h
+  control/supervision/motion_guard.h
+  control/supervision/rate_limits.h
+  control/supervision/stops.h
+  control/supervision/supervisor.h
+  control/supervision/supervisor_options.h
   control/tip_path.h
   control/virtual_fixture.h
   control/virtual_fixture_mesh.h
@@ -103,7 +109,10 @@ set(FLEXTIP_PUBLIC_HEADERS
   pipeline/judge_track.h pipeline/track_totals.h
   pipeline/late_samples.h
   pipeline/readings_history.h
+  pipeline/sample_screen.h
+  pipeline/sensor_guard.h
   pipeline/sensor_readings.h
+  pipeline/sensor_vote.h
   pipeline/tip_predictor.h
   recording/calibrations/em_field.h
   recording/calibrations/file.h

@@ -9,6 +9,12 @@
 namespace flextip {
 namespace {
 
+constexpr double kMotionDeviations = 2.0;  // of the ellipsoid in which the worst angle is sought
+// The other sensors carry the tip while its deviation is a quarter of the 2 mm that count as
+// astray.
+constexpr double kTakeOver_m = 0.0005;
+constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is taken up
+
 bool IsStraight(ControllerKind kind) {
   return kind == ControllerKind::kStraightCalculate || kind == ControllerKind::kStraightTrack;
 }
@@ -61,6 +67,9 @@ InstrumentController::InstrumentController(const InstrumentControllerOptions& op
       tracker_(std::move(tracker)),
       estimator_(OptionsFor(options.estimator, options.control.kind), options.window_samples),
       place_(PlaceOptions(options)),
+      guard_(options.estimator, options.supervision),
+      motion_guard_(kMotionDeviations, options.control.max_tissue_gain),
+      supervisor_(options.supervision),
       between_(BetweenTips(options)),
       without_tip_(BetweenTips(options)),
       late_(options.late, options.control.max_tissue_gain),
@@ -86,22 +95,26 @@ void InstrumentController::SetTimeDeviations(double tip_sd_s, double em0_sd_s) {
 ControllerCommand InstrumentController::Step(const ControllerInputs& inputs) {
   ControllerCommand command;
   command.t_ns = inputs.t_ns;
-  const SensorReadings seen = Carry(See(inputs));
-  const std::optional<Measurements> gathered = Gather(seen);
-  if (!gathered) return command;
-  command.measurements = Correct(inputs.t_ns, *gathered);
-  command.estimate = Estimate(inputs.t_ns, command.measurements);
-  command.p_RE_measured =
-      FuseTip(options_.control.kind, command.measurements, command.estimate, options_.em_is_tip);
-  command.goal = Keep(inputs, command.estimate);
-  Control(inputs, command);
+  const SensorReadings seen = See(inputs, command.supervision);
+  const std::optional<Measurements> gathered = Gather(Carry(seen, command.supervision));
+  if (gathered) {
+    command.measurements = Correct(inputs.t_ns, *gathered);
+    Vote(inputs.t_ns, command.measurements, command.supervision);
+    command.estimate = Estimate(inputs.t_ns, command.measurements);
+    Fuse(command);
+    command.goal = Keep(inputs, command.estimate);
+    Control(inputs, command);
+  }
+  guard_.Believe(late_, seen, command.supervision);
+  Supervise(inputs, command);
   return command;
 }
 
 /// Track. The pictures are seen with the sensors as they are: an effect of the camera is corrected
 /// in the tip, as in a recording. A late picture is seen with the wrist as it was then.
-SensorReadings InstrumentController::See(const ControllerInputs& inputs) {
+SensorReadings InstrumentController::See(const ControllerInputs& inputs, Supervision& found) {
   SensorReadings seen = inputs.sensors;
+  guard_.ScreenSensors(inputs.t_ns, supervisor_.LastCommand(), seen, found);
   late_.Note(seen);
   if (tracker_ && !inputs.pictures.empty()) {
     track_ = tracker_->Follow(inputs.pictures, inputs.pictures_t_ns,
@@ -111,16 +124,17 @@ SensorReadings InstrumentController::See(const ControllerInputs& inputs) {
   const bool is_new = seen.tip && (!tip_t_ns_ || seen.tip->t_ns > *tip_t_ns_);
   if (is_new) tip_t_ns_ = seen.tip->t_ns;
   if (!is_new) seen.tip.reset();
+  guard_.ScreenTip(inputs.t_ns, late_, seen, found);
   return seen;
 }
 
 /// Carries late samples on to the wrist's time, and the last tip between two tips.
-SensorReadings InstrumentController::Carry(SensorReadings seen) {
+SensorReadings InstrumentController::Carry(SensorReadings seen, Supervision& found) {
   tip_is_carried_ = false;
   if (!seen.wrist) return seen;
   if (late_.HasLateTip(seen)) {
     carries_ = true;
-    EstimateThen(seen);
+    if (!EstimateThen(seen, found)) seen.tip.reset();
   }
   if (carries_) SeeBySensors(seen);
   tip_is_carried_ = late_.Carry(shaft_, seen);
@@ -129,14 +143,17 @@ SensorReadings InstrumentController::Carry(SensorReadings seen) {
 }
 
 /// Learns load and tissue from what all sensors said when the late tip was seen, where that is
-/// known.
-void InstrumentController::EstimateThen(const SensorReadings& seen) {
+/// known. Returns whether the tip may be used.
+bool InstrumentController::EstimateThen(const SensorReadings& seen, Supervision& found) {
   const auto past = late_.PastAt(seen.tip->t_ns, seen);
-  if (!past) return;
-  const auto then = Gather(*past);
-  const ShaftEstimate estimate = estimator_.Update(model_ ? model_->Correct(*then) : *then,
-                                                   model_ ? model_->Shaft() : ShaftChange());
+  if (!past) return true;
+  Measurements then = *Gather(*past);
+  if (model_) then = model_->Correct(then);
+  const bool had_tip = then.tip.has_value();
+  Vote(seen.tip->t_ns, then, found);
+  const ShaftEstimate estimate = estimator_.Update(then, model_ ? model_->Shaft() : ShaftChange());
   Learn(seen.tip->t_ns, estimate);
+  return then.tip.has_value() || !had_tip;
 }
 
 void InstrumentController::SeeBySensors(const SensorReadings& seen) {
@@ -179,6 +196,34 @@ ShaftEstimate InstrumentController::Estimate(TimeNs t_ns, const Measurements& me
   return estimate;
 }
 
+/// Takes out the sensor that disagrees with the others.
+void InstrumentController::Vote(TimeNs t_ns, Measurements& z, Supervision& found) {
+  guard_.Vote(t_ns, model_ ? model_->Shaft() : ShaftChange(), z, found);
+}
+
+/// The tip for the controller. Where its own sensor is out or gone, rod-track goes on with what the
+/// others say, while they know it well enough; and back, without a jump.
+void InstrumentController::Fuse(ControllerCommand& command) {
+  const ShaftEstimate& estimate = command.estimate;
+  command.p_RE_measured =
+      FuseTip(options_.control.kind, command.measurements, estimate, options_.em_is_tip);
+  if (options_.supervision.kind != SupervisionKind::kFull ||
+      options_.control.kind != ControllerKind::kRodTrack)
+    return;
+  const bool others = !command.p_RE_measured && estimate.status == EstimateStatus::kOk &&
+                      MaxSd(estimate.p_RE_covariance_m2) < kTakeOver_m;
+  if (others) command.p_RE_measured = estimate.p_RE;
+  if (!command.p_RE_measured) {
+    p_RE_last_.reset();
+    return;
+  }
+  if (others != by_others_ && p_RE_last_) p_RE_offset_ = *p_RE_last_ - *command.p_RE_measured;
+  by_others_ = others;
+  p_RE_offset_ *= std::exp(-1.0 / (options_.supervision.rate_hz * kTakeOver_s));
+  *command.p_RE_measured += p_RE_offset_;
+  p_RE_last_ = command.p_RE_measured;
+}
+
 /// Keeps the goal out of forbidden regions.
 FixturesOutput InstrumentController::Keep(const ControllerInputs& inputs,
                                           const ShaftEstimate& estimate) const {
@@ -212,6 +257,7 @@ void InstrumentController::ControlPlace(ControllerCommand& command) {
   command.p_RE_used = output.p_RE_used;
   command.step_limited = output.step_limited;
   command.damped = output.damped;
+  command.J_tip_wrist = output.J_tip_wrist;
 }
 
 /// Place and direction: the tip as tracked, or by the rod where the kind calculates it.
@@ -239,6 +285,45 @@ void InstrumentController::ControlDirection(const Eigen::Vector3d& d_RE_desired,
   command.p_RE_used = input.p_RE;
   command.step_limited = output.step_limited;
   command.damped = output.damped;
+}
+
+/// The last word over the command.
+void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerCommand& command) {
+  const SupervisorOptions& options = options_.supervision;
+  if (options.kind == SupervisionKind::kNone) return;
+  Supervision& found = command.supervision;
+  const bool acts =
+      command.status == ControlStatus::kOk || command.status == ControlStatus::kStraightInstead;
+  const auto hold = [&found](bool cause, Stop stop) {
+    if (!cause || found.reaction >= Reaction::kHold) return;
+    found.stop = stop;
+    found.reaction = Reaction::kHold;
+  };
+  SupervisedCycle cycle;
+  cycle.t_ns = inputs.t_ns;
+  cycle.resume = inputs.resume;
+  if (command.status != ControlStatus::kNoWrist) {
+    cycle.p_RW = command.measurements.p_RW;
+    cycle.p_RW_noise_m = command.measurements.wrist_position_noise_m;
+  }
+  if (acts) cycle.p_wish = command.p_RW_command;
+  if (options.kind == SupervisionKind::kFull) {
+    hold(command.status == ControlStatus::kNoWrist, Stop::kStaleWrist);
+    hold(command.status == ControlStatus::kNoTip && inputs.p_RE_desired, Stop::kStaleTip);
+    hold(options.max_tip_force_N > 0.0 && command.estimate.status == EstimateStatus::kOk &&
+             command.estimate.model.f_tip_N.norm() > options.max_tip_force_N,
+         Stop::kForce);
+    if (acts && !command.J_tip_wrist.isZero(0.0)) {
+      found.worst_angle_rad =
+          motion_guard_.Update(command.J_tip_wrist, command.estimate, command.measurements.p_RW);
+      hold(found.worst_angle_rad > options.max_motion_angle_rad, Stop::kMotionAngle);
+    }
+  }
+  cycle.found = found;
+  const Supervisor::Decision decision = supervisor_.Decide(cycle);
+  if (decision.resumed) guard_.Forget();
+  found = decision.supervision;
+  if (decision.p_RW_command) command.p_RW_command = *decision.p_RW_command;
 }
 
 }  // namespace flextip

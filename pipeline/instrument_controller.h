@@ -9,11 +9,14 @@
 #include "control/controller.h"
 #include "control/direction_controller.h"
 #include "control/fixtures.h"
+#include "control/supervision/motion_guard.h"
+#include "control/supervision/supervisor.h"
 #include "core/image.h"
 #include "estimation/instrument_model.h"
 #include "pipeline/instrument_estimator.h"
 #include "pipeline/instrument_tracker.h"
 #include "pipeline/late_samples.h"
+#include "pipeline/sensor_guard.h"
 #include "pipeline/sensor_readings.h"
 
 namespace flextip {
@@ -31,8 +34,9 @@ struct InstrumentControllerOptions {
   bool em_is_tip = false;  ///< without vision, em0 carried to the tip is the tip's measurement
   /// The straight kinds pivot at the port as registered, not as estimated.
   bool straight_at_registered_port = false;
-  LateSampleOptions late;  ///< how late samples are carried on to the cycle's wrist
-  double rate_hz = 0.0;    ///< of the cycles, for GainUnderDelay; 0: the gain stays as it is
+  LateSampleOptions late;         ///< how late samples are carried on to the cycle's wrist
+  double rate_hz = 0.0;           ///< of the cycles, for GainUnderDelay; 0: the gain stays as it is
+  SupervisorOptions supervision;  ///< none unless its `kind` says so
 };
 
 /// The inputs of a cycle. Fixed size but for the pictures, which stay the caller's.
@@ -43,6 +47,7 @@ struct ControllerInputs {
   TimeNs pictures_t_ns = 0;
   std::optional<Eigen::Vector3d> p_RE_desired;  ///< absent: the cycle only watches
   std::optional<Eigen::Vector3d> d_RE_desired;  ///< the tip's direction, any length
+  bool resume = false;                          ///< a person ends a fault
 };
 
 /// The result of a cycle. Fixed size; all in R.
@@ -56,6 +61,8 @@ struct ControllerCommand {
   ShaftEstimate estimate;
   std::optional<Eigen::Vector3d> p_RE_measured;  ///< the tip as the controller was given it
   FixturesOutput goal;                           ///< the wish, kept by the fixtures
+  Eigen::Matrix3d J_tip_wrist = Eigen::Matrix3d::Zero();  ///< that the step used; zero: none
+  Supervision supervision;  ///< the supervisor's findings; p_RW_command is what it let through
 };
 
 /// The whole cycle. A function of its inputs and its own state: the same inputs give the same
@@ -84,17 +91,20 @@ class InstrumentController {
   const WindowEstimate* Window() const { return estimator_.Window(); }
 
  private:
-  SensorReadings See(const ControllerInputs& inputs);
-  SensorReadings Carry(SensorReadings seen);
-  void EstimateThen(const SensorReadings& seen);
+  SensorReadings See(const ControllerInputs& inputs, Supervision& found);
+  SensorReadings Carry(SensorReadings seen, Supervision& found);
+  bool EstimateThen(const SensorReadings& seen, Supervision& found);
   void SeeBySensors(const SensorReadings& seen);
   void Learn(TimeNs t_ns, const ShaftEstimate& estimate);
   Measurements Correct(TimeNs t_ns, const Measurements& measured);
   ShaftEstimate Estimate(TimeNs t_ns, const Measurements& measurements);
+  void Vote(TimeNs t_ns, Measurements& z, Supervision& found);
+  void Fuse(ControllerCommand& command);
   FixturesOutput Keep(const ControllerInputs& inputs, const ShaftEstimate& estimate) const;
   void Control(const ControllerInputs& inputs, ControllerCommand& command);
   void ControlPlace(ControllerCommand& command);
   void ControlDirection(const Eigen::Vector3d& d_RE_desired, ControllerCommand& command);
+  void Supervise(const ControllerInputs& inputs, ControllerCommand& command);
 
   InstrumentControllerOptions options_;
   std::unique_ptr<InstrumentModel> model_;
@@ -104,6 +114,13 @@ class InstrumentController {
   std::optional<DirectionController> direction_;
   std::optional<TipTrack> track_;
   std::optional<TimeNs> tip_t_ns_;  // of the last tip that counted
+  SensorGuard guard_;
+  MotionGuard motion_guard_;
+  Supervisor supervisor_;
+  // Where the tip's source changes, the difference is taken up slowly.
+  bool by_others_ = false;
+  std::optional<Eigen::Vector3d> p_RE_last_;
+  Eigen::Vector3d p_RE_offset_ = Eigen::Vector3d::Zero();
   // Where tips are late, or come more seldom than cycles. Tissue and port are learnt from what was
   // measured at one time, by estimator_; between_ fits the tip that is carried on.
   InstrumentEstimator between_;

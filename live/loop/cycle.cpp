@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "control/supervision/rate_limits.h"
 #include "core/rotation.h"
 #include "diagnosis/model/extended_instrument.h"
-#include "live/limits/limits.h"
 
 namespace flextip::live {
 namespace {

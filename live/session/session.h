@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "control/supervision/rate_limits.h"
 #include "core/pose.h"
 #include "diagnosis/model/extended_model.h"
 #include "live/protocols/protocol.h"
@@ -61,17 +62,12 @@ struct PublishSetup {
   double rate_hz = 30.0;
 };
 
-/// A box in R (m).
-struct Box {
-  Eigen::Vector3d lower_m = Eigen::Vector3d::Zero(), upper_m = Eigen::Vector3d::Zero();
-};
-
 struct LimitSetup {
-  double max_step_m = 0.0;             ///< of a command from the measured wrist
-  double max_speed_m_s = 0.0;          ///< of the commanded wrist
-  double max_acceleration_m_s2 = 0.0;  ///< of the commanded wrist
-  std::optional<Box> workspace;        ///< of the tip's goal
-  double resume_after_s = 0.1;         ///< a hold ends so long after its cause
+  double max_step_m = 0.0;                ///< of a command from the measured wrist
+  double max_speed_m_s = 0.0;             ///< of the commanded wrist
+  double max_acceleration_m_s2 = 0.0;     ///< of the commanded wrist
+  std::optional<WorkspaceBox> workspace;  ///< of the tip's goal
+  double resume_after_s = 0.1;            ///< a hold ends so long after its cause
 };
 
 enum class PathFrame : std::uint8_t {

@@ -127,7 +127,7 @@ class SessionReader {
     limits.resume_after_s = NumberInOr(map, "resume_after_s", kTime, limits.resume_after_s);
     if (map.Has("workspace")) {
       const YamlMap box = file_.Section(map, "workspace");
-      limits.workspace = Box{VectorIn(box, "lower_m", kPlace), VectorIn(box, "upper_m", kPlace)};
+      limits.workspace = WorkspaceBox{VectorIn(box, "lower_m", kPlace), VectorIn(box, "upper_m", kPlace)};
       if ((limits.workspace->lower_m.array() >= limits.workspace->upper_m.array()).any()) {
         throw box.Error("upper_m", "expected every component above lower_m's");
       }

@@ -4,9 +4,12 @@
 
 #include <Eigen/Dense>
 
-#include "live/session/session.h"
+namespace flextip {
 
-namespace flextip::live {
+/// A box in R (m).
+struct WorkspaceBox {
+  Eigen::Vector3d lower_m = Eigen::Vector3d::Zero(), upper_m = Eigen::Vector3d::Zero();
+};
 
 /// A place and whether a limit moved it.
 struct Limited {
@@ -29,6 +32,6 @@ Limited LimitAcceleration(const Eigen::Vector3d& p_last, const Eigen::Vector3d& 
                           const Eigen::Vector3d& p_wish, double dt_s, double max_acceleration_m_s2);
 
 /// Returns the place in `box` nearest to `p`.
-Limited KeepInBox(const Box& box, const Eigen::Vector3d& p);
+Limited KeepInBox(const WorkspaceBox& box, const Eigen::Vector3d& p);
 
-}  // namespace flextip::live
+}  // namespace flextip

@@ -1,9 +1,9 @@
-#include "live/limits/limits.h"
+#include "control/supervision/rate_limits.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace flextip::live {
+namespace flextip {
 namespace {
 
 /// A change of less than this part is rounding, no limit.
@@ -43,9 +43,9 @@ Limited LimitAcceleration(const Eigen::Vector3d& p_last, const Eigen::Vector3d& 
   return {p, true};
 }
 
-Limited KeepInBox(const Box& box, const Eigen::Vector3d& p) {
+Limited KeepInBox(const WorkspaceBox& box, const Eigen::Vector3d& p) {
   const Eigen::Vector3d kept = p.cwiseMax(box.lower_m).cwiseMin(box.upper_m);
   return {kept, kept != p};
 }
 
-}  // namespace flextip::live
+}  // namespace flextip

@@ -1,11 +1,11 @@
 // Each limit by itself, against motions counted by hand.
-#include "live/limits/limits.h"
+#include "control/supervision/rate_limits.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace flextip::live {
+namespace flextip {
 namespace {
 
 const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
@@ -52,7 +52,7 @@ TEST(LimitAcceleration, SaysWhetherItLimited) {
 }
 
 TEST(KeepInBox, TakesTheNearestPlace) {
-  const Box box{{-1, -1, -1}, {1, 1, 1}};
+  const WorkspaceBox box{{-1, -1, -1}, {1, 1, 1}};
   EXPECT_FALSE(KeepInBox(box, {0.5, 0, 1.0}).limited);
   const Limited kept = KeepInBox(box, {2, 0.5, -3});
   EXPECT_TRUE(kept.limited);
@@ -60,4 +60,4 @@ TEST(KeepInBox, TakesTheNearestPlace) {
 }
 
 }  // namespace
-}  // namespace flextip::live
+}  // namespace flextip

@@ -1,0 +1,69 @@
+// What stands between controller and robot: one state machine over the findings of a cycle.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "control/supervision/stops.h"
+#include "control/supervision/supervisor_options.h"
+#include "core/time_series.h"
+
+namespace flextip {
+
+/// A cycle as the supervisor sees it. In R.
+struct SupervisedCycle {
+  TimeNs t_ns = 0;
+  std::optional<Eigen::Vector3d> p_RW;    ///< as measured in this cycle
+  double p_RW_noise_m = 0.0;              ///< standard deviation per axis
+  std::optional<Eigen::Vector3d> p_wish;  ///< the controller's command; empty: none
+  Supervision found;                      ///< the gravest finding so far; reaction as it asks for
+  bool resume = false;                    ///< a person says go on
+};
+
+/// Decides over each command, and remembers. Allocates nothing.
+class Supervisor {
+ public:
+  explicit Supervisor(const SupervisorOptions& options) : options_(options) {}
+
+  struct Decision {
+    std::optional<Eigen::Vector3d> p_RW_command;  ///< empty before the wrist was ever measured
+    Supervision supervision;
+    bool resumed = false;  ///< a person's resume ended a fault in this cycle
+  };
+
+  /// Returns the command that may go out: the wish within the rate limits, or, in a hold and in a
+  /// fault, the wrist as it was measured when that began.
+  Decision Decide(const SupervisedCycle& cycle);
+
+  /// Returns whether the wrist of a cycle is away from all that was commanded lately by more than
+  /// noise and the robot's lag explain.
+  bool IsAstray(const SupervisedCycle& cycle) const;
+
+  /// Returns the command sent last; empty before the first.
+  const std::optional<Eigen::Vector3d>& LastCommand() const { return p_last_; }
+
+ private:
+  struct Sent {
+    TimeNs t_ns = 0;
+    Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();
+  };
+  static constexpr std::size_t kSize = 512;
+
+  void Keep(TimeNs t_ns, const Eigen::Vector3d& p_RW);
+  Eigen::Vector3d Limit(const SupervisedCycle& cycle, Supervision& supervision);
+  void Judge(const SupervisedCycle& cycle, Decision& decision);
+
+  SupervisorOptions options_;
+  std::array<Sent, kSize> sent_;  // a ring, the newest before next_
+  std::size_t next_ = 0, count_ = 0;
+  std::optional<Eigen::Vector3d> p_last_, p_held_;
+  Eigen::Vector3d v_last_m_s_ = Eigen::Vector3d::Zero();
+  TimeNs t_last_ns_ = 0;
+  TimeNs held_since_ns_ = 0, clear_since_ns_ = 0;  // 0: not held, not clear
+  Stop held_by_ = Stop::kNone;
+  bool fault_ = false;
+};
+
+}  // namespace flextip

@@ -1,0 +1,78 @@
+#include "pipeline/sensor_guard.h"
+
+#include "pipeline/tip_fusion.h"
+
+namespace flextip {
+namespace {
+
+std::uint8_t Bit(VotedSensor sensor) {
+  return static_cast<std::uint8_t>(1U << static_cast<int>(sensor));
+}
+
+void Hold(Stop stop, Supervision& found) {
+  if (found.reaction >= Reaction::kHold) return;
+  found.stop = stop;
+  found.reaction = Reaction::kHold;
+}
+
+}  // namespace
+
+SensorGuard::SensorGuard(const EstimatorOptions& estimator, const SupervisorOptions& options)
+    : options_(options),
+      screen_(estimator.instrument, estimator.p_RP, options),
+      vote_(estimator, options) {}
+
+void SensorGuard::ScreenSensors(TimeNs t_ns, const std::optional<Eigen::Vector3d>& p_RW_sent,
+                                SensorReadings& readings, Supervision& found) {
+  if (options_.kind == SupervisionKind::kFull) screen_.Screen(t_ns, p_RW_sent, readings, found);
+}
+
+void SensorGuard::ScreenTip(TimeNs t_ns, const LateSamples& late, SensorReadings& readings,
+                            Supervision& found) {
+  jumped_ = 0;
+  if (options_.kind == SupervisionKind::kFixedThresholds) {
+    if (screen_.TipIsFarther(options_.fixed_jump_m, readings)) {
+      readings.tip.reset();
+      found.voted_out |= Bit(VotedSensor::kTip);
+      Hold(Stop::kTipJump, found);
+    }
+    return;
+  }
+  if (options_.kind != SupervisionKind::kFull) return;
+  std::optional<Eigen::Vector3d> p_RW;
+  if (readings.wrist) p_RW = readings.wrist->value.p_RW;
+  screen_.ScreenTip(t_ns, readings.tip, p_RW, found);
+  if (screen_.TipJumps(readings, late)) jumped_ |= Bit(VotedSensor::kTip);
+  if (screen_.EmJumps(readings, late)) jumped_ |= Bit(VotedSensor::kEm);
+}
+
+void SensorGuard::Vote(TimeNs t_ns, const ShaftChange& change, Measurements& z,
+                       Supervision& found) {
+  if (options_.kind == SupervisionKind::kFixedThresholds) {
+    if (!z.tip || z.tip->status == TipStatus::kLost || !z.em) return;
+    const auto by_em = MeasuredTip({.em = z.em}, true);
+    if ((z.tip->p_RE - *by_em).norm() > options_.fixed_jump_m) Hold(Stop::kTipDisagrees, found);
+    return;
+  }
+  if (options_.kind != SupervisionKind::kFull) return;
+  const std::uint8_t tip = Bit(VotedSensor::kTip);
+  const bool alone = (SensorsOf(z) & ~tip) == 0;
+  if (alone && (jumped_ & tip) != 0) {
+    // Nobody else can say whether the tip was let go, or is seen wrong.
+    Drop(VotedSensor::kTip, z);
+    found.voted_out |= tip;
+    Hold(Stop::kTipJump, found);
+    return;
+  }
+  vote_.Vote(t_ns, jumped_, change, z, found);
+}
+
+void SensorGuard::Believe(const LateSamples& late, const SensorReadings& readings,
+                          const Supervision& found) {
+  const bool undecided = found.reaction >= Reaction::kHold;
+  if (undecided && options_.kind == SupervisionKind::kFull) return;
+  if (!IsOut(found, VotedSensor::kTip)) screen_.BelieveTip(readings, late);
+  if (!IsOut(found, VotedSensor::kEm)) screen_.BelieveEm(readings, late);
+}
+
+}  // namespace flextip

@@ -1,0 +1,157 @@
+#include "pipeline/sensor_vote.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <optional>
+
+namespace flextip {
+namespace {
+
+constexpr double kClearly = 30.0;      // of chi-squared: odds of 3e6 to 1
+constexpr double kMovedPort_m = 0.03;  // a port that has moved is looked for within some of these
+
+double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
+
+/// The sensors decide on places whatever the controller uses; tissue is not learnt here.
+EstimatorOptions OptionsOf(EstimatorOptions options, double port_prior_m) {
+  options.use_positions = true;
+  options.estimate_tissue = false;
+  options.port_prior_m = port_prior_m;
+  return options;
+}
+
+std::uint8_t Bit(int sensor) { return static_cast<std::uint8_t>(1U << sensor); }
+
+}  // namespace
+
+std::uint8_t SensorsOf(const Measurements& z) {
+  std::uint8_t bits = 0;
+  const auto add = [&](bool has, VotedSensor sensor) {
+    if (has) bits |= Bit(static_cast<int>(sensor));
+  };
+  add(z.tip && z.tip->status != TipStatus::kLost, VotedSensor::kTip);
+  add(z.em.has_value(), VotedSensor::kEm);
+  add(z.port_direction.has_value(), VotedSensor::kPortDirection);
+  add(z.strain.has_value(), VotedSensor::kStrain);
+  add(z.load.has_value(), VotedSensor::kLoad);
+  add(z.R_RW.has_value(), VotedSensor::kWristTurn);
+  return bits;
+}
+
+void Drop(VotedSensor sensor, Measurements& z) {
+  switch (sensor) {
+    case VotedSensor::kTip:
+      z.tip.reset();
+      break;
+    case VotedSensor::kEm:
+      z.em.reset();
+      break;
+    case VotedSensor::kPortDirection:
+      z.port_direction.reset();
+      break;
+    case VotedSensor::kStrain:
+      z.strain.reset();
+      break;
+    case VotedSensor::kLoad:
+      z.load.reset();
+      break;
+    case VotedSensor::kWristTurn:
+      z.R_RW.reset();
+      break;
+  }
+}
+
+SensorVote::SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options)
+    : options_(options),
+      limits_(options.false_alarm),
+      all_(OptionsOf(estimator, estimator.port_prior_m)),
+      without_one_(OptionsOf(estimator, estimator.port_prior_m)),
+      loose_port_(OptionsOf(estimator, kMovedPort_m)) {}
+
+SensorVote::Ballot SensorVote::Ask(ShaftEstimator& estimator, const Measurements& z,
+                                   const ShaftChange& change) const {
+  const ShaftEstimate estimate = estimator.Update(z, change);
+  const bool fitted =
+      estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
+  Ballot ballot;
+  ballot.limit = limits_.Of(estimate.measurements);
+  ballot.chi2 = estimate.chi2;
+  ballot.agrees = fitted && estimate.chi2 <= ballot.limit;
+  return ballot;
+}
+
+/// The sensor to take out; -1 where it cannot be told, -2 where none alone explains it.
+int SensorVote::Choose(TimeNs t_ns, std::uint8_t jumped,
+                       const std::array<Ballot, kVotedSensors>& without,
+                       std::uint8_t candidates) const {
+  std::uint8_t explain = 0, lately = 0;
+  for (int i = 0; i < kVotedSensors; ++i) {
+    if ((candidates & Bit(i)) == 0 || !without[static_cast<std::size_t>(i)].agrees) continue;
+    explain |= Bit(i);
+    const TimeNs out_ns = out_ns_[static_cast<std::size_t>(i)];
+    if (out_ns != 0 && Seconds(t_ns - out_ns) <= options_.resume_after_s) lately |= Bit(i);
+  }
+  if (explain == 0) return -2;
+  for (const std::uint8_t choice : {explain, static_cast<std::uint8_t>(explain & lately),
+                                    static_cast<std::uint8_t>(explain & jumped)}) {
+    if (std::popcount(choice) == 1) return std::countr_zero(choice);
+  }
+  int best = -1;
+  double least = 0.0, second = 0.0;
+  for (int i = 0; i < kVotedSensors; ++i) {
+    if ((explain & Bit(i)) == 0) continue;
+    const double chi2 = without[static_cast<std::size_t>(i)].chi2;
+    if (best < 0 || chi2 < least) {
+      second = best < 0 ? chi2 : least;
+      if (best < 0) second = std::numeric_limits<double>::infinity();
+      best = i;
+      least = chi2;
+    } else {
+      second = std::min(second, chi2);
+    }
+  }
+  return second - least > kClearly ? best : -1;
+}
+
+bool SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& change, Measurements& z,
+                      Supervision& found) {
+  const std::uint8_t candidates = SensorsOf(z);
+  if (candidates == 0) return true;
+  const Ballot all = Ask(all_, z, change);
+  found.chi2 = all.chi2;
+  found.chi2_limit = all.limit;
+  if (all.agrees) {
+    for (int i = 0; i < kVotedSensors; ++i) {
+      const TimeNs out_ns = out_ns_[static_cast<std::size_t>(i)];
+      if (out_ns == 0 || Seconds(t_ns - out_ns) > options_.resume_after_s) continue;
+      Drop(static_cast<VotedSensor>(i), z);
+      found.voted_out |= Bit(i);
+    }
+    return true;
+  }
+  std::array<Ballot, kVotedSensors> without;
+  for (int i = 0; i < kVotedSensors; ++i) {
+    if ((candidates & Bit(i)) == 0) continue;
+    Measurements rest = z;
+    Drop(static_cast<VotedSensor>(i), rest);
+    without[static_cast<std::size_t>(i)] = Ask(without_one_, rest, change);
+  }
+  const int out = Choose(t_ns, jumped, without, candidates);
+  if (out >= 0) {
+    Drop(static_cast<VotedSensor>(out), z);
+    found.voted_out |= Bit(out);
+    out_ns_[static_cast<std::size_t>(out)] = t_ns;
+    return false;
+  }
+  if (found.reaction >= Reaction::kHold) return false;
+  found.reaction = Reaction::kHold;
+  if (out == -1) {
+    found.stop = Stop::kTipDisagrees;
+  } else {
+    found.stop = Ask(loose_port_, z, change).agrees ? Stop::kPortMoved : Stop::kModelDisagrees;
+  }
+  return false;
+}
+
+}  // namespace flextip

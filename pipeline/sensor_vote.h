@@ -1,0 +1,50 @@
+// All sensors of an instant held against the instrument and each other; the wrong one is found.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "control/supervision/chi_squared.h"
+#include "control/supervision/stops.h"
+#include "control/supervision/supervisor_options.h"
+#include "core/time_series.h"
+#include "estimation/shaft_estimator.h"
+
+namespace flextip {
+
+/// Chi-squared of all sensors together, with all covariances, and, where it is above its limit, of
+/// all but one. Allocates nothing; one fit a call, eight where sensors disagree.
+class SensorVote {
+ public:
+  SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options);
+
+  /// Takes out of `z` the one sensor without which the others agree, and those that were out less
+  /// than `resume_after_s` ago. Where several sensors alone would explain it, the one that was out
+  /// before is taken, then the one that jumped (`jumped`: bits as Supervision::voted_out), then the
+  /// one that explains it far better. `found` gets the bits, chi-squared and, where no sensor can
+  /// be named, a stop with a hold. Returns whether all sensors agree.
+  bool Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& change, Measurements& z,
+            Supervision& found);
+
+ private:
+  /// The agreement of all sensors but one.
+  struct Ballot {
+    bool agrees = false;
+    double chi2 = 0.0, limit = 0.0;
+  };
+  Ballot Ask(ShaftEstimator& estimator, const Measurements& z, const ShaftChange& change) const;
+  int Choose(TimeNs t_ns, std::uint8_t jumped, const std::array<Ballot, kVotedSensors>& without,
+             std::uint8_t candidates) const;
+
+  SupervisorOptions options_;
+  ChiSquaredLimits limits_;
+  ShaftEstimator all_, without_one_, loose_port_;
+  std::array<TimeNs, kVotedSensors> out_ns_{};  // when it was voted out last; 0: never
+};
+
+/// Returns the sensors that `z` has, as bits.
+std::uint8_t SensorsOf(const Measurements& z);
+/// Takes a sensor out of `z`.
+void Drop(VotedSensor sensor, Measurements& z);
+
+}  // namespace flextip

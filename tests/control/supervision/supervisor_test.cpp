@@ -1,0 +1,163 @@
+// The supervisor's state machine and its watch over the wrist, by motions made by hand.
+#include "control/supervision/supervisor.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "control/supervision/chi_squared.h"
+
+namespace flextip {
+namespace {
+
+const Eigen::Vector3d kWrist(0.0, 0.0, 0.4);
+
+TimeNs At(double t_s) { return 1'000'000'000 + std::llround(1e9 * t_s); }
+
+SupervisorOptions Full() {
+  SupervisorOptions options;
+  options.kind = SupervisionKind::kFull;
+  options.rates = {0.01, 0.2, 5.0};
+  return options;
+}
+
+SupervisedCycle Cycle(double t_s, const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_wish) {
+  SupervisedCycle cycle;
+  cycle.t_ns = At(t_s);
+  cycle.p_RW = p_RW;
+  cycle.p_RW_noise_m = 5e-5;
+  cycle.p_wish = p_wish;
+  return cycle;
+}
+
+Supervision Found(Stop stop, Reaction reaction) {
+  Supervision found;
+  found.stop = stop;
+  found.reaction = reaction;
+  return found;
+}
+
+TEST(Supervisor, LetsAQuietCommandThrough) {
+  Supervisor supervisor(Full());
+  const Eigen::Vector3d wish = kWrist + Eigen::Vector3d(1e-5, 0, 0);
+  const auto decision = supervisor.Decide(Cycle(0.0, kWrist, wish));
+  EXPECT_EQ(decision.supervision.reaction, Reaction::kNone);
+  EXPECT_EQ(*decision.p_RW_command, wish);
+}
+
+TEST(Supervisor, HoldsAtTheMeasuredWristAndGoesOnByItself) {
+  Supervisor supervisor(Full());
+  const double dt_s = 1.0 / 30.0;
+  int held = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Vector3d noisy = kWrist + Eigen::Vector3d(0, i % 2 ? 1e-5 : -1e-5, 0);
+    SupervisedCycle cycle = Cycle(i * dt_s, noisy, noisy + Eigen::Vector3d(1e-5, 0, 0));
+    if (i >= 10 && i < 15) cycle.found = Found(Stop::kTipJump, Reaction::kHold);
+    const auto decision = supervisor.Decide(cycle);
+    if (decision.supervision.reaction != Reaction::kHold) continue;
+    ++held;
+    EXPECT_EQ(decision.supervision.stop, Stop::kTipJump);
+    // The wrist of the tenth cycle, not of this one.
+    EXPECT_EQ(*decision.p_RW_command, kWrist - Eigen::Vector3d(0, 1e-5, 0));
+  }
+  // Five cycles of cause, and 0.2 s without.
+  EXPECT_EQ(held, 5 + 6);
+}
+
+TEST(Supervisor, AHoldThatLastsBecomesAFaultUntilSomebodyResumes) {
+  Supervisor supervisor(Full());
+  const double dt_s = 1.0 / 30.0;
+  int first_fault = -1, first_free = -1;
+  for (int i = 0; i < 200; ++i) {
+    SupervisedCycle cycle = Cycle(i * dt_s, kWrist, kWrist);
+    if (i < 70) cycle.found = Found(Stop::kTipDisagrees, Reaction::kHold);
+    cycle.resume = i == 150;
+    const auto decision = supervisor.Decide(cycle);
+    if (decision.supervision.reaction == Reaction::kFault && first_fault < 0) first_fault = i;
+    if (decision.supervision.reaction == Reaction::kNone && first_free < 0) first_free = i;
+    EXPECT_EQ(decision.resumed, i == 150);
+  }
+  EXPECT_EQ(first_fault, 61);  // later than 2 s
+  EXPECT_EQ(first_free, 150);
+}
+
+TEST(Supervisor, FindsAWristThatStandsWhileItIsSentOn) {
+  Supervisor supervisor(Full());
+  double found_s = -1.0;
+  for (int i = 0; i < 60 && found_s < 0.0; ++i) {
+    const double t_s = i / 30.0;
+    const Eigen::Vector3d wish = kWrist + Eigen::Vector3d(0.01 * t_s, 0, 0);
+    const auto decision = supervisor.Decide(Cycle(t_s, kWrist, wish));
+    if (decision.supervision.stop == Stop::kWristNotFollowing) found_s = t_s;
+  }
+  // 10 mm/s away from it: noise and settling pass for 0.92 mm, the lag for 0.25 s.
+  EXPECT_NEAR(found_s, 0.092 + 0.25 + 1.0 / 30.0, 2.0 / 30.0);
+}
+
+TEST(Supervisor, AWristThatLagsWithinItsLagIsNotAstray) {
+  Supervisor supervisor(Full());
+  std::mt19937_64 rng(3);
+  std::normal_distribution<double> noise(0.0, 5e-5);
+  for (int i = 0; i < 3000; ++i) {
+    const double t_s = i / 30.0;
+    const auto way = [](double t) {
+      return Eigen::Vector3d(0.02 * std::sin(2.0 * t), 0.01 * std::cos(3.1 * t), 0.0);
+    };
+    const Eigen::Vector3d measured =
+        kWrist + way(t_s - 0.15) + Eigen::Vector3d(noise(rng), noise(rng), noise(rng));
+    SupervisorOptions options = Full();
+    const auto decision = supervisor.Decide(Cycle(t_s, measured, kWrist + way(t_s)));
+    ASSERT_NE(decision.supervision.stop, Stop::kWristNotFollowing) << t_s;
+  }
+}
+
+TEST(Supervisor, ACommandThatIsNoNumberNeverGoesOut) {
+  Supervisor supervisor(Full());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto decision = supervisor.Decide(Cycle(0.0, kWrist, {nan, 0, 0}));
+  EXPECT_EQ(decision.supervision.stop, Stop::kNotFinite);
+  EXPECT_EQ(*decision.p_RW_command, kWrist);
+}
+
+TEST(Supervisor, TimeThatStandsHolds) {
+  Supervisor supervisor(Full());
+  supervisor.Decide(Cycle(0.0, kWrist, kWrist));
+  const auto decision = supervisor.Decide(Cycle(0.0, kWrist, kWrist + Eigen::Vector3d::UnitX()));
+  EXPECT_EQ(decision.supervision.stop, Stop::kBadTime);
+  EXPECT_EQ(*decision.p_RW_command, kWrist);
+}
+
+TEST(Supervisor, CommandsStayWithinTheRatesThroughHoldsAndResumes) {
+  const SupervisorOptions options = Full();
+  Supervisor supervisor(options);
+  std::mt19937_64 rng(11);
+  std::normal_distribution<double> wander(0.0, 0.01);
+  std::bernoulli_distribution stops(0.03);
+  const double dt_s = 1.0 / 120.0;
+  Eigen::Vector3d wrist = kWrist, last = kWrist;
+  for (int i = 0; i < 5000; ++i) {
+    const Eigen::Vector3d wish = wrist + Eigen::Vector3d(wander(rng), wander(rng), wander(rng));
+    SupervisedCycle cycle = Cycle(i * dt_s, wrist, wish);
+    if (stops(rng)) cycle.found = Found(Stop::kTipJump, Reaction::kHold);
+    const auto decision = supervisor.Decide(cycle);
+    EXPECT_LE((*decision.p_RW_command - last).norm(),
+              options.rates.max_speed_m_s * dt_s * (1.0 + 1e-9));
+    last = *decision.p_RW_command;
+    wrist = last;
+  }
+}
+
+TEST(ChiSquaredLimits, AreThoseOfTheTables) {
+  // Abramowitz and Stegun, table 26.8.
+  const ChiSquaredLimits limits(0.001);
+  EXPECT_NEAR(limits.Of(1), 10.8276, 1e-4);
+  EXPECT_NEAR(limits.Of(5), 20.5150, 1e-4);
+  EXPECT_NEAR(limits.Of(20), 45.3147, 1e-4);
+  EXPECT_TRUE(std::isinf(limits.Of(0)));
+}
+
+}  // namespace
+}  // namespace flextip
