@@ -109,10 +109,10 @@ set(FLEXTIP_PUBLIC_HEADERS
   pipeline/judge_track.h pipeline/track_totals.h
   pipeline/late_samples.h
   pipeline/readings_history.h
-  pipeline/sample_screen.h
-  pipeline/sensor_guard.h
+  pipeline/guard/sample_screen.h
+  pipeline/guard/sensor_guard.h
   pipeline/sensor_readings.h
-  pipeline/sensor_vote.h
+  pipeline/guard/sensor_vote.h
   pipeline/tip_predictor.h
   recording/calibrations/em_field.h
   recording/calibrations/file.h

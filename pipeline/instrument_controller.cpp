@@ -10,10 +10,6 @@ namespace flextip {
 namespace {
 
 constexpr double kMotionDeviations = 2.0;  // of the ellipsoid in which the worst angle is sought
-// The other sensors carry the tip while its deviation is a quarter of the 2 mm that count as
-// astray.
-constexpr double kTakeOver_m = 0.0005;
-constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is taken up
 
 bool IsStraight(ControllerKind kind) {
   return kind == ControllerKind::kStraightCalculate || kind == ControllerKind::kStraightTrack;
@@ -68,7 +64,8 @@ InstrumentController::InstrumentController(const InstrumentControllerOptions& op
       estimator_(OptionsFor(options.estimator, options.control.kind), options.window_samples),
       place_(PlaceOptions(options)),
       guard_(options.estimator, options.supervision),
-      motion_guard_(kMotionDeviations, options.control.max_tissue_gain),
+      motion_guard_(kMotionDeviations, options.control.max_tissue_gain,
+                    options.supervision.rate_hz),
       supervisor_(options.supervision),
       between_(BetweenTips(options)),
       without_tip_(BetweenTips(options)),
@@ -196,34 +193,6 @@ ShaftEstimate InstrumentController::Estimate(TimeNs t_ns, const Measurements& me
   return estimate;
 }
 
-/// Takes out the sensor that disagrees with the others.
-void InstrumentController::Vote(TimeNs t_ns, Measurements& z, Supervision& found) {
-  guard_.Vote(t_ns, model_ ? model_->Shaft() : ShaftChange(), z, found);
-}
-
-/// The tip for the controller. Where its own sensor is out or gone, rod-track goes on with what the
-/// others say, while they know it well enough; and back, without a jump.
-void InstrumentController::Fuse(ControllerCommand& command) {
-  const ShaftEstimate& estimate = command.estimate;
-  command.p_RE_measured =
-      FuseTip(options_.control.kind, command.measurements, estimate, options_.em_is_tip);
-  if (options_.supervision.kind != SupervisionKind::kFull ||
-      options_.control.kind != ControllerKind::kRodTrack)
-    return;
-  const bool others = !command.p_RE_measured && estimate.status == EstimateStatus::kOk &&
-                      MaxSd(estimate.p_RE_covariance_m2) < kTakeOver_m;
-  if (others) command.p_RE_measured = estimate.p_RE;
-  if (!command.p_RE_measured) {
-    p_RE_last_.reset();
-    return;
-  }
-  if (others != by_others_ && p_RE_last_) p_RE_offset_ = *p_RE_last_ - *command.p_RE_measured;
-  by_others_ = others;
-  p_RE_offset_ *= std::exp(-1.0 / (options_.supervision.rate_hz * kTakeOver_s));
-  *command.p_RE_measured += p_RE_offset_;
-  p_RE_last_ = command.p_RE_measured;
-}
-
 /// Keeps the goal out of forbidden regions.
 FixturesOutput InstrumentController::Keep(const ControllerInputs& inputs,
                                           const ShaftEstimate& estimate) const {
@@ -285,45 +254,6 @@ void InstrumentController::ControlDirection(const Eigen::Vector3d& d_RE_desired,
   command.p_RE_used = input.p_RE;
   command.step_limited = output.step_limited;
   command.damped = output.damped;
-}
-
-/// The last word over the command.
-void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerCommand& command) {
-  const SupervisorOptions& options = options_.supervision;
-  if (options.kind == SupervisionKind::kNone) return;
-  Supervision& found = command.supervision;
-  const bool acts =
-      command.status == ControlStatus::kOk || command.status == ControlStatus::kStraightInstead;
-  const auto hold = [&found](bool cause, Stop stop) {
-    if (!cause || found.reaction >= Reaction::kHold) return;
-    found.stop = stop;
-    found.reaction = Reaction::kHold;
-  };
-  SupervisedCycle cycle;
-  cycle.t_ns = inputs.t_ns;
-  cycle.resume = inputs.resume;
-  if (command.status != ControlStatus::kNoWrist) {
-    cycle.p_RW = command.measurements.p_RW;
-    cycle.p_RW_noise_m = command.measurements.wrist_position_noise_m;
-  }
-  if (acts) cycle.p_wish = command.p_RW_command;
-  if (options.kind == SupervisionKind::kFull) {
-    hold(command.status == ControlStatus::kNoWrist, Stop::kStaleWrist);
-    hold(command.status == ControlStatus::kNoTip && inputs.p_RE_desired, Stop::kStaleTip);
-    hold(options.max_tip_force_N > 0.0 && command.estimate.status == EstimateStatus::kOk &&
-             command.estimate.model.f_tip_N.norm() > options.max_tip_force_N,
-         Stop::kForce);
-    if (acts && !command.J_tip_wrist.isZero(0.0)) {
-      found.worst_angle_rad =
-          motion_guard_.Update(command.J_tip_wrist, command.estimate, command.measurements.p_RW);
-      hold(found.worst_angle_rad > options.max_motion_angle_rad, Stop::kMotionAngle);
-    }
-  }
-  cycle.found = found;
-  const Supervisor::Decision decision = supervisor_.Decide(cycle);
-  if (decision.resumed) guard_.Forget();
-  found = decision.supervision;
-  if (decision.p_RW_command) command.p_RW_command = *decision.p_RW_command;
 }
 
 }  // namespace flextip

@@ -16,7 +16,7 @@
 #include "pipeline/instrument_estimator.h"
 #include "pipeline/instrument_tracker.h"
 #include "pipeline/late_samples.h"
-#include "pipeline/sensor_guard.h"
+#include "pipeline/guard/sensor_guard.h"
 #include "pipeline/sensor_readings.h"
 
 namespace flextip {

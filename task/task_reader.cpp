@@ -8,6 +8,9 @@
 namespace flextip {
 namespace {
 
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kMostFalseAlarms = 0.01;
+
 bool IsOutsideForbidden(const YamlMap& map) {
   return ReadChoice(map, "forbidden", {"inside", "outside"}) == 1;
 }
@@ -75,6 +78,39 @@ void TaskReader::ReadControl(const YamlMap& map) {
   task_.fixtures.margin_m = map.NonNegativeOr("fixture_margin_m", 0.0);
   task_.fixtures.margin_sd = map.NonNegativeOr("fixture_margin_sd", 0.0);
   if (map.Has("direction")) ReadDirection(Section(map, "direction"));
+}
+
+void TaskReader::ReadSupervisor(const YamlMap& map) {
+  if (!map.Has("supervisor")) return;
+  const YamlMap section = Section(map, "supervisor");
+  SupervisorOptions& options = task_.supervision;
+  if (section.Has("kind")) {
+    const std::string name = section.Text("kind");
+    const auto kind = SupervisionKindNamed(name);
+    if (!kind) {
+      throw section.Error("kind", fmt::format("found '{}', expected none, rate-limits, "
+                                              "fixed-thresholds or full",
+                                              name));
+    }
+    options.kind = *kind;
+  }
+  options.resume_after_s = section.PositiveOr("resume_after_s", options.resume_after_s);
+  options.fault_after_s = section.PositiveOr("fault_after_s", options.fault_after_s);
+  options.stale_s = section.PositiveOr("stale_s", options.stale_s);
+  options.follow_lag_s = section.PositiveOr("follow_lag_s", options.follow_lag_s);
+  options.false_alarm = section.PositiveOr("false_alarm", options.false_alarm);
+  if (options.false_alarm > kMostFalseAlarms)
+    throw section.Error("false_alarm", "expected a probability of a cycle, at most 0.01");
+  options.max_tip_force_N = section.PositiveOr("max_tip_force_N", options.max_tip_force_N);
+  options.fixed_jump_m = section.PositiveOr("fixed_jump_m", options.fixed_jump_m);
+  const double angle_deg =
+      section.PositiveOr("max_motion_angle_deg", options.max_motion_angle_rad * kDegrees);
+  if (angle_deg >= 90.0) {
+    throw section.Error(
+        "max_motion_angle_deg",
+        fmt::format("found {}, expected less than 90: the tip would then go back", angle_deg));
+  }
+  options.max_motion_angle_rad = angle_deg / kDegrees;
 }
 
 void TaskReader::ReadDirection(const YamlMap& map) {

@@ -9,6 +9,7 @@
 #include "control/controller.h"
 #include "control/direction_controller.h"
 #include "control/fixtures.h"
+#include "control/supervision/supervisor_options.h"
 #include "control/tip_path.h"
 #include "recording/text/yaml_map.h"
 
@@ -20,6 +21,7 @@ struct TipTask {
   std::optional<DirectionOptions> direction;  ///< where the path's waypoints have directions
   Eigen::Vector3d direction_free_axis = Eigen::Vector3d::Zero();
   Fixtures fixtures;
+  SupervisorOptions supervision;
 };
 
 /// Reads a direction and makes it a unit vector. Throws InputError for a zero vector.
@@ -49,6 +51,8 @@ class TaskReader {
   /// Reads gain, bounds, margins and the direction's control off `map`, which is in the sections
   /// already.
   void ReadControl(const YamlMap& map);
+  /// Reads the section `supervisor` of `map`, where it has one.
+  void ReadSupervisor(const YamlMap& map);
   /// Turns the direction's control on where the waypoints have directions. `control` and
   /// `controllers` are where to complain; `kinds` are all that will run.
   void FinishDirection(const YamlMap& control, const YamlMap& controllers,

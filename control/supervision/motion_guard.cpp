@@ -12,7 +12,37 @@ namespace {
 
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 
+constexpr double kAxesRate_hz = 9.0 * 30.0;  // axes a second: some 5 ms of a processor
+
+// Nobody presses a shaft with more than a third of the load under which it buckles (the usual
+// safety factor against buckling); Euler's load of a shaft held at one end is pi^2 / 4 EI / L^2.
+// Taken as two standard deviations of each component of the tip force.
+constexpr double kForceSd_units = std::numbers::pi * std::numbers::pi / 4.0 / 3.0 / 2.0;
+
+/// Wrist, port and tip force with that knowledge of the force. An estimate's own prior is far
+/// wider, and the force along the shaft is often known by it alone.
+struct Plausible {
+  Vector9d shift = Vector9d::Zero();  ///< of the mean from the estimate
+  Matrix9d covariance;
+};
+
+Plausible WithPlausibleForce(const ShaftEstimate& estimate) {
+  const Instrument& instrument = estimate.model.instrument;
+  const double sd_N = kForceSd_units * instrument.bending_stiffness_Nm2 /
+                      (instrument.length_m * instrument.length_m);
+  const Matrix9d& C = estimate.covariance;
+  Eigen::Matrix3d seen = C.bottomRightCorner<3, 3>();
+  seen.diagonal().array() += sd_N * sd_N;
+  const Eigen::Matrix<double, 9, 3> gain = C.rightCols<3>() * seen.inverse();
+  return {-gain * estimate.model.f_tip_N, C - gain * C.bottomRows<3>()};
+}
+
 }  // namespace
+
+MotionGuard::MotionGuard(double deviations, double max_tissue_gain, double rate_hz)
+    : deviations_(deviations),
+      max_tissue_gain_(max_tissue_gain),
+      axes_a_cycle_(std::clamp(static_cast<int>(kAxesRate_hz / rate_hz), 1, kAxes)) {}
 
 double MotionGuard::AngleAt(const Eigen::Matrix3d& J_hat, const ShaftEstimate& estimate,
                             const Eigen::Vector3d& p_RW, const Vector9d& shift) {
@@ -36,14 +66,17 @@ double MotionGuard::Update(const Eigen::Matrix3d& J_hat, const ShaftEstimate& es
     seen_rad_.fill(0.0);
     return 0.0;
   }
-  // The axis through the ellipsoid's surface in the direction of one parameter: a column of the
-  // covariance over that parameter's deviation.
-  const double sd = std::sqrt(std::max(0.0, estimate.covariance(axis_, axis_)));
-  Vector9d shift = Vector9d::Zero();
-  if (sd > 0.0) shift = deviations_ / sd * estimate.covariance.col(axis_);
-  seen_rad_[static_cast<std::size_t>(axis_)] =
-      std::max(AngleAt(J_hat, estimate, p_RW, shift), AngleAt(J_hat, estimate, p_RW, -shift));
-  axis_ = (axis_ + 1) % kAxes;
+  const auto [mean, covariance] = WithPlausibleForce(estimate);
+  for (int i = 0; i < axes_a_cycle_; ++i) {
+    // The axis through the ellipsoid's surface in the direction of one parameter: a column of the
+    // covariance over that parameter's deviation.
+    const double sd = std::sqrt(std::max(0.0, covariance(axis_, axis_)));
+    Vector9d shift = Vector9d::Zero();
+    if (sd > 0.0) shift = deviations_ / sd * covariance.col(axis_);
+    seen_rad_[static_cast<std::size_t>(axis_)] = std::max(
+        AngleAt(J_hat, estimate, p_RW, mean + shift), AngleAt(J_hat, estimate, p_RW, mean - shift));
+    axis_ = (axis_ + 1) % kAxes;
+  }
   return *std::max_element(seen_rad_.begin(), seen_rad_.end());
 }
 

@@ -9,18 +9,18 @@
 
 namespace flextip {
 
-/// Follows what FindWorstMotion finds, at the cost of two rods a cycle. A cycle looks at one axis
-/// of the ellipsoid in which wrist, port and tip force lie, so that nine cycles look at all. Fixed
-/// size, allocates nothing.
+/// Follows what FindWorstMotion finds, at the cost of two rods an axis of the ellipsoid in which
+/// wrist, port and tip force lie: all nine axes in a cycle up to 30 Hz, fewer of faster cycles. No
+/// tip force is believed that a shaft is not used for. Fixed size, allocates nothing.
 class MotionGuard {
  public:
-  /// Takes the ellipsoid's half axes in standard deviations, and how far tissue is trusted.
-  MotionGuard(double deviations, double max_tissue_gain)
-      : deviations_(deviations), max_tissue_gain_(max_tissue_gain) {}
+  /// Takes the ellipsoid's half axes in standard deviations, how far tissue is trusted, and the
+  /// cycles' rate.
+  MotionGuard(double deviations, double max_tissue_gain, double rate_hz);
 
-  /// Returns the largest angle of (2.9) (rad) over the estimate and the axes seen in the last nine
-  /// cycles, between what the controller's `J_hat` (d tip / d wrist) is asked for and what the
-  /// exact rod does. Zero where the estimate has no rod, or `J_hat` is not finite.
+  /// Returns the largest angle of (2.9) (rad) over the axes, as each was seen last, between what
+  /// the controller's `J_hat` (d tip / d wrist) is asked for and what the exact rod does. Zero
+  /// where the estimate has no rod, or `J_hat` is not finite.
   double Update(const Eigen::Matrix3d& J_hat, const ShaftEstimate& estimate,
                 const Eigen::Vector3d& p_RW);
 
@@ -30,6 +30,7 @@ class MotionGuard {
                  const Eigen::Vector3d& p_RW, const Eigen::Matrix<double, 9, 1>& shift);
 
   double deviations_, max_tissue_gain_;
+  int axes_a_cycle_;
   ShaftRod rod_;
   std::array<double, kAxes> seen_rad_{};
   int axis_ = 0;

@@ -25,8 +25,8 @@ constexpr double kSettle_m = 0.0005;  // a servo may stay so far from its set-po
 
 }  // namespace
 
-void Supervisor::Keep(TimeNs t_ns, const Eigen::Vector3d& p_RW) {
-  sent_[next_] = {t_ns, p_RW};
+void Supervisor::Keep(const SupervisedCycle& cycle, const Eigen::Vector3d& p_RW) {
+  sent_[next_] = {cycle.t_ns, p_RW, cycle.p_RW.value_or(p_RW)};
   next_ = (next_ + 1) % kSize;
   count_ = std::min(count_ + 1, kSize);
   p_last_ = p_RW;
@@ -35,16 +35,21 @@ void Supervisor::Keep(TimeNs t_ns, const Eigen::Vector3d& p_RW) {
 bool Supervisor::IsAstray(const SupervisedCycle& cycle) const {
   if (!cycle.p_RW || count_ == 0) return false;
   const double allowed_m = kSettle_m + kDeviations * std::sqrt(2.0) * cycle.p_RW_noise_m;
-  double nearest_m = std::numeric_limits<double>::infinity();
+  const Sent& newest = sent_[(next_ + kSize - 1) % kSize];
+  const double moved_m = (*cycle.p_RW - newest.p_RW_before).norm();
+  double nearest_m = std::numeric_limits<double>::infinity(), farthest_m = 0.0, away_m = 0.0;
   std::optional<Eigen::Vector3d> later;
   for (std::size_t i = 1; i <= count_; ++i) {
     const Sent& sent = sent_[(next_ + kSize - i) % kSize];
     nearest_m =
         std::min(nearest_m, DistanceFrom(sent.p_RW, later.value_or(sent.p_RW), *cycle.p_RW));
-    if (nearest_m <= allowed_m) return false;
+    farthest_m = std::max(farthest_m, (sent.p_RW - newest.p_RW_before).norm());
+    away_m = std::max(away_m, (sent.p_RW_before - *cycle.p_RW).norm());
     later = sent.p_RW;
     // The command of before the lag counts: the robot may only now leave it.
-    if (Seconds(cycle.t_ns - sent.t_ns) > options_.follow_lag_s) return true;
+    if (Seconds(cycle.t_ns - sent.t_ns) <= options_.follow_lag_s) continue;
+    const bool stands = nearest_m > allowed_m && away_m < allowed_m;
+    return stands || moved_m > farthest_m + allowed_m;
   }
   // Not commanded for long enough yet to say.
   return false;
@@ -124,12 +129,22 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
   if (options_.kind == SupervisionKind::kFull) {
     if (cycle.p_wish && !cycle.p_wish->allFinite()) hold(Stop::kNotFinite);
     if (IsAstray(cycle)) hold(Stop::kWristNotFollowing);
+    if (!cycle.may_point_wrong) wrong_since_ns_ = 0;
+    if (cycle.may_point_wrong && wrong_since_ns_ == 0) wrong_since_ns_ = cycle.t_ns;
+    if (wrong_since_ns_ != 0 && Seconds(cycle.t_ns - wrong_since_ns_) > options_.resume_after_s)
+      hold(Stop::kMotionAngle);
     Judge(cycle, decision);
   } else if (options_.kind == SupervisionKind::kFixedThresholds) {
     Judge(cycle, decision);
   }
-  const bool moves =
-      decision.supervision.reaction < Reaction::kHold && cycle.p_wish && cycle.p_wish->allFinite();
+  // For a moment the robot only waits: the next estimate may know better.
+  const bool waits = options_.kind == SupervisionKind::kFull && cycle.may_point_wrong;
+  if (waits && decision.supervision.reaction == Reaction::kNone) {
+    decision.supervision.stop = Stop::kMotionAngle;
+    decision.supervision.reaction = Reaction::kLimit;
+  }
+  const bool moves = decision.supervision.reaction < Reaction::kHold && !waits && cycle.p_wish &&
+                     cycle.p_wish->allFinite();
   if (moves) {
     p_held_.reset();
     decision.p_RW_command = Limit(cycle, decision.supervision);
@@ -139,7 +154,7 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
     decision.p_RW_command = p_held_;
     v_last_m_s_.setZero();
   }
-  if (decision.p_RW_command) Keep(cycle.t_ns, *decision.p_RW_command);
+  if (decision.p_RW_command) Keep(cycle, *decision.p_RW_command);
   t_last_ns_ = cycle.t_ns;
   return decision;
 }

@@ -19,6 +19,7 @@ struct SupervisedCycle {
   double p_RW_noise_m = 0.0;              ///< standard deviation per axis
   std::optional<Eigen::Vector3d> p_wish;  ///< the controller's command; empty: none
   Supervision found;                      ///< the gravest finding so far; reaction as it asks for
+  bool may_point_wrong = false;           ///< the Jacobian of the wish is not known well enough
   bool resume = false;                    ///< a person says go on
 };
 
@@ -37,8 +38,8 @@ class Supervisor {
   /// fault, the wrist as it was measured when that began.
   Decision Decide(const SupervisedCycle& cycle);
 
-  /// Returns whether the wrist of a cycle is away from all that was commanded lately by more than
-  /// noise and the robot's lag explain.
+  /// Returns whether the wrist did not move for the robot's lag though it was sent away all the
+  /// time, or moved farther in a cycle than it was sent; both by more than noise.
   bool IsAstray(const SupervisedCycle& cycle) const;
 
   /// Returns the command sent last; empty before the first.
@@ -47,11 +48,12 @@ class Supervisor {
  private:
   struct Sent {
     TimeNs t_ns = 0;
-    Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();
+    Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();         // commanded
+    Eigen::Vector3d p_RW_before = Eigen::Vector3d::Zero();  // as measured in that cycle
   };
   static constexpr std::size_t kSize = 512;
 
-  void Keep(TimeNs t_ns, const Eigen::Vector3d& p_RW);
+  void Keep(const SupervisedCycle& cycle, const Eigen::Vector3d& p_RW);
   Eigen::Vector3d Limit(const SupervisedCycle& cycle, Supervision& supervision);
   void Judge(const SupervisedCycle& cycle, Decision& decision);
 
@@ -61,6 +63,7 @@ class Supervisor {
   std::optional<Eigen::Vector3d> p_last_, p_held_;
   Eigen::Vector3d v_last_m_s_ = Eigen::Vector3d::Zero();
   TimeNs t_last_ns_ = 0;
+  TimeNs wrong_since_ns_ = 0;                      // since when it may point wrong; 0: it does not
   TimeNs held_since_ns_ = 0, clear_since_ns_ = 0;  // 0: not held, not clear
   Stop held_by_ = Stop::kNone;
   bool fault_ = false;

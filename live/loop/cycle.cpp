@@ -29,6 +29,12 @@ InstrumentControllerOptions OptionsOf(const Session& session) {
   options.late.carry_em0 =
       session.EmIsTip() || em0.value_s != 0.0 || em0.sd_s != 0.0 || em0_has_clock;
   options.rate_hz = session.rate_hz;
+  options.supervision = session.task.supervision;
+  options.supervision.rate_hz = session.rate_hz;
+  options.supervision.resume_after_s = session.limits.resume_after_s;
+  // A camera may be slower than the supervisor's usual tip, and a session says when it is stale.
+  if (session.camera)
+    options.supervision.stale_s = std::max(options.supervision.stale_s, session.camera->stale_s);
   return options;
 }
 
@@ -98,7 +104,8 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
   if (clear && session_.path && phase_ == Phase::kWaiting) phase_ = Phase::kAveraging;
   if (!clear && phase_ == Phase::kAveraging) average_from_ns_ = 0;
   const bool moves = clear && phase_ == Phase::kMoving;
-  const ControllerInputs wish = Wish(inputs, moves, new_tip, dt_s, outputs);
+  ControllerInputs wish = Wish(inputs, moves, new_tip, dt_s, outputs);
+  wish.resume = PersonResumed(inputs);
   if (new_tip) tip_t_ns_ = tip_times->first;
   command_ = controller_.Step(wish);
   const ControllerCommand& command = command_;
@@ -112,14 +119,30 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
     outputs.p_RE_goal = command.goal.p_RE_desired;
     outputs.fixture_limited = command.goal.status != FixtureStatus::kFree;
     Command(command, dt_s, outputs);
-    if (path_ && path_->Done()) {
+    if (path_ && path_->Done() && outputs.hold == Hold::kNone) {
       outputs.done = true;
       phase_ = Phase::kDone;
     }
   }
+  Fault(inputs, outputs);
   if (outputs.hold != Hold::kNone) HoldStill(inputs, outputs);
   outputs.p_RE = p_RE_known_;
   return outputs;
+}
+
+/// A fault pauses the robot. Whoever enables it again says that it may go on.
+bool Cycle::PersonResumed(const CycleInputs& inputs) {
+  const auto& state = inputs.streams.state;
+  if (!fault_ || !state) return false;
+  const bool enabled = state->value.state == CrtkState::kEnabled;
+  if (!enabled) paused_by_fault_ = true;
+  return enabled && paused_by_fault_;
+}
+
+void Cycle::Fault(const CycleInputs& inputs, CycleOutputs& outputs) {
+  fault_ = command_.supervision.reaction == Reaction::kFault;
+  if (!fault_) paused_by_fault_ = false;
+  if (fault_ && !outputs.state_command) outputs.state_command = Ending(inputs);
 }
 
 /// The robot is homed and enabled once. Whoever disables or pauses it later has a reason.
@@ -247,6 +270,10 @@ void Cycle::StartPath() {
 
 void Cycle::Command(const ControllerCommand& command, double dt_s, CycleOutputs& outputs) {
   const Eigen::Vector3d& p_RW = command.measurements.p_RW;
+  if (command.supervision.reaction >= Reaction::kHold) {
+    outputs.hold = HoldBy(command.supervision.stop);
+    return;
+  }
   if (Acts(command.status)) {
     p_target_ = command.p_RW_command;
   } else if (command.status != ControlStatus::kNoTip || !p_target_) {

@@ -53,6 +53,8 @@ class Cycle {
   SensorReadings Readings(const StreamInputs& streams);
   std::optional<CrtkCommand> StartUp(const CycleInputs& inputs);
   std::optional<CrtkCommand> Ending(const CycleInputs& inputs);
+  bool PersonResumed(const CycleInputs& inputs);
+  void Fault(const CycleInputs& inputs, CycleOutputs& outputs);
   void Average(const CycleInputs& inputs, const ControllerCommand& command, bool new_tip);
   void StartPath();
   ControllerInputs Wish(const CycleInputs& inputs, bool moves, bool new_tip, double dt_s,
@@ -84,6 +86,8 @@ class Cycle {
   std::optional<Eigen::Vector3d> p_held_;  // the wrist as measured when the hold began
   TimeNs asked_ns_ = 0;                    // when the robot was last told to change its state
   bool asked_home_ = false;
+  bool fault_ = false,
+       paused_by_fault_ = false;  // of the supervisor; and the robot then was paused
 };
 
 }  // namespace flextip::live

@@ -29,10 +29,60 @@ bool IsStale(const Session& session, const CycleInputs& inputs, StreamName strea
 }  // namespace
 
 const char* Name(Hold hold) {
-  constexpr std::array names{"none",        "bad_time", "source_lost",  "stale_wrist", "stale_tip",
-                             "not_enabled", "resuming", "starting",     "no_goal",     "no_command",
-                             "not_finite",  "stopped",  "delay_unknown"};
+  constexpr std::array names{"none",
+                             "bad_time",
+                             "source_lost",
+                             "stale_wrist",
+                             "stale_tip",
+                             "not_enabled",
+                             "resuming",
+                             "starting",
+                             "no_goal",
+                             "no_command",
+                             "not_finite",
+                             "stopped",
+                             "delay_unknown",
+                             "tip_jump",
+                             "tip_disagrees",
+                             "model_disagrees",
+                             "wrist_not_following",
+                             "port_moved",
+                             "port_depth",
+                             "force",
+                             "motion_angle"};
+  static_assert(names.size() == kHolds);
   return names[static_cast<std::size_t>(hold)];
+}
+
+Hold HoldBy(Stop stop) {
+  switch (stop) {
+    case Stop::kNotFinite:
+      return Hold::kNotFinite;
+    case Stop::kBadTime:
+      return Hold::kBadTime;
+    case Stop::kStaleWrist:
+      return Hold::kStaleWrist;
+    case Stop::kStaleTip:
+      return Hold::kStaleTip;
+    case Stop::kTipJump:
+      return Hold::kTipJump;
+    case Stop::kTipDisagrees:
+      return Hold::kTipDisagrees;
+    case Stop::kModelDisagrees:
+      return Hold::kModelDisagrees;
+    case Stop::kWristNotFollowing:
+      return Hold::kWristNotFollowing;
+    case Stop::kPortMoved:
+      return Hold::kPortMoved;
+    case Stop::kPortDepth:
+      return Hold::kPortDepth;
+    case Stop::kForce:
+      return Hold::kForce;
+    case Stop::kMotionAngle:
+      return Hold::kMotionAngle;
+    default:
+      return Hold::kNoCommand;
+  }
 }
 
 std::optional<std::pair<TimeNs, TimeNs>> TimesIn(const StreamInputs& streams, StreamName stream) {

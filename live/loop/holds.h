@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "control/supervision/stops.h"
 #include "core/time_series.h"
 #include "live/session/session.h"
 #include "live/streams/streams.h"
@@ -27,9 +28,22 @@ enum class Hold : std::uint8_t {
   kNotFinite,     ///< the controller's command is no number
   kStopped,       ///< the operator said stop, or the path is done
   kDelayUnknown,  ///< before kNotEnabled: how old the tip is on arrival is not stated
+  // By the supervisor (control/supervision/stops.h).
+  kTipJump,
+  kTipDisagrees,
+  kModelDisagrees,
+  kWristNotFollowing,
+  kPortMoved,
+  kPortDepth,
+  kForce,
+  kMotionAngle,
 };
+inline constexpr int kHolds = static_cast<int>(Hold::kMotionAngle) + 1;
+
 /// Returns the name as in recordings and summaries: "stale_wrist".
 const char* Name(Hold hold);
+/// Returns the hold that a stop of the supervisor is.
+Hold HoldBy(Stop stop);
 
 struct CycleInputs {
   TimeNs t_ns = 0;  ///< of the cycle (1970)

@@ -103,6 +103,8 @@ class SessionReader {
     file_.session.rate_hz = NumberIn(map, "rate_hz", kRate);
     TaskReader reader(file_.file.parent_path(), file_.session.task, file_.sections);
     reader.ReadControl(map);
+    file_.session.task.supervision.kind = SupervisionKind::kFull;
+    reader.ReadSupervisor(file_.top);
     RequireIn(map, "max_step_m", kStep, file_.session.task.controller.max_step_m);
     file_.session.task.controller.kind = ReadControllerKind(map, "kind", map.Text("kind"));
     const std::int64_t window = map.Has("window_samples") ? map.Integer("window_samples") : 0;
@@ -127,7 +129,8 @@ class SessionReader {
     limits.resume_after_s = NumberInOr(map, "resume_after_s", kTime, limits.resume_after_s);
     if (map.Has("workspace")) {
       const YamlMap box = file_.Section(map, "workspace");
-      limits.workspace = WorkspaceBox{VectorIn(box, "lower_m", kPlace), VectorIn(box, "upper_m", kPlace)};
+      limits.workspace =
+          WorkspaceBox{VectorIn(box, "lower_m", kPlace), VectorIn(box, "upper_m", kPlace)};
       if ((limits.workspace->lower_m.array() >= limits.workspace->upper_m.array()).any()) {
         throw box.Error("upper_m", "expected every component above lower_m's");
       }

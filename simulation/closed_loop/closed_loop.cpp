@@ -150,6 +150,7 @@ class Loop {
     update.p_RE = shape_.T_RE().p;
     update.status = command.status;
     update.tip = command.measurements.tip;
+    update.supervision = command.supervision;
     result_.updates.push_back(update);
   }
 
@@ -208,6 +209,7 @@ InstrumentControllerOptions ControllerOptionsOf(const LoopSetup& setup) {
   options.late.em0_time_sd_s = setup.em0_latency.sd_s;
   options.late.carry_em0 = setup.em0_latency.value_s != 0.0 || setup.em0_latency.sd_s != 0.0;
   options.rate_hz = setup.update_rate_hz;
+  options.supervision = setup.supervision;
   return options;
 }
 

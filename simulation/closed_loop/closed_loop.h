@@ -47,6 +47,7 @@ struct LoopSetup {
   Eigen::Vector3d direction_free_axis = Eigen::Vector3d::Zero();
   Fixtures fixtures;
   double port_prior_m = kPortRegistration_m;
+  SupervisorOptions supervision;
   std::uint64_t seed = 1;
 };
 
@@ -64,6 +65,7 @@ struct LoopUpdate {
   Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();          ///< true
   double deviation_m = 0.0;                                ///< of the true tip from the path
   ControlStatus status = ControlStatus::kOk;
+  Supervision supervision;
   std::optional<TipObservation> tip;  ///< as the controller had it, carried on to now where late
 };
 

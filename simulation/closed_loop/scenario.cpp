@@ -261,6 +261,7 @@ class ScenarioReader {
     ReadControllers();
     std::optional<YamlMap> control;
     if (top_.Has("control")) control = Section(top_, "control");
+    reader.ReadSupervisor(top_);
     if (control) {
       reader.ReadControl(*control);
       ReadTimes(*control);
@@ -270,6 +271,8 @@ class ScenarioReader {
     LoopSetup& loop = scenario_.loop;
     loop.path = std::move(task.path);
     loop.controller = task.controller;
+    loop.supervision = task.supervision;
+    loop.supervision.rate_hz = loop.update_rate_hz;
     loop.direction = task.direction;
     loop.direction_free_axis = task.direction_free_axis;
     loop.fixtures = std::move(task.fixtures);

@@ -32,7 +32,8 @@ TEST(Cycle, OneFunctionOfAtMostFortyLinesCarriesIt) {
   EXPECT_LE(LinesOf(text, head), 40);
   const std::string cycle = text.substr(text.find(head));
   std::size_t at = 0;
-  for (const char* stage : {"See(", "Gather(", "Correct(", "Estimate(", "FuseTip(", "Control("}) {
+  for (const char* stage :
+       {"See(", "Gather(", "Correct(", "Vote(", "Estimate(", "Fuse(", "Control(", "Supervise("}) {
     at = cycle.find(stage, at);
     EXPECT_NE(at, std::string::npos) << stage;
   }

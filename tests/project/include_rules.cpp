@@ -84,7 +84,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
        {"simulation", kClosedLoop, "diagnosis", "workspace", "reproduction", "apps", "bench",
         "tests"}},
       {"geos", {"reproduction"}},
-      {"boost/", {"workspace", "reproduction"}},
+      {"boost/", {"control", "workspace", "reproduction"}},
       {"nlohmann/",
        {"exchange", "live", "report", "exports", "reproduction", "apps", "bench", "testdata",
         "tests"}},

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "control/supervision/chi_squared.h"
+#include "core/draw_vector.h"
 
 namespace flextip {
 namespace {
@@ -107,8 +108,7 @@ TEST(Supervisor, AWristThatLagsWithinItsLagIsNotAstray) {
       return Eigen::Vector3d(0.02 * std::sin(2.0 * t), 0.01 * std::cos(3.1 * t), 0.0);
     };
     const Eigen::Vector3d measured =
-        kWrist + way(t_s - 0.15) + Eigen::Vector3d(noise(rng), noise(rng), noise(rng));
-    SupervisorOptions options = Full();
+        kWrist + way(t_s - 0.15) + DrawVector<3>(noise, rng);
     const auto decision = supervisor.Decide(Cycle(t_s, measured, kWrist + way(t_s)));
     ASSERT_NE(decision.supervision.stop, Stop::kWristNotFollowing) << t_s;
   }
@@ -131,7 +131,8 @@ TEST(Supervisor, TimeThatStandsHolds) {
 }
 
 TEST(Supervisor, CommandsStayWithinTheRatesThroughHoldsAndResumes) {
-  const SupervisorOptions options = Full();
+  SupervisorOptions options = Full();
+  options.rate_hz = 120.0;
   Supervisor supervisor(options);
   std::mt19937_64 rng(11);
   std::normal_distribution<double> wander(0.0, 0.01);
@@ -139,7 +140,7 @@ TEST(Supervisor, CommandsStayWithinTheRatesThroughHoldsAndResumes) {
   const double dt_s = 1.0 / 120.0;
   Eigen::Vector3d wrist = kWrist, last = kWrist;
   for (int i = 0; i < 5000; ++i) {
-    const Eigen::Vector3d wish = wrist + Eigen::Vector3d(wander(rng), wander(rng), wander(rng));
+    const Eigen::Vector3d wish = wrist + DrawVector<3>(wander, rng);
     SupervisedCycle cycle = Cycle(i * dt_s, wrist, wish);
     if (stops(rng)) cycle.found = Found(Stop::kTipJump, Reaction::kHold);
     const auto decision = supervisor.Decide(cycle);

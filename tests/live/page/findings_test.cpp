@@ -64,7 +64,7 @@ TEST(Words, AreThereForEveryHold) {
   std::string words;
   for (const ServedFile& file : WebFiles())
     if (file.path == "/words.js") words = file.text;
-  for (int i = 0; i <= static_cast<int>(Hold::kDelayUnknown); ++i) {
+  for (int i = 0; i < kHolds; ++i) {
     const std::string name = Name(static_cast<Hold>(i));
     EXPECT_THAT(words, testing::HasSubstr("\n  " + name + ": [\"")) << name;
   }

@@ -1,4 +1,4 @@
-#include "pipeline/sensor_guard.h"
+#include "pipeline/guard/sensor_guard.h"
 
 #include "pipeline/tip_fusion.h"
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "pipeline/sample_screen.h"
-#include "pipeline/sensor_vote.h"
+#include "pipeline/guard/sample_screen.h"
+#include "pipeline/guard/sensor_vote.h"
 
 namespace flextip {
 
@@ -29,6 +29,8 @@ class SensorGuard {
 
   /// Believes the places of `readings`, as ScreenTip left them, whose sensors are not out.
   void Believe(const LateSamples& late, const SensorReadings& readings, const Supervision& found);
+
+  bool TipIsStale(TimeNs t_ns) const { return screen_.TipIsStale(t_ns); }
 
   /// Takes the next places as they come: a person says that they are right.
   void Forget() { screen_.Forget(); }

@@ -1,4 +1,4 @@
-#include "pipeline/sample_screen.h"
+#include "pipeline/guard/sample_screen.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +29,11 @@ double Sd(const Eigen::Matrix3d& covariance_m2) {
 
 }  // namespace
 
+bool SampleScreen::IsStale(const Past& past, TimeNs now_ns) const {
+  const double limit_s = std::max(options_.stale_s, kGaps * Seconds(past.gap_ns));
+  return past.arrived_ns == 0 || Seconds(now_ns - past.arrived_ns) > limit_s;
+}
+
 /// What is wrong with a stream in this cycle; kNone where it can be used.
 Stop SampleScreen::Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& figures, bool finite,
                         const std::optional<Eigen::Vector3d>& p_RW, double p_RW_sd_m) const {
@@ -49,8 +54,7 @@ Stop SampleScreen::Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& f
     past.t_ns = t_ns;
     past.arrived_ns = now_ns;
   }
-  const double limit_s = std::max(options_.stale_s, kGaps * Seconds(past.gap_ns));
-  if (Seconds(now_ns - past.arrived_ns) > limit_s) return Stop::kSourceLost;
+  if (IsStale(past, now_ns)) return Stop::kSourceLost;
   const double moved_m = p_RW ? (*p_RW - past.p_RW).norm() : 0.0;
   const bool should_differ = moved_m > std::max(kMoved_m, kDeviations * p_RW_sd_m);
   if (past.repeats >= kRepeats && should_differ) return Stop::kStaleTip;

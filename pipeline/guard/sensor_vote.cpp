@@ -1,4 +1,4 @@
-#include "pipeline/sensor_vote.h"
+#include "pipeline/guard/sensor_vote.h"
 
 #include <algorithm>
 #include <bit>
@@ -118,7 +118,12 @@ bool SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& chang
                       Supervision& found) {
   const std::uint8_t candidates = SensorsOf(z);
   if (candidates == 0) return true;
-  const Ballot all = Ask(all_, z, change);
+  Ballot all = Ask(all_, z, change);
+  if (!all.agrees) {
+    // A fit from the last load may have ended beside the least squares.
+    all_.Reset();
+    all = Ask(all_, z, change);
+  }
   found.chi2 = all.chi2;
   found.chi2_limit = all.limit;
   if (all.agrees) {

@@ -41,6 +41,9 @@ class SampleScreen {
   /// Returns whether the tip is farther from its last believed place than `distance_m`.
   bool TipIsFarther(double distance_m, const SensorReadings& readings) const;
 
+  /// Returns whether there is no tip, or no new one for too long.
+  bool TipIsStale(TimeNs t_ns) const { return IsStale(tip_past_, t_ns); }
+
   /// Takes the places of `readings` as believed from now on.
   void BelieveTip(const SensorReadings& readings, const LateSamples& late);
   void BelieveEm(const SensorReadings& readings, const LateSamples& late);
@@ -67,6 +70,7 @@ class SampleScreen {
 
   Stop Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& figures, bool finite,
             const std::optional<Eigen::Vector3d>& p_RW, double p_RW_sd_m) const;
+  bool IsStale(const Past& past, TimeNs now_ns) const;
   bool Jumps(const Place& last, const Place& now, double distance_from_tip_m,
              double p_RW_sd_m) const;
   Eigen::Vector3d Straight(const Eigen::Vector3d& p_RW, double distance_from_tip_m) const;
