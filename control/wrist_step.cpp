@@ -15,7 +15,7 @@ constexpr double kRounding = 1e-12;
 /// it or as far as `max_step_m` goes.
 Eigen::Vector3d AwayFromPort(const Eigen::Vector3d& from_port, double nearest_m,
                              double max_step_m) {
-  const double distance = from_port.norm();
+  const double distance = from_port.stableNorm();  // 1e-158 squares to next to nothing
   if (!(distance > 0.0)) return Eigen::Vector3d::Zero();
   const double step = std::clamp(nearest_m - distance, 0.0, max_step_m);
   return (step / distance) * from_port;
