@@ -6,6 +6,7 @@
 
 #include "control/wrist_step.h"
 #include "core/linear_algebra.h"
+#include "core/place.h"
 #include "kinematics/straight.h"
 
 namespace flextip {
@@ -14,6 +15,8 @@ namespace {
 constexpr std::array<const char*, kControllerKinds> kNames = {
     "straight-calculate", "straight-track", "flex-calculate",
     "flex-track",         "rod-calculate",  "rod-track"};
+
+constexpr double kMostSingular = 1e3;  // bound on a Jacobian's singular value that damps it
 
 /// What a kinematic model says of the instrument now.
 struct Prediction {
@@ -47,7 +50,7 @@ Prediction PredictRod(const ControlInput& input, const ControllerOptions& option
                       ShaftRod& solver) {
   const ShaftModel& model = input.model;
   const ShaftRodState rod = solver.Solve(RodOf(model, input.p_RW));
-  if (!rod.IsUsable()) return StraightInstead(input);
+  if (!rod.IsUsable() || !rod.dp_RE.allFinite()) return StraightInstead(input);
   // dp = J dw + C df with df = K dp.
   const Eigen::Matrix3d C = rod.dp_RE.rightCols<3>();
   const Eigen::Matrix3d K =
@@ -84,6 +87,12 @@ Eigen::Vector3d SolveDamped(const Eigen::Vector3d& dx, const ControllerOptions& 
   output.damped = damping2 > 0.0;
   const Eigen::Vector3d inverse = sigma.array() / (sigma.array().square() + damping2);
   return svd.V * inverse.cwiseProduct(svd.U.transpose() * dx);
+}
+
+bool IsPlausible(const ControllerOptions& o) {
+  return std::isfinite(o.gain) && o.max_step_m >= 0.0 && o.max_step_m <= kFarthestPlace_m &&
+         o.max_tissue_gain >= 1.0 && std::isfinite(o.max_tissue_gain) &&
+         o.min_singular_value > 0.0 && o.min_singular_value <= kMostSingular;
 }
 
 bool UsesRod(ControllerKind kind) {
@@ -142,18 +151,22 @@ const char* Name(ControlStatus status) {
 }
 
 ControlOutput TipController::Step(const ControlInput& input) {
-  ControlOutput output;
-  output.p_RW_command = input.p_RW;
+  ControlOutput hold;
+  hold.p_RW_command = wrist_.Hold(input.p_RW);
   const bool tracks = UsesTipMeasurement(options_.kind);
-  output.status = ControlStatus::kBadInput;
-  if (!input.p_RW.allFinite() || !input.p_RE_desired.allFinite()) return output;
-  if (tracks && input.tip_measured && !input.p_RE_measured.allFinite()) return output;
-  output.status = ControlStatus::kNoTip;
-  if (tracks && !input.tip_measured) return output;
+  hold.status = ControlStatus::kBadInput;
+  if (!IsPlausible(options_) || !IsPlace(input.p_RW) || !IsPlace(input.p_RE_desired)) return hold;
+  if (tracks && input.tip_measured && !IsPlace(input.p_RE_measured)) return hold;
+  hold.status = ControlStatus::kNoTip;
+  if (tracks && !input.tip_measured) return hold;
+  hold.status = ControlStatus::kNoModel;
+  if (!IsPlausible(input.model)) return hold;
 
   const Prediction model = Predict(input, options_, rod_);
+  if (model.status == ControlStatus::kNoModel) return hold;
+  if (!model.p_RE.allFinite() || !model.J_tip_wrist.allFinite()) return hold;
+  ControlOutput output = hold;
   output.status = model.status;
-  if (model.status == ControlStatus::kNoModel) return output;
   output.J_tip_wrist = model.J_tip_wrist;
   output.p_RE_used = tracks ? input.p_RE_measured : model.p_RE;
 
@@ -161,6 +174,7 @@ ControlOutput TipController::Step(const ControlInput& input) {
   Eigen::Vector3d step = SolveDamped(dx, options_, output);                            // (5.1)
   if (UsesRod(options_.kind) && input.model.wrist_play_m > 0.0)
     step = LeadByPlay(step, input.model);
+  if (!step.allFinite()) return hold;
   const BoundedStep bounded = BoundStep(step, input.p_RW, input.model, options_.max_step_m);
   output.step_limited = bounded.limited;
   output.p_RW_command += bounded.step_m;

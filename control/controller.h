@@ -46,9 +46,11 @@ struct ControlInput {
 
 enum class ControlStatus {
   kOk,
-  kBadInput,         ///< a position is not finite: the wrist holds still
+  kBadInput,         ///< a position is not finite or absurdly far, or an option has no meaning:
+                     ///< the wrist holds still, where it was last known
   kNoTip,            ///< the kind needs a measured tip and there is none: the wrist holds still
-  kNoModel,          ///< the shaft model cannot be evaluated (port out of reach): holds still
+  kNoModel,          ///< the shaft model cannot be evaluated (port out of reach, a number that no
+                     ///< shaft has): holds still
   kStraightInstead,  ///< flexion not observable now: the straight shaft's Jacobian was used
   kNoGoal,           ///< nothing is wanted of the tip: the wrist holds still
   kNoWrist,          ///< the wrist was not measured: there is no command
@@ -66,7 +68,22 @@ struct ControlOutput {
   double smallest_singular_value = 0.0;
 };
 
-/// One controller. A step takes and returns fixed-size data, allocates nothing and is bounded.
+/// The wrist where it was last measured: a controller holds it there where it is not known.
+class HeldWrist {
+ public:
+  /// Returns `p_RW` (m, in R) where it is finite, else the last that was; zero before there was
+  /// one.
+  const Eigen::Vector3d& Hold(const Eigen::Vector3d& p_RW) {
+    if (p_RW.allFinite()) p_RW_ = p_RW;
+    return p_RW_;
+  }
+
+ private:
+  Eigen::Vector3d p_RW_ = Eigen::Vector3d::Zero();
+};
+
+/// One controller. A step takes and returns fixed-size data, allocates nothing and is bounded: one
+/// rod at most. Whatever comes in, the command is finite and at most `max_step_m` from the wrist.
 class TipController {
  public:
   explicit TipController(const ControllerOptions& options) : options_(options) {}
@@ -78,6 +95,7 @@ class TipController {
 
  private:
   ControllerOptions options_;
+  HeldWrist wrist_;
   ShaftRod rod_;  // keeps the last equilibrium as the next step's starting point
 };
 

@@ -5,6 +5,7 @@
 
 #include "control/wrist_step.h"
 #include "core/linear_algebra.h"
+#include "core/place.h"
 #include "core/rotation.h"
 
 namespace flextip {
@@ -12,10 +13,33 @@ namespace {
 
 constexpr double kFreedom = 0.05;  // rad of direction per shaft length of wrist that count as one
 
-bool IsFinite(const DirectionInput& input) {
-  return input.p_RW.allFinite() && input.p_RE.allFinite() && input.d_RE.allFinite() &&
-         input.p_RE_desired.allFinite() && input.d_RE_desired.allFinite() &&
-         input.free_axis.allFinite() && input.d_RE.norm() > 0.0 && input.d_RE_desired.norm() > 0.0;
+/// Of any length that is a number's: shorter or longer ones square to nothing, or to infinity.
+bool IsDirection(const Eigen::Vector3d& d) {
+  const double size = d.norm();
+  return size > 1e-100 && size < 1e100;
+}
+
+bool IsPlausible(const DirectionInput& input) {
+  const Eigen::Vector3d& axis = input.free_axis;
+  return IsPlace(input.p_RW) && IsPlace(input.p_RE) && IsPlace(input.p_RE_desired) &&
+         IsDirection(input.d_RE) && IsDirection(input.d_RE_desired) &&
+         (axis.isZero(0.0) || IsDirection(axis));
+}
+
+bool IsPositive(double value) { return value > 0.0 && value <= kFarthestPlace_m; }
+
+bool IsPlausible(const DirectionOptions& o) {
+  return IsPositive(o.position_tolerance_m) && IsPositive(o.direction_tolerance_rad) &&
+         std::isfinite(o.gain) && o.max_step_m >= 0.0 && o.max_step_m <= kFarthestPlace_m &&
+         o.max_tissue_gain >= 1.0 && std::isfinite(o.max_tissue_gain) &&
+         IsPositive(o.min_singular_value);
+}
+
+bool IsFinite(const TipJacobians& J) { return J.position.allFinite() && J.direction.allFinite(); }
+
+bool IsFinite(const DirectionOutput& o) {
+  return o.p_RW_command.allFinite() && std::isfinite(o.position_left_m) &&
+         std::isfinite(o.direction_left_rad);
 }
 
 /// The inverse of J on what it moves by more than `least`, damped below (Nakamura and Hanafusa
@@ -110,17 +134,20 @@ Eigen::Vector3d DirectionController::PositionFirst(const Eigen::Vector3d& dp,
 }
 
 DirectionOutput DirectionController::Step(const DirectionInput& input) {
-  DirectionOutput output;
-  output.p_RW_command = input.p_RW;
-  output.status = ControlStatus::kBadInput;
-  if (!IsFinite(input)) return output;
-  output.status = ControlStatus::kNoModel;
+  DirectionOutput hold;
+  hold.p_RW_command = wrist_.Hold(input.p_RW);
+  hold.status = ControlStatus::kBadInput;
+  if (!IsPlausible(options_) || !IsPlausible(input)) return hold;
+  hold.status = ControlStatus::kNoModel;
+  if (!IsPlausible(input.model)) return hold;
   const ShaftRodState rod = rod_.Solve(RodOf(input.model, input.p_RW));
-  if (!rod.IsUsable()) return output;
+  if (!rod.IsUsable() || !rod.dp_RE.allFinite()) return hold;
+  DirectionOutput output = hold;
   output.status = input.model.force_known ? ControlStatus::kOk : ControlStatus::kStraightInstead;
   output.J =
       TipJacobiansOf(rod, TrustedStiffness(input.model.tissue_stiffness_N_m,
                                            rod.dp_RE.rightCols<3>(), options_.max_tissue_gain));
+  if (!IsFinite(output.J)) return hold;
   const Eigen::Vector3d dp = options_.gain * (input.p_RE_desired - input.p_RE);
   const Eigen::Vector3d dd =
       options_.gain * Toward(input.d_RE.normalized(), input.d_RE_desired.normalized());
@@ -132,12 +159,13 @@ DirectionOutput DirectionController::Step(const DirectionInput& input) {
   } else {
     step = PositionFirst(dp, dd, input, output);
   }
+  if (!step.allFinite()) return hold;
   const BoundedStep bounded = BoundStep(step, input.p_RW, input.model, options_.max_step_m);
   output.step_limited = bounded.limited;
   output.p_RW_command += bounded.step_m;
   output.position_left_m = (dp - output.J.position * bounded.step_m).norm();
   output.direction_left_rad = (dd - output.J.direction * bounded.step_m).norm();
-  return output;
+  return IsFinite(output) ? output : hold;
 }
 
 }  // namespace flextip

@@ -87,6 +87,7 @@ class DirectionController {
                                 const DirectionInput& input, DirectionOutput& output) const;
 
   DirectionOptions options_;
+  HeldWrist wrist_;
   ShaftRod rod_;
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/place.h"
 
 namespace flextip {
 namespace {
@@ -18,8 +19,10 @@ FixtureOutput AlongNormal(const Eigen::Vector3d& p, double depth, const Eigen::V
 }
 
 bool IsGood(const Eigen::Vector3d& p, double margin_m) noexcept {
-  return p.allFinite() && std::isfinite(margin_m) && margin_m >= 0.0;
+  return IsPlace(p) && margin_m >= 0.0 && margin_m <= kFarthestPlace_m;
 }
+
+bool IsUnit(const Eigen::Vector3d& v) noexcept { return std::abs(v.norm() - 1.0) <= 1e-6; }
 
 FixtureOutput Refused(const Eigen::Vector3d& p) noexcept {
   return {FixtureStatus::kBadInput, p, 0.0, Eigen::Vector3d::Zero()};
@@ -43,13 +46,18 @@ const char* Name(FixtureStatus status) {
 
 FixtureOutput Constrain(const ForbiddenHalfSpace& region, const Eigen::Vector3d& p,
                         double margin_m) noexcept {
-  if (!IsGood(p, margin_m)) return Refused(p);
+  if (!IsGood(p, margin_m) || !IsPlace(region.p_plane) || !IsUnit(region.normal)) {
+    return Refused(p);
+  }
   return AlongNormal(p, -region.normal.dot(p - region.p_plane), region.normal, margin_m);
 }
 
 FixtureOutput Constrain(const ForbiddenSphere& region, const Eigen::Vector3d& p,
                         double margin_m) noexcept {
-  if (!IsGood(p, margin_m)) return Refused(p);
+  if (!IsGood(p, margin_m) || !IsPlace(region.p_centre) || !(region.radius_m >= 0.0) ||
+      !(region.radius_m <= kFarthestPlace_m)) {
+    return Refused(p);
+  }
   const Eigen::Vector3d from_centre = p - region.p_centre;
   const double distance = from_centre.norm();
   Eigen::Vector3d outward = Eigen::Vector3d::UnitZ();
@@ -74,12 +82,16 @@ PathGuidance::PathGuidance(std::vector<Eigen::Vector3d> points, double complianc
   if (!(compliance >= 0.0 && compliance <= 1.0)) {
     throw InputError(fmt::format("a path's compliance is {}, not from 0 to 1", compliance));
   }
-  if (!(free_radius_m >= 0.0 && std::isfinite(free_radius_m))) {
-    throw InputError(fmt::format("a path's free radius is {} m, not 0 or more", free_radius_m));
+  if (!(free_radius_m >= 0.0 && free_radius_m <= kFarthestPlace_m)) {
+    throw InputError(fmt::format("a path's free radius is {} m, not from 0 to {:g}", free_radius_m,
+                                 kFarthestPlace_m));
   }
   s_m_.push_back(0.0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!points_[i].allFinite()) throw InputError(fmt::format("path point {} is not finite", i));
+    if (!IsPlace(points_[i])) {
+      throw InputError(
+          fmt::format("path point {} is not finite, or farther than {:g} m", i, kFarthestPlace_m));
+    }
     if (i == 0) continue;
     const double length = (points_[i] - points_[i - 1]).norm();
     if (!(length > 0.0)) {
@@ -92,7 +104,7 @@ PathGuidance::PathGuidance(std::vector<Eigen::Vector3d> points, double complianc
 GuidanceOutput PathGuidance::Guide(const Eigen::Vector3d& p) const noexcept {
   GuidanceOutput output;
   output.p_RE_desired = p;
-  if (!p.allFinite()) return output;
+  if (!IsPlace(p)) return output;
   double nearest2 = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
     const double length = s_m_[i + 1] - s_m_[i];

@@ -12,7 +12,8 @@ enum class FixtureStatus : std::uint8_t {
   kFree,      ///< left as it was
   kMoved,     ///< projected out of the region, or drawn to the path
   kNotClear,  ///< moved, but the margin could not be kept: the space left is narrower than it
-  kBadInput,  ///< the position is not finite or the margin negative: `p_RE_desired` is the input
+  kBadInput,  ///< the position is not finite or absurdly far, the margin negative, or the region
+              ///< has no meaning (normal not unit, radius negative): `p_RE_desired` is the input
 };
 const char* Name(FixtureStatus status);
 

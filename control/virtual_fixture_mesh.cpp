@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/place.h"
 
 namespace flextip {
 namespace {
@@ -48,8 +49,9 @@ void ForbiddenMesh::CheckTriangles() const {
         throw InputError(
             fmt::format("triangle {} names corner {}, there are {}", i, corner, points));
       }
-      if (!mesh_.points[corner].allFinite()) {
-        throw InputError(fmt::format("corner {} of the mesh is not finite", corner));
+      if (!IsPlace(mesh_.points[corner])) {
+        throw InputError(fmt::format("corner {} of the mesh is not finite, or farther than {:g} m",
+                                     corner, kFarthestPlace_m));
       }
     }
     const Eigen::Vector3d u = mesh_.points[t[1]] - mesh_.points[t[0]];
@@ -194,7 +196,7 @@ double ForbiddenMesh::SignedDepth(const Eigen::Vector3d& p, const MeshPlace& pla
 }
 
 FixtureOutput ForbiddenMesh::Constrain(const Eigen::Vector3d& p, double margin_m) const noexcept {
-  if (!p.allFinite() || !std::isfinite(margin_m) || margin_m < 0.0) {
+  if (!IsPlace(p) || !(margin_m >= 0.0 && margin_m <= kFarthestPlace_m)) {
     return {FixtureStatus::kBadInput, p, 0.0, Eigen::Vector3d::Zero()};
   }
   FixtureOutput output{FixtureStatus::kFree, p, 0.0, Eigen::Vector3d::Zero()};

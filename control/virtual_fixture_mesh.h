@@ -37,7 +37,8 @@ class ForbiddenMesh {
   /// several moves; there are eight at most.
   FixtureOutput Constrain(const Eigen::Vector3d& p, double margin_m = 0.0) const noexcept;
 
-  /// Returns the nearest place by a tree of boxes; at worst looks at every triangle. `p` finite.
+  /// Returns the nearest place by a tree of boxes; at worst looks at every triangle. `p` within
+  /// kFarthestPlace_m.
   MeshPlace Nearest(const Eigen::Vector3d& p) const noexcept;
 
   int TriangleCount() const { return static_cast<int>(mesh_.triangles.size()); }

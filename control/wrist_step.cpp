@@ -9,6 +9,18 @@ namespace {
 
 constexpr double kNearest = 0.02, kFarthest = 0.98;  // of the wrist from the port, over the length
 
+constexpr double kRounding = 1e-12;
+
+/// The step of a wrist at `from_port` straight away from the port, to the distance `nearest_m` from
+/// it or as far as `max_step_m` goes.
+Eigen::Vector3d AwayFromPort(const Eigen::Vector3d& from_port, double nearest_m,
+                             double max_step_m) {
+  const double distance = from_port.stableNorm();  // 1e-158 squares to next to nothing
+  if (!(distance > 0.0)) return Eigen::Vector3d::Zero();
+  const double step = std::clamp(nearest_m - distance, 0.0, max_step_m);
+  return (step / distance) * from_port;
+}
+
 }  // namespace
 
 Eigen::Matrix3d TrustedStiffness(const Eigen::Matrix3d& K, const Eigen::Matrix3d& compliance,
@@ -33,6 +45,12 @@ BoundedStep BoundStep(const Eigen::Vector3d& step, const Eigen::Vector3d& p_RW,
   const double allowed = std::clamp(distance, kNearest * L, kFarthest * L);
   if (distance > 0.0 && allowed != distance)
     bounded.step_m += (allowed / distance - 1.0) * from_port;
+  // Keeping away from the port must not make the step longer than it may be.
+  if (distance == 0.0 || bounded.step_m.norm() > (1.0 + kRounding) * max_step_m) {
+    bounded.step_m = distance > kNearest * L
+                         ? Eigen::Vector3d(bounded.step_m * (max_step_m / bounded.step_m.norm()))
+                         : AwayFromPort(p_RW - model.p_RP, kNearest * L, max_step_m);
+  }
   bounded.limited = bounded.step_m != step;
   return bounded;
 }

@@ -20,7 +20,8 @@ struct BoundedStep {
 };
 
 /// Shortens a step of the wrist to `max_step_m`, and so that the wrist keeps between 2 % and 98 %
-/// of the shaft's length from the port: at either end the lever degenerates.
+/// of the shaft's length from the port: at either end the lever degenerates. A wrist that is beyond
+/// an end comes back by `max_step_m` at most. `step` finite, `max_step_m` not negative.
 BoundedStep BoundStep(const Eigen::Vector3d& step, const Eigen::Vector3d& p_RW,
                       const ShaftModel& model, double max_step_m);
 

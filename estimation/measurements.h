@@ -43,4 +43,9 @@ struct Measurements {
   std::optional<LoadMeasurement> load;
 };
 
+/// Returns whether every number that is there can be a measurement: finite, places within
+/// kFarthestPlace_m, directions and rotations of unit length, covariances symmetric without
+/// negative values, noises not negative. A tip that is lost is not looked at.
+bool IsPlausible(const Measurements& measurements);
+
 }  // namespace flextip

@@ -3,6 +3,7 @@
 #include <ceres/tiny_solver.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/check.h"
 #include "core/linear_algebra.h"
@@ -27,18 +28,17 @@ constexpr double kSettled = 1e-6;   // squared step in standard deviations
 constexpr double kLeastGain = 0.1;  // of the gain that the linear model promises
 constexpr double kRounding = 1e-12;
 
-bool AllFinite(const Measurements& z) {
-  bool ok = z.p_RW.allFinite();
-  if (z.R_RW) ok &= z.R_RW->allFinite();
-  if (z.tip && z.tip->status != TipStatus::kLost) {
-    ok &= z.tip->p_RE.allFinite() && z.tip->covariance_m2.allFinite();
-    if (z.tip->d_RE) ok &= z.tip->d_RE->allFinite();
-  }
-  if (z.em) ok &= z.em->T_RS.p.allFinite() && z.em->T_RS.R.allFinite();
-  if (z.port_direction) ok &= z.port_direction->allFinite();
-  if (z.strain) ok &= z.strain->moments_Nm.allFinite();
-  if (z.load) ok &= z.load->f_tip_N.allFinite();
-  return ok;
+/// Returns whether nothing of what is handed on for control is infinite or not a number.
+bool IsFinite(const ShaftEstimate& e) {
+  return e.covariance.allFinite() && e.p_RE.allFinite() && e.p_RE_covariance_m2.allFinite() &&
+         e.d_RE.allFinite() && std::isfinite(e.s_port_m) && std::isfinite(e.chi2);
+}
+
+/// Returns whether the standard deviations a priori are ones.
+bool HasPriors(const EstimatorOptions& options) {
+  constexpr double kWidest = 1e6;
+  return options.port_prior_m >= 0.0 && options.port_prior_m <= kWidest &&
+         options.force_prior_units > 0.0 && options.force_prior_units <= kWidest;
 }
 
 RodPrior Prior(const EstimatorOptions& options, const Measurements& z, const ShaftModel& model) {
@@ -141,8 +141,11 @@ void ShaftEstimator::SetPort(const Eigen::Vector3d& shift_m, const Eigen::Matrix
 
 ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& change) {
   ShaftEstimate estimate;
-  estimate.model = StraightModel(options_, change);
-  if (!AllFinite(z)) return estimate;
+  const ShaftModel straight = StraightModel(options_, change);
+  // A change or data that no shaft has are not handed on.
+  if (!IsPlausible(straight)) return estimate;
+  estimate.model = straight;
+  if (!IsPlausible(z) || !HasPriors(options_)) return estimate;
 
   const ShaftProblem shaft = RodOf(estimate.model, z.p_RW);
   RodPrior prior = Prior(options_, z, estimate.model);
@@ -160,14 +163,20 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
     if (!Fit(first, x, estimate)) x = prior.mean;
     if (!Fit(fit, x, estimate)) x = prior.mean;  // one round more
   }
-  if (!FitFromAnyStart(fit, x, estimate)) {
-    estimate.status = EstimateStatus::kNotConverged;
+  const auto give_up = [&] {
+    ShaftEstimate nothing;
+    nothing.model = straight;
+    nothing.status = EstimateStatus::kNotConverged;
     last_force_N_.setZero();
-    return estimate;
-  }
+    return nothing;
+  };
+  if (!FitFromAnyStart(fit, x, estimate)) return give_up();
   Describe(fit, x, estimate);
+  if (!IsFinite(estimate)) return give_up();
   FillModel(fit, x, z, estimate);
-  return estimate;
+  if (IsPlausible(estimate.model)) return estimate;
+  tissue_ = TissueSecants();
+  return give_up();
 }
 
 bool ShaftEstimator::FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate) {

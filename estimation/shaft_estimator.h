@@ -40,7 +40,7 @@ enum class EstimateStatus : std::uint8_t {
   kUnobservable,  ///< the sensors say nothing of the load across the shaft, or too little for the
                   ///< tip to be better known than the unloaded shaft's: taken as unloaded
   kNotConverged,  ///< no rod fits: the straight shaft is handed on
-  kBadInput,      ///< a measurement is not finite
+  kBadInput,      ///< a measurement, the change or the options are not plausible
 };
 const char* Name(EstimateStatus status);
 

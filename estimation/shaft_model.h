@@ -25,4 +25,8 @@ struct ShaftModel {
   BeamFit beam;  ///< the thesis's parameters (flexion)
 };
 
+/// Returns whether every number of `model` is one that a shaft can have: finite, and within bounds
+/// wide of any instrument's (shaft_model.cpp). The beam counts where it is usable.
+bool IsPlausible(const ShaftModel& model);
+
 }  // namespace flextip

@@ -13,11 +13,13 @@ namespace flextip {
 template <class Unknowns, class Guess, class Newton>
 int InLoadSteps(double load, int failed, Unknowns& x, Guess guess, Newton newton) {
   constexpr int kMaxLoadSteps = 60;
-  constexpr double kLoadStep = 0.7, kLeastStep = 1e-4;
+  constexpr double kLoadStep = 0.7, kLeastStep = 1e-4, kRounding = 1e-9;
   double done = 0.0, step = load > kLoadStep ? kLoadStep / load : 1.0;
   int iterations = 0;
   Unknowns at_done = guess(0.0);
   for (int i = 0; i < kMaxLoadSteps && step > kLeastStep; ++i) {
+    // Steps never grow: where those left cannot reach the load, none of them is worth its time.
+    if (done + (kMaxLoadSteps - i) * step < 1.0 - kRounding) return 0;
     const double next = std::min(1.0, done + step);
     x = done == 0.0 ? guess(next) : at_done;
     const int used = newton(next, x);

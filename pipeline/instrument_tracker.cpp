@@ -15,13 +15,16 @@ InstrumentTrackerSetup TrackerSetupOf(const Recording& recording, const TrackerO
   setup.collar = *recording.tags0;
   setup.tracker = options;
   setup.with_model = with_model && recording.wrist0.has_value();
+  setup.camera_has_pose = recording.cam0->has_T_RC;
   return setup;
 }
 
 InstrumentTracker::InstrumentTracker(const InstrumentTrackerSetup& setup)
     : beyond_collar_(FreeEndOf(setup.instrument, setup.collar, setup.gravity_m_s2)),
       tracker_(setup.cameras, setup.collar, setup.tracker) {
-  if (setup.with_model) model_.emplace(setup.instrument, setup.p_RP, setup.gravity_m_s2);
+  if (!setup.with_model) return;
+  model_.emplace(setup.instrument, setup.p_RP, setup.gravity_m_s2);
+  if (setup.camera_has_pose) range_.emplace(setup.instrument, setup.p_RP, setup.gravity_m_s2);
 }
 
 InstrumentTracker::Bend InstrumentTracker::BendUnder(
@@ -37,11 +40,15 @@ TipTrack InstrumentTracker::Follow(std::span<const Image* const> pictures, TimeN
                                    const SensorReadings& readings) {
   const std::optional<Measurements> measured = model_ ? Gather(readings) : std::nullopt;
   auto expected = model_ ? model_->Predict(t_ns, measured) : std::nullopt;
-  if (expected) {
-    expected->T_RE = expected->T_RE * BendUnder(readings.load, expected->T_RE).T_EE.Inverse();
+  auto allowed = range_ ? range_->At(t_ns, measured) : std::nullopt;
+  for (auto* tip : {&expected, &allowed}) {
+    if (*tip) (*tip)->T_RE = (*tip)->T_RE * BendUnder(readings.load, (*tip)->T_RE).T_EE.Inverse();
   }
-  TipTrack track =
-      tracker_.Track(std::vector<const Image*>(pictures.begin(), pictures.end()), t_ns, expected);
+  const std::vector<const Image*> images(pictures.begin(), pictures.end());
+  const bool stand_still = still_.Look(images, measured);
+  TipTrack track = stand_still ? tracker_.Carry(t_ns, expected)
+                               : tracker_.Track(images, t_ns, expected, allowed);
+  if (stand_still) track.doubt = TipDoubt::kStandsStill;
   if (track.tip.status == TipStatus::kOk) {
     const Bend bend = BendUnder(readings.load, track.T_RE);
     track.T_RE = track.T_RE * bend.T_EE;
@@ -64,6 +71,8 @@ void InstrumentTracker::VisitState(StateText& state) {
     throw InputError("saved state: of a run with another choice of the shaft model");
   }
   if (model_) state(*model_);
+  if (range_) state(*range_);
+  state(still_);
   state.Finish();
 }
 

@@ -9,7 +9,9 @@
 
 #include "kinematics/tip_bending.h"
 #include "pipeline/sensor_readings.h"
+#include "pipeline/still_pictures.h"
 #include "pipeline/tip_predictor.h"
+#include "pipeline/tip_range.h"
 #include "recording/recording.h"
 #include "vision/tracking/tip_tracker.h"
 
@@ -22,7 +24,8 @@ struct InstrumentTrackerSetup {
   std::vector<CameraCalibration> cameras;  ///< one, or both eyes
   TagCollar collar;
   TrackerOptions tracker;
-  bool with_model = true;  ///< expect the tip by wrist and shaft model
+  bool with_model = true;       ///< expect the tip by wrist and shaft model
+  bool camera_has_pose = true;  ///< else tips are in the camera's frame, and no wrist is in that
 };
 
 /// Returns the instrument and cameras of `recording`, which has cam0 and tags0. The model is used
@@ -37,7 +40,9 @@ class InstrumentTracker {
 
   /// Finds the tip in the pictures of one instant, one a camera (null: that camera has none).
   /// `readings` of that instant; their tip is not looked at. Where the load was measured, the shaft
-  /// bends beyond the collar. Throws InputError where a picture's size is not the camera's.
+  /// bends beyond the collar. With the model a tip that wrist and shaft cannot have there, and one
+  /// of a picture that stood still while the wrist moved, are no measurement (TipTrack::doubt).
+  /// Throws InputError where a picture's size is not the camera's.
   TipTrack Follow(std::span<const Image* const> pictures, TimeNs t_ns,
                   const SensorReadings& readings);
 
@@ -59,6 +64,8 @@ class InstrumentTracker {
   FreeEnd beyond_collar_;
   TipTracker tracker_;
   std::optional<TipPredictor> model_;
+  std::optional<TipRange> range_;
+  StillPictures still_;
 };
 
 }  // namespace flextip

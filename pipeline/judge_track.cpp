@@ -27,6 +27,48 @@ Judgement NoTip(const TrackTotals& t) {
   return judged;
 }
 
+/// What the misses have in common tells what to look at first.
+void SayWhyNotByWrist(const TrackTotals& t, Judgement& judged) {
+  constexpr double kSteady = 0.9;
+  judged.Beware(fmt::format(
+      "in {} frames the tags' tip is {:.3g} mm from where wrist and shaft can have it{}",
+      t.not_by_wrist, 1e3 * t.from_wrist_m,
+      t.steady_part > kSteady
+          ? ", always the same way: the camera file is of another camera, place or zoom, the "
+            "collar file of another collar, or the pictures are shifted or cut"
+          : ", now here, now there: the camera's clock is late, or the pictures are turned, "
+            "mirrored, scaled, or not in their order"));
+  judged.next = "let check look for the fault among camera, collar, port and clocks";
+  judged.command = "flextip check RECORDING -o RESULT-check";
+}
+
+void SayDoubts(const TrackTotals& t, Judgement& judged) {
+  if (t.not_by_collar > 0) {
+    judged.Beware(fmt::format(
+        "in {} frames the tags are not where the collar file has them, one from another",
+        t.not_by_collar));
+    judged.next = "compare ids, sizes and places of the tags with the collar that was printed";
+    judged.command = fmt::format("flextip detect PICTURE --family {} -o RESULT-tags", t.family);
+  }
+  if (t.stood_still > 0) {
+    judged.Beware(
+        fmt::format("{} pictures are those before once more, while the wrist moved: the camera or "
+                    "its recorder stood still",
+                    t.stood_still));
+  }
+  if (t.not_by_wrist > 0) SayWhyNotByWrist(t, judged);
+}
+
+/// Tags were seen, but none of them told a tip that holds.
+Judgement NoTipThatHolds(const TrackTotals& t) {
+  Judgement judged;
+  judged.says = fmt::format("No tip of {} frames holds: their tags contradict {}.", t.frames,
+                            t.not_by_wrist >= t.not_by_collar ? "wrist and shaft" : "the collar");
+  SayDoubts(t, judged);
+  judged.grade = Grade::kNotFound;
+  return judged;
+}
+
 void SayNext(const TrackTotals& t, Judgement& judged) {
   judged.next = "take the tips into other programs";
   judged.command = "flextip export csv RESULT -o RESULT-tables";
@@ -38,13 +80,14 @@ void SayNext(const TrackTotals& t, Judgement& judged) {
 }  // namespace
 
 Judgement JudgeTrack(const TrackTotals& t) {
-  if (t.ok == 0) return NoTip(t);
+  if (t.ok == 0) return t.not_by_wrist + t.not_by_collar > 0 ? NoTipThatHolds(t) : NoTip(t);
   Judgement judged;
   judged.says = fmt::format("The tip was seen in {} of {} frames", t.ok, t.frames);
   if (t.predicted > 0) judged.says += fmt::format(", predicted in {}", t.predicted);
   if (t.lost > 0) judged.says += fmt::format(", lost in {}", t.lost);
   judged.says += ".";
   SayNext(t, judged);
+  SayDoubts(t, judged);
   if (static_cast<double>(t.ok) < kFewSeen * static_cast<double>(t.frames)) {
     judged.Beware("the tip was seen in less than half of the frames");
   }

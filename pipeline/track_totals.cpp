@@ -5,6 +5,8 @@
 namespace flextip {
 namespace {
 
+double Mean(double sum, long count) { return count > 0 ? sum / static_cast<double>(count) : 0.0; }
+
 double RootMean(double squares, long count) {
   return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
 }
@@ -16,6 +18,13 @@ void TrackSums::Add(const TipTrack& track) {
   tags += static_cast<long>(track.tags.size());
   predicted += track.tip.status == TipStatus::kPredicted;
   lost += track.tip.status == TipStatus::kLost;
+  not_by_collar += track.doubt == TipDoubt::kNotByCollar;
+  stood_still += track.doubt == TipDoubt::kStandsStill;
+  if (track.doubt == TipDoubt::kNotByWrist) {
+    ++not_by_wrist;
+    from_wrist_m += track.from_wrist_m.norm();
+    miss_m += track.from_wrist_m;
+  }
   if (track.tip.status != TipStatus::kOk) return;
   ++ok;
   squared_direction_noise += track.direction_noise_rad * track.direction_noise_rad;
@@ -48,7 +57,12 @@ TrackTotals TrackSums::Totals(const std::string& family, bool camera_has_pose,
           .family = family,
           .camera_has_pose = camera_has_pose,
           .has_wrist = has_wrist,
-          .score = score};
+          .score = score,
+          .not_by_wrist = not_by_wrist,
+          .not_by_collar = not_by_collar,
+          .stood_still = stood_still,
+          .from_wrist_m = Mean(from_wrist_m, not_by_wrist),
+          .steady_part = from_wrist_m > 0.0 ? miss_m.norm() / from_wrist_m : 0.0};
 }
 
 }  // namespace flextip

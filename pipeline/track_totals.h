@@ -1,6 +1,7 @@
 // What the frames of a run say together, counted as they come.
 #pragma once
 
+#include <Eigen/Dense>
 #include <string>
 
 #include "recording/tip_score.h"
@@ -15,6 +16,10 @@ struct TrackTotals {
   bool camera_has_pose = true;  ///< else the tips are in the camera's frame
   bool has_wrist = true;        ///< the frames are of a recording with wrist0
   TipScore score = {};          ///< of the ok frames, where there is a truth
+  /// Frames whose tags were seen and are no measurement (TipDoubt).
+  long not_by_wrist = 0, not_by_collar = 0, stood_still = 0;
+  double from_wrist_m = 0.0;  ///< mean distance of those not by wrist from where it has the tip
+  double steady_part = 0.0;   ///< size of the mean miss over the mean size: 1 where all are alike
 };
 
 struct TrackSums {
@@ -25,6 +30,9 @@ struct TrackSums {
   double squared_noise_grey = 0.0;       ///< over by_pixels
   double seconds = 0.0;                  ///< reading and tracking
   TipScore score, score_predicted;       ///< scores of ok frames, of predicted frames
+  long not_by_wrist = 0, not_by_collar = 0, stood_still = 0;
+  double from_wrist_m = 0.0;                         ///< summed over not_by_wrist
+  Eigen::Vector3d miss_m = Eigen::Vector3d::Zero();  ///< likewise, as a vector in R
 
   /// Counts a frame.
   void Add(const TipTrack& track);

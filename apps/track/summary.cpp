@@ -41,6 +41,12 @@ nlohmann::json TrackSummary(const TrackSums& sums, int cameras, bool scored) {
                             {"cameras", cameras},
                             {"frames_per_second", frames / std::max(sums.seconds, 1e-9)},
                             {"tags_per_frame", static_cast<double>(sums.tags) / frames}};
+  if (sums.not_by_wrist > 0) {
+    summary["not_by_wrist"] = sums.not_by_wrist;
+    summary["from_wrist_mean_m"] = sums.from_wrist_m / static_cast<double>(sums.not_by_wrist);
+  }
+  if (sums.not_by_collar > 0) summary["not_by_collar"] = sums.not_by_collar;
+  if (sums.stood_still > 0) summary["stood_still"] = sums.stood_still;
   if (sums.by_corners > 0) {
     summary["rms_reprojection_error_px"] = sums.Corners_px();
   }

@@ -21,7 +21,7 @@ const std::vector<std::string> kTagColumns = {
 
 const std::vector<std::string> kFrameColumns = {"status []",   "source []",     "tags_used []",
                                                 "rms_px [px]", "noise_grey []", "sd_position [m]",
-                                                "error [m]"};
+                                                "error [m]",   "doubt []"};
 
 void AddTags(CsvWriter& csv, TimeNs t_ns, const std::vector<TagDetection>& tags) {
   for (const TagDetection& tag : tags) {
@@ -52,6 +52,11 @@ nlohmann::json ToJson(const TrackSums& s) {
           {"squared_rms_px", s.squared_rms_px},
           {"squared_noise_grey", s.squared_noise_grey},
           {"seconds", s.seconds},
+          {"not_by_wrist", s.not_by_wrist},
+          {"not_by_collar", s.not_by_collar},
+          {"stood_still", s.stood_still},
+          {"from_wrist_m", s.from_wrist_m},
+          {"miss_m", {s.miss_m.x(), s.miss_m.y(), s.miss_m.z()}},
           {"score", ToJson(s.score)},
           {"score_predicted", ToJson(s.score_predicted)}};
 }
@@ -69,7 +74,12 @@ TrackSums SumsFromJson(const nlohmann::json& j) {
           .squared_noise_grey = j.at("squared_noise_grey"),
           .seconds = j.at("seconds"),
           .score = ScoreFromJson(j.at("score")),
-          .score_predicted = ScoreFromJson(j.at("score_predicted"))};
+          .score_predicted = ScoreFromJson(j.at("score_predicted")),
+          .not_by_wrist = j.at("not_by_wrist"),
+          .not_by_collar = j.at("not_by_collar"),
+          .stood_still = j.at("stood_still"),
+          .from_wrist_m = j.at("from_wrist_m"),
+          .miss_m = {j.at("miss_m").at(0), j.at("miss_m").at(1), j.at("miss_m").at(2)}};
 }
 
 const char* Name(TrackSource source) {
@@ -162,6 +172,7 @@ void TrackTables::AddFrame(TimeNs t_ns, const TipTrack& track,
   add(source == TrackSource::kPixels, track.noise_grey);
   add(known, std::sqrt(track.tip.covariance_m2.trace()));
   add(known && p_RE, p_RE ? (track.tip.p_RE - *p_RE).norm() : 0.0);
+  row.Add(std::string(flextip::Name(track.doubt)));
   row.EndRow();
 }
 

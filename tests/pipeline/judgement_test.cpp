@@ -115,6 +115,43 @@ TEST(JudgeTrack, TagsThatFitNoCollarAreNoAnswer) {
   EXPECT_THAT(judged.says, HasSubstr("120 tags of the family tag36h11"));
 }
 
+TEST(JudgeTrack, TagsThatContradictTheWristAreNoAnswer) {
+  TrackTotals totals{.frames = 60, .lost = 60, .tags = 120, .not_by_wrist = 58};
+  totals.from_wrist_m = 0.045;
+  totals.steady_part = 0.98;
+  Judgement judged = JudgeTrack(totals);
+  EXPECT_EQ(judged.grade, Grade::kNotFound);
+  EXPECT_EQ(judged.says, "No tip of 60 frames holds: their tags contradict wrist and shaft.");
+  EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("in 58 frames the tags' tip is 45 mm from")));
+  EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("camera file is of another camera")));
+  EXPECT_THAT(judged.command, HasSubstr("flextip check RECORDING"));
+  // Where the miss changes, it is no file's.
+  totals.steady_part = 0.4;
+  EXPECT_THAT(JudgeTrack(totals).reasons, ElementsAre(HasSubstr("clock is late")));
+  // Some that hold are an answer, with care.
+  totals.ok = 20;
+  totals.lost = 40;
+  judged = JudgeTrack(totals);
+  EXPECT_EQ(judged.grade, Grade::kBeware);
+  EXPECT_THAT(judged.says, HasSubstr("seen in 20 of 60 frames"));
+  EXPECT_THAT(judged.command, HasSubstr("flextip check RECORDING"));
+}
+
+TEST(JudgeTrack, ACollarThatContradictsItselfAndStillPicturesAreNamed) {
+  TrackTotals totals{.frames = 60, .ok = 40, .predicted = 20, .family = "tag36h11"};
+  totals.stood_still = 20;
+  EXPECT_THAT(JudgeTrack(totals).reasons, ElementsAre(HasSubstr("20 pictures are those before")));
+  EXPECT_EQ(JudgeTrack(totals).grade, Grade::kBeware);
+  totals.stood_still = 0;
+  totals.ok = 0;
+  totals.tags = 90;
+  totals.not_by_collar = 50;
+  const Judgement judged = JudgeTrack(totals);
+  EXPECT_EQ(judged.grade, Grade::kNotFound);
+  EXPECT_EQ(judged.says, "No tip of 60 frames holds: their tags contradict the collar.");
+  EXPECT_THAT(judged.command, HasSubstr("flextip detect PICTURE --family tag36h11"));
+}
+
 TEST(JudgeTrack, ACameraWithoutAPoseIsSaidSo) {
   const Judgement judged =
       JudgeTrack({.frames = 60, .ok = 60, .family = "tag36h11", .camera_has_pose = false});

@@ -6,6 +6,7 @@
 
 #include "core/rotation.h"
 #include "vision/tags/reprojection.h"
+#include "vision/tracking/tip_prediction.h"
 
 namespace flextip {
 namespace {
@@ -22,6 +23,9 @@ constexpr double kSmallTurn_rad = 0.08;
 constexpr double kFirstBlurSd_px2 = 3.0;
 constexpr double kLinearGamma = 1.0;  // the second guess where a camera's is not known
 constexpr int kDetectMargin_px = 12;
+constexpr int kStandingChecksSpared = 4;   // of a tag beside which no other was seen
+constexpr double kMaxNeighbour_px = 60.0;  // about where a neighbour should be, it is looked for
+constexpr double kContradiction = 6.0;     // standard deviations of two poses from each other
 
 TagDetectorOptions DetectorFor(const TagCollar& collar, TagDetectorOptions options) {
   options.family = collar.family;
@@ -67,6 +71,7 @@ CollarLocaliser::CollarLocaliser(const std::vector<CameraCalibration>& cameras,
     prior.blur_sd_px2 = kFirstBlurSd_px2;
     priors_.push_back(prior);
   }
+  standings_.assign(collar.tags.size(), kUnknown);
 }
 
 void CollarLocaliser::Forget() {
@@ -80,6 +85,10 @@ void CollarLocaliser::Forget() {
 
 void CollarLocaliser::Learn(const Sight& sight) {
   if (sight.source != TrackSource::kPixels) return;
+  const std::set<int> faces = FacesOf(sight);
+  for (std::size_t i = 0; i < standings_.size(); ++i) {
+    if (faces.size() > 1 && faces.contains(collar_.tags[i].id)) standings_[i] = kAgrees;
+  }
   noise_grey_ = noise_grey_ > 0 ? 0.8 * noise_grey_ + 0.2 * sight.noise_grey : sight.noise_grey;
   for (std::size_t i = 0; i < priors_.size(); ++i) {
     if (sight.pixels.views[i].noise_grey > 0) priors_[i] = sight.pixels.views[i].learned;
@@ -89,6 +98,8 @@ void CollarLocaliser::Learn(const Sight& sight) {
 void CollarLocaliser::VisitState(StateText& state) {
   state(noise_grey_);
   state(planar_checks_spared_);
+  state(standing_checks_spared_);
+  for (int& standing : standings_) state(standing);
   for (OpticsPrior& prior : priors_) {
     state(prior.mean.blur_px2);
     for (double* value : {&prior.mean.gamma, &prior.mean.print_offset_m, &prior.blur_sd_px2,
@@ -163,7 +174,64 @@ std::vector<TagDetection> CollarLocaliser::PredictedTags(const PhotometricResult
   return tags;
 }
 
+std::set<int> CollarLocaliser::FacesOf(const Sight& sight) const {
+  std::set<int> ids;
+  for (const ViewFit& view : sight.pixels.views) {
+    for (const FaceFit& face : view.faces) ids.insert(face.tag_id);
+  }
+  return ids;
+}
+
+// A tag alone fits a picture wherever the collar's file has it. So one that was never fitted
+// together with another is looked at beside those that the detector finds, by the same test that
+// corners must pass without an expected pose.
+Sight CollarLocaliser::HeldAgainstCollar(const Images& images, Sight sight) {
+  const std::set<int> faces = FacesOf(sight);
+  if (collar_.tags.size() < 2 || faces.size() != 1) return sight;
+  const auto tag = std::find_if(collar_.tags.begin(), collar_.tags.end(),
+                                [&](const CollarTag& t) { return t.id == *faces.begin(); });
+  int& standing = standings_[tag - collar_.tags.begin()];
+  if (standing == kAgrees) return sight;
+  if (standing_checks_spared_ > 0) {
+    --standing_checks_spared_;
+  } else {
+    standing = Contradicts(images, sight) ? kContradicts : kUnknown;
+    standing_checks_spared_ = standing == kContradicts ? 0 : kStandingChecksSpared;
+  }
+  if (standing != kContradicts) return sight;
+  Sight nothing;
+  nothing.tags = sight.tags;
+  nothing.contradicts_collar = true;
+  return nothing;
+}
+
+bool CollarLocaliser::Contradicts(const Images& images, const Sight& sight) {
+  const std::set<int> faces = FacesOf(sight);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (images[i] == nullptr) continue;
+    const auto tags = DetectNear(*images[i], i, sight.T_RE, kMaxNeighbour_px);
+    const auto shows = [&](bool fitted) {
+      return std::any_of(tags.begin(), tags.end(), [&](const TagDetection& t) {
+        return faces.contains(t.id) == fitted &&
+               std::any_of(collar_.tags.begin(), collar_.tags.end(),
+                           [&](const CollarTag& c) { return c.id == t.id; });
+      });
+    };
+    if (!shows(true) || !shows(false)) continue;
+    CollarPoseOptions pose = options_.pose;
+    pose.corner_noise_floor_px = kCornerFallback_px;
+    const Sight corners = FromTags(i, tags, sight.T_RE, pose);
+    if (!corners.Found()) return true;
+    if (Deviations({sight.T_RE, sight.covariance}, {corners.T_RE, corners.covariance}) >
+        kContradiction) {
+      return true;
+    }
+  }
+  return false;
+}
+
 Sight CollarLocaliser::FindNear(const Images& images, const Pose& T_RE, double radius_px) {
+  bool contradicts = false;
   if (options_.photometric_fit) {
     Sight sight = FitPixels(images, T_RE, false);
     for (std::size_t i = 0; i < images.size() && !IsTrusted(sight, T_RE); ++i) {
@@ -176,14 +244,20 @@ Sight CollarLocaliser::FindNear(const Images& images, const Pose& T_RE, double r
     }
     if (IsTrusted(sight, T_RE)) {
       if (!MaySkipPlanarCheck(sight, T_RE)) CheckOtherPlanarPose(images, T_RE, sight);
-      if (IsTrusted(sight, T_RE)) return sight;
+      if (IsTrusted(sight, T_RE)) {
+        sight = HeldAgainstCollar(images, std::move(sight));
+        if (sight.Found()) return sight;
+        contradicts = true;
+      }
     }
   }
   std::vector<std::vector<TagDetection>> tags(images.size());
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (images[i] != nullptr) tags[i] = DetectNear(*images[i], i, T_RE, radius_px);
   }
-  return Acquired(images, BestOf(tags, T_RE), T_RE);
+  Sight sight = Acquired(images, BestOf(tags, T_RE), T_RE);
+  sight.contradicts_collar |= contradicts && !sight.Found();
+  return sight;
 }
 
 std::vector<TagDetection> CollarLocaliser::DetectNear(const Image& image, std::size_t camera,
@@ -268,7 +342,7 @@ Sight CollarLocaliser::Acquired(const Images& images, const Sight& corners,
   CheckOtherPlanarPose(images, near_T_RE, sight);
   if (sight.source != TrackSource::kPixels || !sight.pixels.one_plane) return sight;
   const bool believed = near_T_RE ? IsTrusted(sight, *near_T_RE) : IsComplete(sight);
-  if (believed) return sight;
+  if (believed) return HeldAgainstCollar(images, std::move(sight));
   Sight nothing;
   nothing.tags = sight.tags;
   return nothing;

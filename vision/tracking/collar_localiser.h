@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "core/state_text.h"
@@ -21,6 +22,7 @@ struct Sight {
   double rms_px = 0.0, noise_grey = 0.0, squared_error_px2 = 0.0;
   int tags_used = 0, dof = 0;
   bool ambiguous = false, outline_used = false;
+  bool contradicts_collar = false;  ///< tags were seen where the collar cannot have them together
   std::optional<Pose> alternative_T_RE;
   PhotometricResult pixels;
 
@@ -58,6 +60,11 @@ class CollarLocaliser {
                   const PhotometricResult* rival = nullptr);
   bool IsComplete(const Sight& sight) const;
   bool IsTrusted(const Sight& sight, const Pose& expected_T_RE) const;
+  /// Returns `sight`; with nothing found and `contradicts_collar` where its only tag is not where
+  /// the collar has it beside the others that the pictures show.
+  Sight HeldAgainstCollar(const Images& images, Sight sight);
+  bool Contradicts(const Images& images, const Sight& sight);
+  std::set<int> FacesOf(const Sight& sight) const;
   Sight Acquired(const Images& images, const Sight& corners, const std::optional<Pose>& near_T_RE);
   Sight Refined(const Images& images, const Sight& corners);
   Sight FitCandidates(const Images& images, const Sight& corners);
@@ -79,6 +86,10 @@ class CollarLocaliser {
   std::vector<OpticsPrior> priors_;
   int planar_checks_spared_ = 0;  // frames left in which the other planar pose need not be tried
   double noise_grey_ = 0;         // of the fits so far, fading; 0: none
+  /// What is known of a tag's place on the collar, a tag: of those that were fitted alone only.
+  enum Standing { kUnknown, kAgrees, kContradicts };
+  std::vector<int> standings_;
+  int standing_checks_spared_ = 0;  // frames left in which a tag alone need not be looked at again
 };
 
 }  // namespace flextip

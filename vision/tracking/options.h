@@ -33,10 +33,35 @@ struct TrackerOptions {
   ContourOptions outline;
   double outline_from_rad = 0.003;
   TimeNs max_outline_ns = 2'000'000'000;  ///< so long the outline alone may carry a prediction
+  /// Of the tags' tip from where wrist and shaft can have it: beyond, it is no measurement.
+  double max_wrist_deviations = 6.0;
   double print_offset_sd_m = 3e-5;  ///< how well the tags' places along their normals are known
 };
 
 /// How a frame's pose was found.
 enum class TrackSource { kNone, kCorners, kPixels };
+
+/// Why a tip that the tags show is no measurement.
+enum class TipDoubt {
+  kNone,
+  kNotByWrist,   ///< wrist and shaft cannot have it there
+  kNotByCollar,  ///< the tags are not where the collar has them, one from another
+  kStandsStill,  ///< the same picture as before, while the wrist moved
+};
+
+/// Returns the name as in frames.csv: "none", "not_by_wrist", ...
+inline const char* Name(TipDoubt doubt) {
+  switch (doubt) {
+    case TipDoubt::kNone:
+      return "none";
+    case TipDoubt::kNotByWrist:
+      return "not_by_wrist";
+    case TipDoubt::kNotByCollar:
+      return "not_by_collar";
+    case TipDoubt::kStandsStill:
+      return "stands_still";
+  }
+  return "";
+}
 
 }  // namespace flextip

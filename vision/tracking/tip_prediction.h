@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "core/linear_algebra.h"
@@ -31,6 +32,23 @@ inline double DirectionNoise(const TipPrediction& prediction) {
   const Eigen::Matrix3d of_direction =
       turn * prediction.covariance.topLeftCorner<3, 3>() * turn.transpose();
   return std::sqrt(0.5 * of_direction.trace());
+}
+
+/// Returns how many standard deviations the place and direction of `a` are from those of `b`, of
+/// both covariances together: the root of chi2 over five numbers. The roll about the shaft is left
+/// out, for it may be unknown.
+inline double Deviations(const TipPrediction& a, const TipPrediction& b) {
+  const Eigen::Matrix<double, 3, 2> across = NormalBasis(b.T_RE.R.col(0));
+  Eigen::Matrix<double, 5, 1> apart;
+  apart << across.transpose() * a.T_RE.R.col(0), a.T_RE.p - b.T_RE.p;
+  Eigen::Matrix<double, 5, 5> sum = Eigen::Matrix<double, 5, 5>::Zero();
+  for (const TipPrediction* one : {&a, &b}) {
+    Eigen::Matrix<double, 5, 6> by_pose = Eigen::Matrix<double, 5, 6>::Zero();
+    by_pose.topLeftCorner<2, 3>() = -across.transpose() * Skew(one->T_RE.R.col(0));
+    by_pose.bottomRightCorner<3, 3>().setIdentity();
+    sum += by_pose * one->covariance * by_pose.transpose();
+  }
+  return std::sqrt(std::max(0.0, MahalanobisSquared(apart, sum)));
 }
 
 }  // namespace flextip

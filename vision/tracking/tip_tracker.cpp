@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "core/rotation.h"
@@ -79,14 +80,20 @@ struct TipTracker::Impl {
   void ForgetIfStale(TimeNs t_ns);
   std::optional<TipPrediction> Expect(TimeNs t_ns, const std::optional<TipPrediction>& model) const;
   double SearchRadius(const TipPrediction& expected) const;
-  Sight Find(const Images& images, TimeNs t_ns, const std::optional<TipPrediction>& expected);
+  Sight Find(const Images& images, TimeNs t_ns, const std::optional<TipPrediction>& expected,
+             const std::optional<TipPrediction>& allowed);
+  bool IsAllowed(const Sight& sight, const std::optional<TipPrediction>& allowed) const {
+    return !allowed ||
+           Deviations({sight.T_RE, sight.covariance}, *allowed) <= options.max_wrist_deviations;
+  }
   Sight FindLost(const Images& images, TimeNs t_ns, const std::optional<Pose>& near_T_RE);
   std::optional<TipPrediction> FollowOutline(const Images& images, TimeNs t_ns,
                                              const TipPrediction& expected,
                                              const std::optional<TipPrediction>& model);
   Sight FindFromTags(const std::vector<TagDetection>& tags);
-  TipTrack Finish(const Sight& sight, TimeNs t_ns, const std::optional<TipPrediction>& expected,
-                  const std::optional<TipPrediction>& model, const Images& images);
+  TipTrack Finish(Sight sight, TimeNs t_ns, const std::optional<TipPrediction>& expected,
+                  const std::optional<TipPrediction>& model, const Images& images,
+                  const std::optional<TipPrediction>& allowed = {});
   void Carry(const Images& images, const Sight& sight, TimeNs t_ns,
              const std::optional<TipPrediction>& expected,
              const std::optional<TipPrediction>& model, TipTrack& track);
@@ -150,17 +157,19 @@ double TipTracker::Impl::SearchRadius(const TipPrediction& expected) const {
 }
 
 Sight TipTracker::Impl::Find(const Images& images, TimeNs t_ns,
-                             const std::optional<TipPrediction>& expected) {
+                             const std::optional<TipPrediction>& expected,
+                             const std::optional<TipPrediction>& allowed) {
   Sight sight;
   if (expected && localiser.MightSee(expected->T_RE)) {
     sight = localiser.FindNear(images, expected->T_RE, SearchRadius(*expected));
   }
-  if (sight.Found()) return sight;
+  if (sight.Found() && IsAllowed(sight, allowed)) return sight;
   // The outline knows no roll: after a while it does not tell one planar pose from the other.
   const bool old_roll = last_ns > last_seen_ns && t_ns - last_seen_ns > options.max_prediction_ns;
   const std::optional<Pose> near_T_RE =
       expected && !old_roll ? std::optional<Pose>(expected->T_RE) : std::nullopt;
-  return FindLost(images, t_ns, near_T_RE);
+  Sight other = FindLost(images, t_ns, near_T_RE);
+  return other.Found() || !(sight.Found() || sight.contradicts_collar) ? other : sight;
 }
 
 // The whole picture: now, or on the thread. What the thread found in an earlier picture is where
@@ -229,10 +238,16 @@ void TipTracker::Impl::Report(const Sight& sight, TipTrack& track) const {
   track.direction_noise_rad = DirectionNoise({sight.T_RE, sight.covariance});
 }
 
-TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
+TipTrack TipTracker::Impl::Finish(Sight sight, TimeNs t_ns,
                                   const std::optional<TipPrediction>& expected,
-                                  const std::optional<TipPrediction>& model, const Images& images) {
+                                  const std::optional<TipPrediction>& model, const Images& images,
+                                  const std::optional<TipPrediction>& allowed) {
   TipTrack track;
+  if (sight.Found() && allowed) {
+    track.wrist_deviations = Deviations({sight.T_RE, sight.covariance}, *allowed);
+    track.from_wrist_m = sight.T_RE.p - allowed->T_RE.p;
+  }
+  if (sight.contradicts_collar) track.doubt = TipDoubt::kNotByCollar;
   const bool by_images = !images.empty();
   track.tags = sight.tags;
   track.source = sight.source;
@@ -242,6 +257,10 @@ TipTrack TipTracker::Impl::Finish(const Sight& sight, TimeNs t_ns,
   track.outline_used = sight.outline_used;
   track.ambiguous = sight.ambiguous;
   track.alternative_T_RE = sight.alternative_T_RE;
+  if (sight.Found() && !IsAllowed(sight, allowed)) {
+    track.doubt = TipDoubt::kNotByWrist;
+    sight.source = TrackSource::kNone;  // from here on as if nothing had been seen
+  }
   // Corners that the pixels do not confirm (covered, blurred) are no measurement to rely on.
   const bool confirmed =
       sight.source == TrackSource::kPixels || !options.photometric_fit || !by_images;
@@ -292,7 +311,8 @@ TipTrack TipTracker::Track(const Image& image, TimeNs t_ns,
 }
 
 TipTrack TipTracker::Track(const std::vector<const Image*>& images, TimeNs t_ns,
-                           const std::optional<TipPrediction>& model) {
+                           const std::optional<TipPrediction>& model,
+                           const std::optional<TipPrediction>& allowed) {
   if (images.size() != impl_->cameras.size()) {
     throw InputError(fmt::format("expected {} images, one a camera, found {}",
                                  impl_->cameras.size(), images.size()));
@@ -302,9 +322,14 @@ TipTrack TipTracker::Track(const std::vector<const Image*>& images, TimeNs t_ns,
   }
   impl_->ForgetIfStale(t_ns);
   const std::optional<TipPrediction> expected = impl_->Expect(t_ns, model);
-  Sight sight = impl_->Find(images, t_ns, expected);
+  Sight sight = impl_->Find(images, t_ns, expected, allowed);
   if (impl_->outline) impl_->outline->Join(images, sight);
-  return impl_->Finish(sight, t_ns, expected, model, images);
+  return impl_->Finish(std::move(sight), t_ns, expected, model, images, allowed);
+}
+
+TipTrack TipTracker::Carry(TimeNs t_ns, const std::optional<TipPrediction>& model) {
+  impl_->ForgetIfStale(t_ns);
+  return impl_->Finish({}, t_ns, impl_->Expect(t_ns, model), model, {});
 }
 
 void TipTracker::VisitState(StateText& state) { impl_->VisitState(state); }

@@ -33,6 +33,11 @@ struct TipTrack {
   bool ambiguous = false;                   ///< another pose fits nearly as well
   std::optional<Pose> alternative_T_RE;     ///< that pose, or a clearly worse one
   double direction_noise_rad = 0.0;         ///< of d_RE, per axis across it, where kOk
+  TipDoubt doubt = TipDoubt::kNone;         ///< why the tip is not kOk although tags were seen
+  /// Of the tags' tip from where wrist and shaft can have it, in standard deviations, and in R (m);
+  /// where tags were seen and `allowed` was given.
+  std::optional<double> wrist_deviations;
+  Eigen::Vector3d from_wrist_m = Eigen::Vector3d::Zero();
 };
 
 /// Follows one collar. Frames must come in increasing time; a frame that goes back in time starts
@@ -53,9 +58,15 @@ class TipTracker {
   /// InputError where the image is empty or its size is not the camera's.
   TipTrack Track(const Image& image, TimeNs t_ns, const std::optional<TipPrediction>& model = {});
 
-  /// Tracks in an image of each camera, taken at the same time; null where a camera has none.
+  /// Tracks in an image of each camera, taken at the same time; null where a camera has none. A tip
+  /// outside `allowed`, where wrist and shaft can have it at all, is not kOk: `doubt` says so, and
+  /// nothing of it is remembered.
   TipTrack Track(const std::vector<const Image*>& images, TimeNs t_ns,
-                 const std::optional<TipPrediction>& model = {});
+                 const std::optional<TipPrediction>& model = {},
+                 const std::optional<TipPrediction>& allowed = {});
+
+  /// Carries the tip on without a look at images, as where they are known to be of another time.
+  TipTrack Carry(TimeNs t_ns, const std::optional<TipPrediction>& model);
 
   /// Visits the state that the frames so far have left. A tracker of the same cameras, collar and
   /// options that reads the state goes on as this tracker would. The state of a detection in the
