@@ -8,18 +8,20 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/printable.h"
+
 namespace flextip {
 
 /// Input that cannot be used: one line that names the file, the line where there is one, what was
 /// found and what was expected. The program prints it and exits with 2.
 class InputError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit InputError(const std::string& what) : std::runtime_error(Printable(what)) {}
 
-  /// Returns an error "FILE:LINE: what"; `line` 0 leaves the line out.
+  /// Returns an error "FILE:LINE: what" on one line; `line` 0 leaves the line out.
   static InputError At(const std::string& file, long line, const std::string& what) {
-    return InputError(line > 0 ? fmt::format("{}:{}: {}", file, line, what)
-                               : fmt::format("{}: {}", file, what));
+    return InputError(PrintableLine(line > 0 ? fmt::format("{}:{}: {}", file, line, what)
+                                             : fmt::format("{}: {}", file, what)));
   }
 };
 
@@ -27,7 +29,7 @@ class InputError : public std::runtime_error {
 /// the whole job). The program prints it and exits with 1.
 class WorkError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit WorkError(const std::string& what) : std::runtime_error(Printable(what)) {}
 };
 
 }  // namespace flextip

@@ -8,6 +8,7 @@
 #include "exchange/streams/sensor_settings.h"
 #include "exchange/values/times.h"
 #include "exchange/values/units.h"
+#include "recording/text/bounds.h"
 #include "recording/text/text.h"
 #include "recording/text/yaml_map.h"
 
@@ -51,7 +52,7 @@ std::string OneOf(const YamlMap& yaml, const std::string& key,
 
 TimeNs Seconds(const YamlMap& yaml, const std::string& key) {
   const auto t_ns = DecimalTime(yaml.Text(key), "s");
-  if (!t_ns) {
+  if (!t_ns || !ExpectedWithin(BoundsOf("_ns"), static_cast<double>(*t_ns)).empty()) {
     throw yaml.Error(key, fmt::format("found {}, expected seconds", Quoted(yaml.Text(key))));
   }
   return *t_ns;

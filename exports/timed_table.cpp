@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool IsTimed(const fs::path& file) {
+  if (!fs::is_regular_file(file)) return false;
   std::ifstream in(file);
   std::string head;
   std::getline(in, head);

@@ -1,11 +1,11 @@
 #include "report/figure.h"
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/check.h"
 #include "core/error.h"
+#include "recording/text/text.h"
 
 namespace flextip::report {
 namespace {
@@ -119,9 +119,7 @@ std::string FigureText(const Figure& figure) { return Text(FigureJson(figure)); 
 void WriteFigures(const std::filesystem::path& file, const std::vector<Figure>& figures) {
   auto json = Json::array();
   for (const auto& figure : figures) json.push_back(FigureJson(figure));
-  std::ofstream out(file, std::ios::binary);
-  out << Text(json) << '\n';
-  if (!out.flush()) throw WorkError(file.string() + ": cannot be written");
+  WriteTextFile(file, Text(json) + "\n");
 }
 
 }  // namespace flextip::report

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "core/check.h"
 #include "core/error.h"
+#include "recording/text/text.h"
 #include "report/embedded/embedded.h"
 #include "report/result_files.h"
 
@@ -255,16 +255,7 @@ std::string Report::Html() const {
 }
 
 void Report::Write(const std::filesystem::path& path) const {
-  const auto part = std::filesystem::path(path.string() + ".part");
-  std::ofstream file(part, std::ios::binary);
-  file << Html();
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(part, path, error);
-  if (!file || error) {
-    std::filesystem::remove(part, error);
-    throw WorkError(fmt::format("{}: the report cannot be written", path.string()));
-  }
+  WriteTextFile(path, Html());
 }
 
 }  // namespace flextip::report

@@ -1,8 +1,6 @@
 #include "report/result_files.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "core/error.h"
@@ -67,11 +65,7 @@ ResultTable ReadResultTable(const std::filesystem::path& path) {
   return table;
 }
 
-std::string ReadBytes(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError::At(path.string(), 0, "cannot be read");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
+std::string ReadBytes(const std::filesystem::path& path) { return ReadTextFile(path); }
 
 std::vector<std::filesystem::path> PicturesIn(const std::filesystem::path& folder,
                                               std::size_t limit) {

@@ -24,13 +24,11 @@ constexpr std::size_t kOpenRows = 15;  // a longer table is folded
 
 Json ReadSummary(const std::filesystem::path& folder) {
   const auto path = folder / "summary.json";
-  try {
-    auto json = Json::parse(ReadBytes(path));
-    if (!json.is_object()) throw InputError::At(path.string(), 0, "not an object");
-    return json;
-  } catch (const Json::exception& e) {
-    throw InputError::At(path.string(), 0, e.what());
+  auto json = Json::parse(ReadBytes(path), nullptr, false);
+  if (!json.is_object()) {
+    throw InputError::At(path.string(), 0, "is damaged, expected the summary of a command");
   }
+  return json;
 }
 
 /// A value as people read it; what is neither number nor text is shown as JSON.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -77,7 +78,11 @@ void WriteReport(const fs::path& folder) {
   if (first_word == "simulate" && !HasDeviations(folder) && !WasServed(folder)) {
     refuse("no deviation.csv, the page needs it");
   }
-  page->write(folder);
+  try {
+    page->write(folder);
+  } catch (const nlohmann::json::exception&) {
+    refuse("summary.json or another file of JSON in it is damaged: run the command again");
+  }
 }
 
 }  // namespace flextip::report

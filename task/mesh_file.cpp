@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "recording/text/bounds.h"
 #include "recording/text/text.h"
 
 namespace flextip {
@@ -29,6 +30,10 @@ int CornerOf(const std::string& word, std::size_t points) {
 void AddVertex(std::istream& line, TriangleMesh& mesh) {
   Eigen::Vector3d p;
   if (!(line >> p[0] >> p[1] >> p[2])) throw InputError("expected three numbers after v");
+  for (const double value : p) {
+    const std::string within = ExpectedWithin(BoundsOf("v_m"), value);
+    if (!within.empty()) throw InputError(fmt::format("found {}, expected {}", value, within));
+  }
   mesh.points.push_back(p);
 }
 

@@ -4,12 +4,14 @@
 
 #include "core/error.h"
 #include "task/mesh_file.h"
+#include "task/path_time.h"
 
 namespace flextip {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kMostFalseAlarms = 0.01;
+constexpr double kAnyRate_hz = 1e3;  // of updates: two of them are all that it changes
 
 bool IsOutsideForbidden(const YamlMap& map) {
   return ReadChoice(map, "forbidden", {"inside", "outside"}) == 1;
@@ -65,6 +67,13 @@ void TaskReader::ReadPath(const YamlMap& map) {
   path.settle_s = map.NonNegativeOr("settle_s", path.settle_s);
   path.step_m = map.PositiveOr("step_m", path.step_m);
   path.reached_m = map.PositiveOr("reached_m", path.reached_m);
+  if (path.mode == PathMode::kSteps) return;
+  const double seconds = PathSeconds(path, kAnyRate_hz);
+  if (seconds <= kLongestPath_s) return;
+  throw map.Error(map.Has("speed_m_s") ? "speed_m_s" : "waypoints",
+                  fmt::format("the path takes {:.3g} s at {:g} m/s with {:g} s at its end, "
+                              "expected at most {:g} s",
+                              seconds, path.speed_m_s, path.settle_s, kLongestPath_s));
 }
 
 void TaskReader::ReadControl(const YamlMap& map) {

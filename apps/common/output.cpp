@@ -1,19 +1,21 @@
 #include "apps/common/output.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <system_error>
 
 #include "apps/common/run_facts.h"
 #include "core/check.h"
 #include "core/error.h"
 #include "core/version.h"
+#include "recording/text/text.h"
 
 namespace flextip {
 namespace {
@@ -37,6 +39,12 @@ bool HoldsSomething(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(folder, error)) return false;
   return !fs::is_empty(folder, error) || error;
+}
+
+// Puts each in the other's place at once, so that NAME is never missing. Returns false where the
+// file system cannot.
+bool Exchange(const fs::path& a, const fs::path& b) {
+  return syscall(SYS_renameat2, AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
 }
 
 bool HasNoNumber(const nlohmann::ordered_json& json) {
@@ -139,12 +147,9 @@ void OutputFolder::WriteSummary(nlohmann::ordered_json results) const {
     auto& next = results["verdict"]["command"];
     next = paths_.Fill(next.get<std::string>());
   }
-  std::ofstream out(folder_ / "summary.json");
   // File names may hold bytes that are not UTF-8: they are replaced, not a reason to fail.
-  out << results.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-  out.close();
-  if (!out)
-    throw WorkError(fmt::format("{}: cannot be written", (folder_ / "summary.json").string()));
+  WriteTextFile(folder_ / "summary.json",
+                results.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 void OutputFolder::Commit() {
@@ -163,6 +168,9 @@ void OutputFolder::Commit() {
   };
   if (!HoldsSomething(name_) || !force_) {
     move(folder_, name_);  // replaces an empty folder, and fails where something is in it by now
+  } else if (Exchange(folder_, name_)) {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);  // the earlier run's by now
   } else {
     fs::path old = name_;
     old += fmt::format(".old-{}", getpid());

@@ -1,5 +1,6 @@
 // flextip export: recordings and results for other programs and for viewers.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -90,7 +91,7 @@ void RunMcap(const ExportOptions& options, bool quiet) {
   if (fs::exists(options.out) && !options.force) {
     throw InputError::At(options.out.string(), 0, "exists; --force replaces it");
   }
-  const fs::path part = options.out.string() + ".part";
+  const fs::path part = fmt::format("{}.partial-{}", options.out.string(), getpid());
   if (!options.out.parent_path().empty()) fs::create_directories(options.out.parent_path());
   exports::McapContent content;
   try {

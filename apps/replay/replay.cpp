@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -60,8 +59,8 @@ Replayed OfSession(const ReplayOptions& options) {
 nlohmann::json SummaryOf(const fs::path& recording) {
   // Of several controllers, the summary is one folder up.
   for (const fs::path& folder : {recording, fs::weakly_canonical(recording).parent_path()}) {
-    std::ifstream file(folder / "summary.json");
-    if (file) return nlohmann::json::parse(file, nullptr, false);
+    const fs::path file = folder / "summary.json";
+    if (fs::exists(file)) return nlohmann::json::parse(ReadTextFile(file), nullptr, false);
   }
   return {};
 }

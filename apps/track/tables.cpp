@@ -135,8 +135,9 @@ void TrackTables::Resume() {
       fs::resize_file(folder_ / table->name, bytes);
       (void)table->rows.TakeText();  // the header is there
     }
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError::At(mark_.string(), 0, fmt::format("damaged: {}", error.what()));
+  } catch (const nlohmann::json::exception&) {
+    throw InputError::At(mark_.string(), 0,
+                         "is damaged, so that the run cannot go on: start it without --resume");
   } catch (const fs::filesystem_error& error) {
     throw InputError::At(error.path1().string(), 0, error.code().message());
   }

@@ -4,10 +4,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include "core/error.h"
+#include "recording/text/bounds.h"
+#include "recording/text/text.h"
 
 namespace flextip {
 namespace {
@@ -19,9 +20,7 @@ constexpr std::size_t kMaxSide = 100000;
 // Hands out lines and says where they were.
 class Lines {
  public:
-  explicit Lines(const std::filesystem::path& file) : name_(file.string()), in_(file) {
-    if (!in_) throw InputError::At(name_, 0, "cannot be read");
-  }
+  explicit Lines(const std::filesystem::path& file) : name_(file.string()), in_(OpenFile(file)) {}
   bool Next() {
     if (!std::getline(in_, text_)) return false;
     ++line_;
@@ -55,6 +54,13 @@ T Number(const Lines& lines, const std::string& text, const char* what) {
   return value;
 }
 
+double Pixel(const Lines& lines, const std::string& text) {
+  const auto value = Number<double>(lines, text, "a pixel");
+  const std::string expected = ExpectedWithin(BoundsOf("_px"), value);
+  if (expected.empty()) return value;
+  throw lines.Wrong(fmt::format("found the pixel '{}', expected {}", text, expected));
+}
+
 // A line's last three cells, and all before them: an image's name may hold commas. A reason has
 // none.
 std::array<std::string, 4> Cells(const Lines& lines) {
@@ -84,8 +90,7 @@ void AddCorner(const Lines& lines, const std::array<std::string, 4>& cells,
   }
   seen.ids.push_back(id);
   seen.x_B.push_back(board[static_cast<std::size_t>(id)]);
-  seen.px.emplace_back(Number<double>(lines, cells[2], "a pixel"),
-                       Number<double>(lines, cells[3], "a pixel"));
+  seen.px.emplace_back(Pixel(lines, cells[2]), Pixel(lines, cells[3]));
 }
 
 void ReadResolution(Lines& lines, CornersFile& corners) {
@@ -98,6 +103,9 @@ void ReadResolution(Lines& lines, CornersFile& corners) {
   if (corners.width_px <= 0 || corners.height_px <= 0 || corners.width_px > most ||
       corners.height_px > most) {
     throw lines.Wrong(fmt::format("expected 1 to {} pixels, found '{}'", most, text));
+  }
+  if (static_cast<double>(corners.width_px) * corners.height_px > kMostPixels) {
+    throw lines.Wrong(fmt::format("found '{}', expected at most {:g} pixels", text, kMostPixels));
   }
 }
 
@@ -158,10 +166,7 @@ void WriteCorners(const std::filesystem::path& file, const CornersFile& corners)
     for (char& c : reason) c = c == ',' || c == '\n' ? ';' : c;
     text += fmt::format("{},,,{}\n", view.name, reason);
   }
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw WorkError(fmt::format("{}: cannot be written", file.string()));
+  WriteTextFile(file, text);
 }
 
 }  // namespace flextip

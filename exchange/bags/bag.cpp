@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "recording/text/text.h"
 
 namespace flextip::exchange {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::string_view kRosBagMagic = "#ROSBAG V2.0\n", kMcapMagic = "\x89MC
                            kSqliteMagic = "SQLite format 3";
 
 std::string HeadOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in = OpenFile(file);
   std::array<char, 16> head{};
   in.read(head.data(), head.size());
   return {head.data(), static_cast<std::size_t>(in.gcount())};

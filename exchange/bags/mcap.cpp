@@ -84,7 +84,7 @@ void ReadChunk(Bytes content, const TakeRecord& take) {
 /// Calls `take` with every record, of chunks too. Returns false where the file ends before its end
 /// of data.
 bool ReadRecords(const fs::path& file, const TakeRecord& take) {
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in = OpenFile(file);
   const std::uintmax_t file_size = fs::file_size(file);
   in.seekg(kMagicSize);
   std::uintmax_t at = kMagicSize;
@@ -101,6 +101,7 @@ bool ReadRecords(const fs::path& file, const TakeRecord& take) {
     at += size;
     content.resize(size);
     in.read(reinterpret_cast<char*>(content.data()), static_cast<std::streamsize>(size));
+    if (!in) return false;  // cut off while it is read
     try {
       if (opcode == kChunk) {
         ReadChunk(content, take);

@@ -51,11 +51,14 @@ class RosBag : public Bag {
   void Guarded(Work work) const {
     try {
       work();
-    } catch (const rosbag::BagException& error) {
+    } catch (const InputError&) {
+      throw;
+    } catch (const WorkError&) {
+      throw;
+    } catch (const std::exception&) {  // of the bag's library, whose words say less
       throw InputError::At(file_, 0,
-                           fmt::format("cannot be read as a bag: {} (rosbag reindex "
-                                       "mends one that a crashed recorder left)",
-                                       error.what()));
+                           "cannot be read as a bag: it is cut off or damaged (rosbag reindex "
+                           "mends one that a crashed recorder left)");
     }
   }
 

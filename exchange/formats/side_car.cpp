@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "recording/text/bounds.h"
 #include "recording/text/text.h"
 
 namespace flextip::exchange {
@@ -15,6 +16,11 @@ using Json = nlohmann::json;
 
 // Seconds as nanoseconds: a whole number of `per_second` is kept exactly.
 TimeNs ToNs(const Json& number, TimeNs ns_per_unit) {
+  const double t_ns = number.get<double>() * static_cast<double>(ns_per_unit);
+  const std::string expected = ExpectedWithin(BoundsOf("_ns"), t_ns);
+  if (!expected.empty()) {
+    throw InputError(fmt::format("found the time {:.6g} ns, expected {}", t_ns, expected));
+  }
   if (number.is_number_integer()) return number.get<TimeNs>() * ns_per_unit;
   return std::llround(number.get<double>() * static_cast<double>(ns_per_unit));
 }
@@ -33,7 +39,7 @@ std::vector<TimeNs> ListedTimes(const Json& json) {
   }
   std::vector<TimeNs> times;
   for (const Json& frame : json.at("frames")) {
-    times.push_back(frame.at(frame.contains("cpu_ns") ? "cpu_ns" : "cpu_ts").get<TimeNs>());
+    times.push_back(ToNs(frame.at(frame.contains("cpu_ns") ? "cpu_ns" : "cpu_ts"), 1));
   }
   return times;
 }
@@ -63,6 +69,8 @@ SideCar ReadSideCar(const std::filesystem::path& file) {
     throw refuse(
         "is no side-car of a video, expected JSON with timestamps_ns, or frames with "
         "cpu_ts");
+  } catch (const InputError& error) {
+    throw refuse(error.what());
   }
   if (side_car.side_by_side == "undefined") side_car.side_by_side.clear();
   if (side_car.t_ns.empty()) throw refuse("holds no times of frames");

@@ -7,7 +7,9 @@
 #include <limits>
 #include <numbers>
 
+#include "core/error.h"
 #include "exchange/values/units.h"
+#include "recording/text/bounds.h"
 
 namespace flextip::exchange {
 namespace {
@@ -51,6 +53,21 @@ void FindUnit(const std::string& stream, const std::string& kind, const StreamRo
   }
   plan.units[kind] = unit;
   log.Assume(key, fmt::format("{}: no unit is stated, the largest value is {:.6g}", unit, largest));
+}
+
+void CheckBounds(const std::string& role, const std::string& kind,
+                 const std::vector<double>& values, const StreamRows& rows) {
+  const Bounds bounds = BoundsOf(kind == "length"  ? "_m"
+                                 : kind == "angle" ? "_rad"
+                                 : kind == "force" ? "_N"
+                                                   : "_Nm");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string expected = ExpectedWithin(bounds, values[i]);
+    if (expected.empty() || std::isnan(values[i])) continue;
+    throw InputError::At(rows.source, i < rows.places.size() ? rows.places[i] : 0,
+                         fmt::format("{}: found {:.6g} {}, expected {}: is it in another unit?",
+                                     role, values[i], bounds.unit, expected));
+  }
 }
 
 }  // namespace
@@ -135,6 +152,7 @@ void ToSi(const std::string& stream, StreamRows& rows, StreamPlan& plan, ImportL
     if (kind.empty()) continue;
     const Unit unit = *ParseUnit(plan.units.at(kind), kind);
     for (double& value : values) value = unit.ToSi(value);
+    CheckBounds(role, kind, values, rows);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "exchange/tables/column_choice.h"
 #include "exchange/values/times.h"
 #include "exchange/values/units.h"
+#include "recording/text/bounds.h"
 #include "recording/text/text.h"
 
 namespace flextip::exchange {
@@ -98,7 +99,7 @@ class RowReader {
   TimeNs TimeIn(const std::string& role, const std::string& unit) const {
     const std::size_t column = choice_.roles.at(role);
     const auto t_ns = ParseTime(table_.Plain(column), unit);
-    if (t_ns) return *t_ns;
+    if (t_ns && std::abs(static_cast<double>(*t_ns)) <= BoundsOf("_ns").most) return *t_ns;
     throw FieldError(column,
                      unit == "clock" ? "a time like 2024-05-01T12:00:00.123" : "a time in " + unit);
   }

@@ -5,6 +5,7 @@
 #include "core/check.h"
 #include "recording/cameras/yaml.h"
 #include "recording/streams/sensor_head.h"
+#include "recording/text/bounds.h"
 #include "recording/text/text.h"
 
 namespace flextip {
@@ -30,6 +31,10 @@ void ReadResolution(const YamlMap& yaml, CameraCalibration& camera) {
                                                  "in whole pixels",
                                                  size[0], size[1]));
     }
+  }
+  if (size[0] * size[1] > kMostPixels) {
+    throw yaml.Error("resolution", fmt::format("found {} x {}, expected at most {:g} pixels",
+                                               size[0], size[1], kMostPixels));
   }
   camera.width_px = static_cast<int>(size[0]);
   camera.height_px = static_cast<int>(size[1]);

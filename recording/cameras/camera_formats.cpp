@@ -4,6 +4,7 @@
 
 #include "recording/cameras/format_parts.h"
 #include "recording/cameras/yaml.h"
+#include "recording/text/bounds.h"
 #include "recording/text/text.h"
 
 namespace flextip {
@@ -38,6 +39,10 @@ void CheckNumbers(const std::filesystem::path& file, const CameraCalibration& c)
   if (c.width_px < 1 || c.height_px < 1) {
     refuse(fmt::format("found a resolution of {} x {}, expected at least one pixel", c.width_px,
                        c.height_px));
+  }
+  if (static_cast<double>(c.width_px) * c.height_px > kMostPixels) {
+    refuse(fmt::format("found a resolution of {} x {}, expected at most {:g} pixels", c.width_px,
+                       c.height_px, kMostPixels));
   }
   if (!(c.fu_px > 0 && c.fv_px > 0)) {
     refuse(fmt::format("found focal lengths {} and {}, expected both above 0", c.fu_px, c.fv_px));

@@ -5,6 +5,9 @@
 #include <set>
 
 #include "recording/cameras/format_parts.h"
+#include "recording/frames/frames.h"
+#include "recording/text/bounds.h"
+#include "recording/text/text.h"
 
 namespace flextip {
 namespace {
@@ -21,12 +24,14 @@ struct Reader {
   cv::FileStorage storage;
 
   explicit Reader(const std::filesystem::path& path) : file(path.string()) {
+    (void)OpenFile(path);  // throws where it is no file
+    bool opened = false;
     try {
-      storage.open(file, cv::FileStorage::READ);
-    } catch (const cv::Exception& error) {
-      throw Error(fmt::format("cannot be read by OpenCV: {}", error.err));
+      const QuietStderr quiet;
+      opened = storage.open(file, cv::FileStorage::READ);
+    } catch (const cv::Exception&) {  // reported below
     }
-    if (!storage.isOpened()) throw Error("cannot be read by OpenCV");
+    if (!opened) throw Error("cannot be read by OpenCV: it is cut off, damaged or of another kind");
   }
   InputError Error(const std::string& what) const { return InputError::At(file, 0, what); }
 
@@ -50,7 +55,10 @@ struct Reader {
     const cv::Mat flat = matrix.clone().reshape(1, 1);
     std::vector<double> values(flat.begin<double>(), flat.end<double>());
     for (const double value : values) {
-      if (!std::isfinite(value)) throw Error(fmt::format("{}: found {}", name, value));
+      const std::string expected = ExpectedWithin(BoundsOf(name), value);
+      if (!expected.empty()) {
+        throw Error(fmt::format("{}: found {}, expected {}", name, value, expected));
+      }
     }
     return values;
   }
@@ -58,7 +66,10 @@ struct Reader {
     const auto node = Find(keys);
     if (node.empty()) return fallback;
     if (!node.isInt()) throw Error(fmt::format("{}: expected a whole number", *keys.begin()));
-    return static_cast<int>(node);
+    const int value = static_cast<int>(node);
+    const std::string expected = ExpectedWithin(BoundsOf(*keys.begin()), value);
+    if (expected.empty()) return value;
+    throw Error(fmt::format("{}: found {}, expected {}", *keys.begin(), value, expected));
   }
   std::string Text(const char* key) const {
     const auto node = storage[key];
@@ -105,9 +116,9 @@ void NoteOtherKeys(const Reader& in, CameraDescription& d) {
 
 }  // namespace
 
-CameraDescription ReadOpenCvCamera(const std::filesystem::path& file,
-                                   const CameraFileChoice& choice) {
-  const Reader in(file);
+namespace {
+
+CameraDescription ReadOpened(const Reader& in, const CameraFileChoice& choice) {
   CameraDescription d;
   const auto problem = TakeIntrinsics(in.Matrix(kMatrixKeys), d.calibration);
   if (!problem.empty()) throw in.Error(fmt::format("camera_matrix: {}", problem));
@@ -123,9 +134,26 @@ CameraDescription ReadOpenCvCamera(const std::filesystem::path& file,
   if (const auto rate = in.storage["rate_hz"]; rate.isReal() || rate.isInt()) {
     d.calibration.rate_hz = static_cast<double>(rate);
     d.has_rate = true;
+    const std::string expected = ExpectedAbove(BoundsOf("rate_hz"), d.calibration.rate_hz, false);
+    if (!expected.empty()) {
+      throw in.Error(
+          fmt::format("rate_hz: found {}, expected {}", d.calibration.rate_hz, expected));
+    }
   }
   NoteOtherKeys(in, d);
   return d;
+}
+
+}  // namespace
+
+CameraDescription ReadOpenCvCamera(const std::filesystem::path& file,
+                                   const CameraFileChoice& choice) {
+  const Reader in(file);
+  try {
+    return ReadOpened(in, choice);
+  } catch (const cv::Exception&) {
+    throw in.Error("holds something else than a camera of OpenCV's");
+  }
 }
 
 void WriteOpenCvCamera(const std::filesystem::path& file, const CameraDescription& d) {
@@ -133,10 +161,9 @@ void WriteOpenCvCamera(const std::filesystem::path& file, const CameraDescriptio
   const bool fisheye = c.distortion == Distortion::kEquidistant;
   const cv::Matx33d K(c.fu_px, 0, c.cu_px, 0, c.fv_px, c.cv_px, 0, 0, 1);
   const cv::Mat terms = cv::Mat(c.distortion_coefficients, true).reshape(1, 1);
-  std::error_code ignored;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
-  try {
-    cv::FileStorage out(file.string(), cv::FileStorage::WRITE);
+  std::string text;
+  try {  // in memory, its format by the file's name
+    cv::FileStorage out(file.string(), cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
     if (!out.isOpened()) throw WorkError(fmt::format("{}: cannot be written", file.string()));
     out << "image_width" << c.width_px << "image_height" << c.height_px;
     if (fisheye) out << "fisheye_model" << 1;
@@ -145,9 +172,11 @@ void WriteOpenCvCamera(const std::filesystem::path& file, const CameraDescriptio
     if (!d.comment.empty()) out << "comment" << d.comment;
     if (!d.camera_name.empty()) out << "camera_name" << d.camera_name;
     if (!d.rostopic.empty()) out << "rostopic" << d.rostopic;
-  } catch (const cv::Exception& error) {
-    throw WorkError(fmt::format("{}: cannot be written by OpenCV: {}", file.string(), error.err));
+    text = out.releaseAndGetString();
+  } catch (const cv::Exception&) {
+    throw WorkError(fmt::format("{}: cannot be written", file.string()));
   }
+  WriteTextFile(file, text);
 }
 
 }  // namespace flextip

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "recording/frames/frames.h"
+
 namespace flextip {
 namespace {
 
@@ -55,6 +57,7 @@ ImageHead JpegHead(std::ifstream& in) {
 ImageHead DecodedHead(const std::filesystem::path& file) {
   cv::Mat image;
   try {
+    const QuietStderr quiet;
     image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception&) {
     image.release();

@@ -7,6 +7,7 @@
 namespace flextip {
 namespace {
 
+constexpr TimeNs kLongestGap_ns = TimeNs(30) * 24 * 3600 * 1'000'000'000;  // of a recording
 constexpr double kUnitTolerance = 1e-3;
 constexpr double kUnitRounding = 1e-12;  // a unit vector of doubles is unit to about 1e-16
 
@@ -29,6 +30,11 @@ std::vector<std::string> TimedColumns(const std::vector<std::string>& names) {
 }
 
 void CheckTimeRuns(const CsvReader& csv, TimeNs last, TimeNs t_ns) {
+  if (t_ns > last && t_ns - last > kLongestGap_ns) {
+    throw csv.Error(
+        fmt::format("time {} leaps: found {} after {}, expected at most 30 days between rows",
+                    kTimeColumn, t_ns, last));
+  }
   if (t_ns > last) return;
   throw csv.Error(fmt::format("time {} {}: found {}, expected more than {}", kTimeColumn,
                               t_ns < last ? "runs backwards" : "stands still", t_ns, last));

@@ -65,6 +65,7 @@ void WriteSeries(const std::filesystem::path& file, const std::vector<std::strin
                  const Series<T>& series, AddValue add_value) {
   if (series.empty()) RefuseToWrite(file, "a stream without samples");
   CsvWriter csv(TimedColumns(names));
+  csv.KeepBounds();
   for (std::size_t i = 0; i < series.size(); ++i) {
     if (i > 0 && series[i].t_ns <= series[i - 1].t_ns)
       RefuseToWrite(file, "time does not increase");

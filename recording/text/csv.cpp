@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/check.h"
 #include "recording/text/text.h"
@@ -13,17 +14,28 @@ CsvReader::CsvReader(const std::filesystem::path& file, const std::vector<std::s
       columns_(columns),
       options_(options),
       log_(&log),
-      stream_(OpenTextFile(file)) {
+      stream_(OpenFile(file)) {
   ReadHeader();
   FindColumns();
+  FindBounds();
 }
 
 CsvReader::CsvReader(const std::filesystem::path& file, ReadLog& log, const CsvOptions& options)
-    : file_(file.string()), options_(options), log_(&log), stream_(OpenTextFile(file)) {
+    : file_(file.string()), options_(options), log_(&log), stream_(OpenFile(file)) {
   ReadHeader();
   for (std::size_t i = 0; i < width_; ++i) {
     columns_.emplace_back(fields_[i]);
     place_.push_back(i);
+  }
+  FindBounds();
+}
+
+void CsvReader::FindBounds() {
+  constexpr Bounds kAnyInteger{4e18, 1.0, ""};
+  for (const auto& column : columns_) {
+    const auto bounds = KnownBoundsOf(column);
+    bounds_.push_back(bounds.value_or(Bounds{}));
+    integer_bounds_.push_back(bounds.value_or(kAnyInteger));
   }
 }
 
@@ -164,20 +176,31 @@ InputError CsvReader::FieldError(std::size_t column, const std::string& expected
 double CsvReader::Number(std::size_t column) const {
   const auto value = ParseFinite(Text(column));
   if (!value) throw FieldError(column, "a finite number");
+  const std::string within = ExpectedWithin(bounds_[column], *value);
+  if (!within.empty()) throw FieldError(column, within);
   return *value;
 }
 
 TimeNs CsvReader::Integer(std::size_t column) const {
   const auto value = ParseInteger(Text(column));
   if (!value) throw FieldError(column, "an integer");
+  const std::string within = ExpectedWithin(integer_bounds_[column], static_cast<double>(*value));
+  if (!within.empty()) throw FieldError(column, within);
   return *value;
 }
 
 CsvWriter::CsvWriter(const std::vector<std::string>& columns, bool from_recorder)
-    : width_(columns.size()) {
+    : names_(columns), width_(columns.size()) {
   if (from_recorder) text_ += '#';
   for (const auto& column : columns) Add(column);
   EndRow();
+}
+
+void CsvWriter::KeepBounds() {
+  for (const auto& column : names_) {
+    constexpr double kAny = std::numeric_limits<double>::max();
+    bounds_.push_back(KnownBoundsOf(column).value_or(Bounds{kAny, 0.0, ""}));
+  }
 }
 
 void CsvWriter::Separate() {
@@ -185,7 +208,19 @@ void CsvWriter::Separate() {
 }
 
 CsvWriter& CsvWriter::Add(double value, int digits) {
-  if (!std::isfinite(value)) throw WorkError("a table to be written holds a NaN or infinite value");
+  if (!std::isfinite(value)) {
+    throw WorkError(fmt::format(
+        "the result's \"{}\" came out as {}: no number of the input was refused, but together "
+        "they are too large or too small to calculate with",
+        fields_ < width_ ? names_[fields_] : "", value));
+  }
+  if (fields_ < bounds_.size()) {  // what a reader would refuse
+    const std::string expected = ExpectedWithin(bounds_[fields_], value);
+    if (!expected.empty()) {
+      throw WorkError(fmt::format("the result's \"{}\" came out as {:g}, expected {}",
+                                  names_[fields_], value, expected));
+    }
+  }
   Separate();
   text_ += digits > 0 ? fmt::format("{:.{}g}", value, digits) : NumberText(value);
   return *this;
@@ -206,7 +241,11 @@ CsvWriter& CsvWriter::Add(TimeNs value) {
 }
 
 CsvWriter& CsvWriter::Add(const std::string& text) {
-  FLEXTIP_CHECK(text.find_first_of("\n\r") == std::string::npos, "no line break within a field");
+  if (text.find_first_of("\n\r") != std::string::npos) {
+    std::string line = text;  // a file's name may hold anything
+    for (char& c : line) c = c == '\n' || c == '\r' ? '?' : c;
+    return Add(line);
+  }
   Separate();
   if (text.find_first_of(",\"") == std::string::npos && Trim(text).size() == text.size()) {
     text_ += text;

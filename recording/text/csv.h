@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/time_series.h"
 #include "recording/read_log.h"
+#include "recording/text/bounds.h"
 
 namespace flextip {
 
@@ -45,7 +46,8 @@ class CsvReader {
   /// Returns a field of the current row; `column` counts as in the constructor's `columns`.
   std::string_view Text(std::size_t column) const;
   bool Empty(std::size_t column) const { return Text(column).empty(); }
-  /// Returns a finite number. Throws InputError for anything else.
+  /// Returns a finite number within the bounds of the column's unit. Throws InputError for anything
+  /// else.
   double Number(std::size_t column) const;
   TimeNs Integer(std::size_t column) const;
 
@@ -56,6 +58,7 @@ class CsvReader {
  private:
   void ReadHeader();
   void FindColumns();
+  void FindBounds();
   bool TakeLine();
   bool OnlyBlanksFollow();
   bool IsTorn();
@@ -73,9 +76,10 @@ class CsvReader {
   std::string text_;         ///< the current line; fields in quotes are unquoted in place
   bool terminated_ = false;  ///< a line break ended it
   long line_ = 0;
-  std::size_t width_ = 0;                 ///< fields in a row
-  std::vector<std::size_t> place_;        ///< of each wanted column in a row; or kLacking
-  std::vector<std::string_view> fields_;  ///< of the current row, views into text_
+  std::size_t width_ = 0;                        ///< fields in a row
+  std::vector<std::size_t> place_;               ///< of each wanted column in a row; or kLacking
+  std::vector<Bounds> bounds_, integer_bounds_;  ///< of each wanted column's numbers
+  std::vector<std::string_view> fields_;         ///< of the current row, views into text_
 };
 
 /// Builds a table in memory.
@@ -83,14 +87,18 @@ class CsvWriter {
  public:
   explicit CsvWriter(const std::vector<std::string>& columns, bool from_recorder = true);
 
-  /// Adds the number exactly, or with so many `digits`. Throws WorkError for NaN and infinities.
+  /// From now on refuses what CsvReader would: numbers beyond the bounds of their column's unit.
+  void KeepBounds();
+
+  /// Adds the number exactly, or with so many `digits`. Throws WorkError for NaN and infinities,
+  /// and for what KeepBounds refuses.
   CsvWriter& Add(double value, int digits = 0);
   /// Adds an empty field where the value is NaN or infinite.
   CsvWriter& AddOrEmpty(double value, int digits = 0);
   /// Adds the number with so many decimals; an empty field where it is NaN or infinite.
   CsvWriter& AddFixed(double value, int decimals);
   CsvWriter& Add(TimeNs value);
-  /// Adds a text without line breaks, in quotes where it needs them.
+  /// Adds a text, in quotes where it needs them; a '?' for each line break.
   CsvWriter& Add(const std::string& text);
   CsvWriter& AddEmpty(int count = 1);
   void EndRow();  ///< the row must be full
@@ -102,6 +110,8 @@ class CsvWriter {
  private:
   void Separate();
 
+  std::vector<std::string> names_;
+  std::vector<Bounds> bounds_;  ///< of each column's numbers; empty: none
   std::size_t width_;
   std::size_t fields_ = 0;
   std::string text_;

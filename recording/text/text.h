@@ -28,13 +28,15 @@ std::string_view Trim(std::string_view text);
 /// `text` in quotes for a one-line message: long texts cut, control characters replaced.
 std::string Quoted(std::string_view text);
 
-/// Opens a file to be read. Throws InputError where it is missing or no file.
-std::ifstream OpenTextFile(const std::filesystem::path& file);
+/// Opens a file to be read, byte by byte. Throws InputError where it is missing, or no file but a
+/// folder, a pipe or a device, which would wait or never end.
+std::ifstream OpenFile(const std::filesystem::path& file);
 
 /// The whole file. Throws InputError where it is missing or unreadable.
 std::string ReadTextFile(const std::filesystem::path& file);
 
-/// Writes the whole file and its folder. Throws WorkError where the disk refuses.
+/// Writes the file and its folder: whole, or not at all where the program is killed or the disk
+/// refuses, for which it throws WorkError. The text stands beside it as NAME.partial-PID first.
 void WriteTextFile(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace flextip

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/linear_algebra.h"
+#include "recording/text/bounds.h"
 #include "recording/text/text.h"
 
 namespace flextip {
@@ -47,6 +48,15 @@ struct YamlMap::Impl {
                                                   : "nothing";
     return Error(key, fmt::format("found {}, expected {}", text, expected));
   }
+  Bounds BoundsOf(const std::string& key) const { return flextip::BoundsOf(prefix + key); }
+  /// The finite number of `item`, a part of the key's value, within the key's bounds.
+  double Number(const std::string& key, const YAML::Node& item, const char* expected) const {
+    const auto value = item.IsScalar() ? ParseFinite(item.Scalar()) : std::nullopt;
+    if (!value) throw Unexpected(key, item, expected);
+    const std::string within = ExpectedWithin(BoundsOf(key), *value);
+    if (!within.empty()) throw Unexpected(key, item, within);
+    return *value;
+  }
 };
 
 std::shared_ptr<YamlMap::Impl> YamlMap::Impl::Make(const std::string& file,
@@ -80,7 +90,7 @@ YamlMap YamlMap::Load(const std::filesystem::path& file) {
     return YamlMap(Impl::Make(file.string(), "", YAML::Load(text)));
   } catch (const YAML::Exception& error) {
     throw InputError::At(file.string(), error.mark.is_null() ? 0 : error.mark.line + 1,
-                         fmt::format("not YAML: {}", error.msg));
+                         "is not YAML from here on, expected lines of \"key: value\"");
   }
 }
 
@@ -106,21 +116,22 @@ std::string YamlMap::TextOr(const std::string& key, const std::string& fallback)
 }
 
 double YamlMap::Number(const std::string& key) const {
-  const auto& node = impl_->Node(key);
-  const auto value = node.IsScalar() ? ParseFinite(node.Scalar()) : std::nullopt;
-  if (!value) throw impl_->Unexpected(key, node, "a finite number");
-  return *value;
+  return impl_->Number(key, impl_->Node(key), "a finite number");
 }
 
 double YamlMap::Positive(const std::string& key) const {
   const double value = Number(key);
   if (value <= 0) throw impl_->Unexpected(key, impl_->Node(key), "a number above 0");
+  const std::string expected = ExpectedAbove(impl_->BoundsOf(key), value, false);
+  if (!expected.empty()) throw impl_->Unexpected(key, impl_->Node(key), expected);
   return value;
 }
 
 double YamlMap::NonNegative(const std::string& key) const {
   const double value = Number(key);
   if (value < 0) throw impl_->Unexpected(key, impl_->Node(key), "a number not below 0");
+  const std::string expected = ExpectedAbove(impl_->BoundsOf(key), value, true);
+  if (!expected.empty()) throw impl_->Unexpected(key, impl_->Node(key), expected);
   return value;
 }
 
@@ -140,6 +151,10 @@ std::int64_t YamlMap::Integer(const std::string& key) const {
   const auto& node = impl_->Node(key);
   const auto value = node.IsScalar() ? ParseInteger(node.Scalar()) : std::nullopt;
   if (!value) throw impl_->Unexpected(key, node, "an integer");
+  if (const auto bounds = KnownBoundsOf(impl_->prefix + key)) {
+    const std::string within = ExpectedWithin(*bounds, static_cast<double>(*value));
+    if (!within.empty()) throw impl_->Unexpected(key, node, within);
+  }
   return *value;
 }
 
@@ -152,9 +167,7 @@ std::vector<double> YamlMap::Numbers(const std::string& key) const {
   if (!node.IsSequence()) throw impl_->Unexpected(key, node, "a list of numbers");
   std::vector<double> values;
   for (const auto& item : node) {
-    const auto value = item.IsScalar() ? ParseFinite(item.Scalar()) : std::nullopt;
-    if (!value) throw impl_->Unexpected(key, item, "a finite number in the list");
-    values.push_back(*value);
+    values.push_back(impl_->Number(key, item, "a finite number in the list"));
   }
   return values;
 }
@@ -243,8 +256,7 @@ Pose YamlMap::TransformRows(const std::string& key) const {
   for (const auto& row : node) {
     if (!node.IsSequence() || !row.IsSequence() || row.size() != 4) break;
     for (const auto& item : row) {
-      const auto value = item.IsScalar() ? ParseFinite(item.Scalar()) : std::nullopt;
-      if (value) data.push_back(*value);
+      data.push_back(impl_->Number(key, item, "four lists of four finite numbers"));
     }
   }
   if (node.size() != 4 || data.size() != 16) {

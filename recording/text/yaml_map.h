@@ -14,7 +14,8 @@
 namespace flextip {
 
 /// One mapping of a YAML file. Every function that takes a key throws InputError where the key is
-/// missing (the ...Or functions take a fallback instead) or its value is of another kind.
+/// missing (the ...Or functions take a fallback instead), its value is of another kind, or a number
+/// is beyond the bounds of its unit (bounds.h).
 class YamlMap {
  public:
   /// The file's top mapping. Throws InputError for an unreadable file or broken YAML.

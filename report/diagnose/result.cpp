@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json ReadObject(const std::filesystem::path& path) {
-  auto json = Json::parse(ReadBytes(path));
+  auto json = Json::parse(ReadBytes(path), nullptr, false);
   if (!json.is_object()) throw InputError::At(path.string(), 0, "not an object");
   return json;
 }
@@ -246,8 +246,8 @@ DiagnosedResult ReadDiagnosedResult(const std::filesystem::path& path) {
       if (const auto count = NumberIn(json, key)) result.counts.emplace_back(key, *count);
     }
     return result;
-  } catch (const Json::exception& e) {
-    throw InputError::At(path.string(), 0, e.what());
+  } catch (const Json::exception&) {
+    throw InputError::At(path.string(), 0, "is damaged, expected a diagnosis.json");
   }
 }
 
@@ -263,8 +263,8 @@ RunSummary ReadRunSummary(const std::filesystem::path& path) {
         summary.figures.emplace_back(Label(key), value.get<bool>() ? "yes" : "no");
     }
     return summary;
-  } catch (const Json::exception& e) {
-    throw InputError::At(path.string(), 0, e.what());
+  } catch (const Json::exception&) {
+    throw InputError::At(path.string(), 0, "is damaged, expected the summary of a command");
   }
 }
 

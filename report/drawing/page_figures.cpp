@@ -120,9 +120,8 @@ std::string NameFrom(const std::string& title) {
 Figure ReadFigure(const std::string& text, const std::string& where) {
   try {
     return FigureOf(Json::parse(text));
-  } catch (const std::exception& e) {  // of the JSON library, and of what is missing in it
-    throw InputError::At(where, 0,
-                         fmt::format("holds a figure that cannot be read ({})", e.what()));
+  } catch (const std::exception&) {  // of the JSON library, and of what is missing in it
+    throw InputError::At(where, 0, "holds a figure that cannot be read");
   }
 }
 

@@ -27,6 +27,14 @@ TimeNs Nanoseconds(double t_s) { return std::llround(t_s * 1e9); }
 
 }  // namespace
 
+double SamplesPerSecond(const SensorSetup& setup) {
+  double rate_hz = 0.0;
+  const auto add = [&](const auto& sensor) { rate_hz += sensor ? sensor->rate_hz : 0.0; };
+  add(setup.wrist), add(setup.em0), add(setup.em1);
+  add(setup.strain), add(setup.load), add(setup.tip);
+  return rate_hz;
+}
+
 Eigen::Vector3d SensorNoise::Vector(double sd, int which) {
   const double x = Draw(), y = Draw(), z = Draw();
   Eigen::Vector3d noise(x, y, z);

@@ -39,6 +39,9 @@ struct SensorSetup {
   std::optional<TipSensorSetup> tip;
 };
 
+/// Returns how many samples (1/s) all sensors take together.
+double SamplesPerSecond(const SensorSetup& setup);
+
 /// Noise of one sensor: white, or with `correlation` a from sample to sample,
 /// x_k = a x_{k-1} + sqrt(1 - a^2) w_k, of the same variance.
 class SensorNoise {

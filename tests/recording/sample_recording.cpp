@@ -21,7 +21,7 @@ constexpr TimeNs kStart = 1'700'000'000'000'000'000;
 class Awkward {
  public:
   double Next() {
-    static const double kSpecial[] = {-0.0, 0.1, 5e-324, 1.7976931348623157e308, 1.0 / 3.0, 1e22};
+    static const double kSpecial[] = {-0.0, 0.1, 5e-324, 98765.432101234567, 1.0 / 3.0, 1e-22};
     if (count_++ % 7 == 0) return kSpecial[(count_ / 7) % 6];
     return uniform_(generator_);
   }

@@ -25,7 +25,8 @@ class TemporaryFolder {
 inline constexpr int kSamples = 6;  ///< rows in every stream: lines 2 to 7
 inline constexpr int kWidth = 32, kHeight = 24;
 
-/// Every stream with awkward numbers: all 17 digits in use, subnormal, huge, negative zero.
+/// Every stream with awkward numbers: all 17 digits in use, subnormal, large, negative
+/// zero.
 Recording MakeRecording();
 Series<TruthSample> MakeTruth();
 

@@ -1,7 +1,9 @@
 #include "apps/common/input/calibration_input.h"
 
-#include <fstream>
 #include <set>
+
+#include "core/error.h"
+#include "recording/text/text.h"
 
 namespace flextip {
 
@@ -27,11 +29,15 @@ nlohmann::json CalibrationsJson(const std::vector<UsedCalibration>& used) {
 std::vector<std::string> NotTrackedWith(const std::filesystem::path& tracked,
                                         const std::vector<UsedCalibration>& used) {
   std::set<std::string> known;
-  std::ifstream file(tracked / "summary.json");
-  const auto summary = nlohmann::json::parse(file, nullptr, false);
-  if (summary.is_object() && summary.contains("calibrations")) {
-    for (const auto& one : summary["calibrations"]) {
-      for (const auto& name : one["names"]) known.insert(name.get<std::string>());
+  const auto file = tracked / "summary.json";
+  if (std::filesystem::exists(file)) {
+    const auto summary = nlohmann::json::parse(ReadTextFile(file), nullptr, false);
+    try {
+      for (const auto& one : summary.value("calibrations", nlohmann::json::array())) {
+        for (const auto& name : one.at("names")) known.insert(name.get<std::string>());
+      }
+    } catch (const nlohmann::json::exception&) {
+      throw InputError::At(file.string(), 0, "is damaged, expected the summary of flextip track");
     }
   }
   std::vector<std::string> missing;

@@ -1,0 +1,65 @@
+#include <string>
+
+#include "recording/recording_file.h"
+#include "recording/recording_reader.h"
+#include "recording/recording_writer.h"
+#include "tests/fuzz/files/input_folder.h"
+#include "tests/fuzz/files/inputs.h"
+
+namespace flextip {
+namespace {
+
+constexpr std::string_view kRecording =
+    "format: flextip-recording\nversion: 1\n"
+    "instrument: {length_m: 0.6, outer_diameter_m: 0.00238, bending_stiffness_Nm2: 0.304}\n"
+    "port: {position_m: [0.28, 0.0, 0.0]}\ngravity_m_s2: [0.0, 0.0, -9.81]\n";
+constexpr const char* kStreams[] = {"wrist0", "command0", "em0",   "em1",    "strain0",
+                                    "load0",  "cam0",     "tags0", "vision0"};
+
+void RequireInBounds(const Recording& r) {
+  Require(r.instrument.length_m >= 1e-4 && r.instrument.length_m <= 1e4);
+  Require(r.p_RP.allFinite() && r.p_RP.cwiseAbs().maxCoeff() <= 1e5);
+  Require(r.gravity_m_s2.allFinite() && r.gravity_m_s2.cwiseAbs().maxCoeff() <= 1e5);
+  if (r.wrist0) {
+    for (const auto& sample : r.wrist0->samples)
+      Require(sample.value.p_RW.cwiseAbs().maxCoeff() <= 1e5);
+  }
+  if (r.strain0) {
+    for (const auto& m : r.strain0->moments_Nm) Require(m.value.cwiseAbs().maxCoeff() <= 1e6);
+  }
+}
+
+}  // namespace
+
+int CheckRecordingInput(std::span<const std::uint8_t> input) {
+  static const InputFolder folder;
+  const auto parts = PartsOf(input);
+  if (parts.size() < 3) {
+    const auto file = folder.Write("alone/recording.yaml", parts[0]);
+    ReadLog log;
+    const bool read = ReadsOrRefuses([&] { ReadRecordingFile(file, log); });
+    return read ? 1 : 0;
+  }
+  for (const char* stream : kStreams) {
+    std::error_code ignored;
+    if (parts[0] != std::string(stream) + "\n") {
+      std::filesystem::remove_all(folder / "rec" / stream, ignored);
+      continue;
+    }
+    folder.Write(std::string("rec/") + stream + "/sensor.yaml", parts[1]);
+    folder.Write(std::string("rec/") + stream + "/data.csv", parts[2]);
+  }
+  folder.Write("rec/recording.yaml", kRecording);
+  Recording recording;
+  const bool read = ReadsOrRefuses(
+      [&] { recording = ReadRecording(folder / "rec", {.check_frames = false}).recording; });
+  if (!read) return 0;
+  RequireInBounds(recording);
+  std::filesystem::remove_all(folder / "again");
+  WriteRecording(folder / "again", recording);
+  const Recording again = ReadRecording(folder / "again", {.check_frames = false}).recording;
+  RequireInBounds(again);
+  return 1;
+}
+
+}  // namespace flextip
