@@ -60,6 +60,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   core/mean_sd.h
   core/median.h
   core/pose.h
+  core/printable.h
   core/rotation.h
   core/state_text.h
   core/tag_collar.h
@@ -113,6 +114,8 @@ set(FLEXTIP_PUBLIC_HEADERS
   pipeline/guard/sensor_guard.h
   pipeline/sensor_readings.h
   pipeline/guard/sensor_vote.h
+  pipeline/guard/still_pictures.h
+  pipeline/guard/tip_range.h
   pipeline/tip_predictor.h
   recording/calibrations/em_field.h
   recording/calibrations/file.h
@@ -124,6 +127,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   recording/recording_reader.h
   recording/recording_writer.h
   recording/streams/sensor_streams.h
+  recording/text/bounds.h
   recording/text/csv.h
   recording/tip_score.h
   recording/truth.h

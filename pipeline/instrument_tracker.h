@@ -9,9 +9,9 @@
 
 #include "kinematics/tip_bending.h"
 #include "pipeline/sensor_readings.h"
-#include "pipeline/still_pictures.h"
+#include "pipeline/guard/still_pictures.h"
 #include "pipeline/tip_predictor.h"
-#include "pipeline/tip_range.h"
+#include "pipeline/guard/tip_range.h"
 #include "recording/recording.h"
 #include "vision/tracking/tip_tracker.h"
 

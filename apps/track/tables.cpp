@@ -79,7 +79,8 @@ TrackSums SumsFromJson(const nlohmann::json& j) {
           .not_by_collar = j.at("not_by_collar"),
           .stood_still = j.at("stood_still"),
           .from_wrist_m = j.at("from_wrist_m"),
-          .miss_m = {j.at("miss_m").at(0), j.at("miss_m").at(1), j.at("miss_m").at(2)}};
+          .miss_m = Eigen::Vector3d(j.at("miss_m").at(0), j.at("miss_m").at(1),
+                                    j.at("miss_m").at(2))};
 }
 
 const char* Name(TrackSource source) {

@@ -1,4 +1,4 @@
-#include "pipeline/tip_range.h"
+#include "pipeline/guard/tip_range.h"
 
 namespace flextip {
 

@@ -1,4 +1,4 @@
-#include "pipeline/still_pictures.h"
+#include "pipeline/guard/still_pictures.h"
 
 #include <algorithm>
 #include <cstring>

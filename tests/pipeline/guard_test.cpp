@@ -1,0 +1,252 @@
+// Sensors of a plant (another method than the model's) with one of them spoilt: the vote finds it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "pipeline/guard/sensor_guard.h"
+#include "simulation/plant/plant.h"
+#include "simulation/sensors/sensors.h"
+#include "tests/control/allocation_counter.h"
+
+namespace flextip {
+namespace {
+
+constexpr std::uint8_t Bit(VotedSensor sensor) {
+  return static_cast<std::uint8_t>(1U << static_cast<int>(sensor));
+}
+
+SupervisorOptions Full() {
+  SupervisorOptions options;
+  options.kind = SupervisionKind::kFull;
+  return options;
+}
+
+/// A shaft that is pressed by a force, and its sensors' noise.
+struct PressedShaft {
+  PressedShaft() {
+    setup.instrument.length_m = 0.6;
+    setup.instrument.outer_diameter_m = 0.00238;
+    setup.instrument.bending_stiffness_Nm2 = 0.304;
+    setup.p_RP = {0.0, 0.0, 0.17};
+    setup.load.constant_N = {0.0, 0.05, 0.15};
+    simulation::Plant plant(setup, {30, 30});
+    shape = plant.Solve({-0.2457, 0.0, 0.3421});
+    simulation::SensorSetup sensors_setup;
+    sensors_setup.wrist.emplace();
+    sensors_setup.wrist->position_noise_m = 5e-5;
+    sensors_setup.wrist->orientation_noise_rad = 3e-4;
+    sensors_setup.em0.emplace();
+    sensors_setup.em0->distance_from_tip_m = 0.02;
+    sensors_setup.em0->position_noise_m = 1.3e-4;
+    sensors_setup.em0->orientation_noise_rad = 5.6e-4;
+    sensors_setup.strain.emplace();
+    sensors_setup.strain->station_from_wrist_m[0] = 0.15;
+    sensors_setup.strain->station_from_wrist_m[1] = 0.5;
+    sensors_setup.strain->moment_noise_Nm = 8e-4;
+    sensors_setup.tip.emplace();
+    sensors = std::make_unique<simulation::Sensors>(sensors_setup, 5);
+  }
+
+  SensorReadings Next() {
+    t_ns += 1'000'000'000;  // all sensors are due
+    Recording recording;
+    sensors->Sample(shape, t_ns, recording);
+    return NewestReadings(recording);
+  }
+
+  simulation::PlantSetup setup;
+  simulation::PlantShape shape;
+  std::unique_ptr<simulation::Sensors> sensors;
+  TimeNs t_ns = simulation::kSimulationStart_ns;
+};
+
+struct SensorVoting : testing::Test {
+  PressedShaft shaft;
+  EstimatorOptions estimator =
+      EstimatorOptionsFor(shaft.setup.instrument, shaft.setup.p_RP, Eigen::Vector3d::Zero());
+  SensorVote vote{estimator, Full()};
+
+  Supervision Ask(const Measurements& measured) {
+    Measurements z = measured;
+    Supervision found;
+    vote.Vote(shaft.t_ns, 0, {}, z, found);
+    return found;
+  }
+};
+
+TEST_F(SensorVoting, HealthySensorsAgree) {
+  for (int i = 0; i < 2000; ++i) {
+    const Supervision found = Ask(*Gather(shaft.Next()));
+    ASSERT_EQ(found.voted_out, 0) << i;
+    ASSERT_EQ(found.reaction, Reaction::kNone) << i;
+  }
+}
+
+TEST_F(SensorVoting, ChiSquaredIsThatOfItsDegreesButForTheWidePrior) {
+  double sum = 0.0;
+  int degrees = 0;
+  constexpr int kDraws = 1000;
+  for (int i = 0; i < kDraws; ++i) {
+    const Measurements z = *Gather(shaft.Next());
+    sum += Ask(z).chi2;
+    degrees = 3 + 2 + 3 + 2 + 4 + 2;  // tip, direction, em0, its direction, strain, wrist's turn
+  }
+  // Three forces and the port are fitted against priors that are not drawn here.
+  EXPECT_LT(sum / kDraws, degrees);
+  EXPECT_GT(sum / kDraws, degrees - 7);
+}
+
+TEST_F(SensorVoting, TheSpoiltSensorIsOut) {
+  for (const double offset_m : {0.002, 0.005, 0.02, 0.2}) {
+    Measurements z = *Gather(shaft.Next());
+    z.tip->p_RE += Eigen::Vector3d(0.0, offset_m, 0.0);
+    EXPECT_EQ(Ask(z).voted_out, Bit(VotedSensor::kTip)) << offset_m;
+    shaft.t_ns += 1'000'000'000;
+    z = *Gather(shaft.Next());
+    z.em->T_RS.p += Eigen::Vector3d(0.0, 0.0, offset_m);
+    EXPECT_EQ(Ask(z).voted_out, Bit(VotedSensor::kEm)) << offset_m;
+    shaft.t_ns += 1'000'000'000;
+    z = *Gather(shaft.Next());
+    z.strain->moments_Nm[1] += 10.0 * offset_m;
+    EXPECT_EQ(Ask(z).voted_out, Bit(VotedSensor::kStrain)) << offset_m;
+    shaft.t_ns += 1'000'000'000;
+  }
+}
+
+TEST_F(SensorVoting, AMovedPortIsNamedAndNoSensorIsBlamed) {
+  estimator.p_RP += Eigen::Vector3d(0.0, 0.01, 0.0);
+  SensorVote moved(estimator, Full());
+  Measurements z = *Gather(shaft.Next());
+  Supervision found;
+  moved.Vote(shaft.t_ns, 0, {}, z, found);
+  EXPECT_EQ(found.voted_out, 0);
+  EXPECT_EQ(found.stop, Stop::kPortMoved);
+  EXPECT_EQ(found.reaction, Reaction::kHold);
+}
+
+TEST_F(SensorVoting, ASensorThatWasOutComesBackAfterAWhile) {
+  Measurements z = *Gather(shaft.Next());
+  z.tip->p_RE.y() += 0.01;
+  EXPECT_EQ(Ask(z).voted_out, Bit(VotedSensor::kTip));
+  z.tip->p_RE.y() -= 0.01;
+  shaft.t_ns += 100'000'000;
+  EXPECT_EQ(Ask(z).voted_out, Bit(VotedSensor::kTip));
+  shaft.t_ns += 150'000'000;
+  EXPECT_EQ(Ask(z).voted_out, 0);
+}
+
+TEST_F(SensorVoting, AllocatesNothing) {
+  Measurements z = *Gather(shaft.Next());
+  Ask(z);
+  const long before = AllocationCount();
+  z.tip->p_RE.y() += 0.01;
+  Ask(z);
+  EXPECT_EQ(AllocationCount(), before);
+}
+
+/// A straight shaft in figures: wrist, tip and em0 at 30 Hz.
+struct SampleScreening : testing::Test {
+  SampleScreening() {
+    instrument.length_m = 0.6;
+    instrument.bending_stiffness_Nm2 = 0.304;
+  }
+  SensorReadings At(double t_s, const Eigen::Vector3d& p_RW) const {
+    SensorReadings readings;
+    const TimeNs t_ns = TimeOf(t_s);
+    WristMeasurement wrist;
+    wrist.p_RW = p_RW;
+    wrist.position_noise_m = 5e-5;
+    readings.wrist = {t_ns, wrist};
+    TipMeasurement tip;
+    tip.tip.status = TipStatus::kOk;
+    tip.tip.p_RE = Eigen::Vector3d(0, 0, -0.3) + (p_RW - Eigen::Vector3d(0, 0, 0.3));
+    tip.tip.covariance_m2 = 1e-8 * Eigen::Matrix3d::Identity();
+    readings.tip = {t_ns, tip};
+    return readings;
+  }
+  static TimeNs TimeOf(double t_s) { return 1'000'000'000 + std::llround(1e9 * t_s); }
+
+  Instrument instrument;
+  SampleScreen screen{instrument, Eigen::Vector3d::Zero(), Full()};
+  LateSamples late{{}, 1.7};
+};
+
+TEST_F(SampleScreening, WhatIsNoNumberOrOldIsTakenOut) {
+  const Eigen::Vector3d p_RW(0, 0, 0.3);
+  SensorReadings readings = At(0.0, p_RW);
+  readings.strain = {TimeOf(0.0), {}};
+  readings.strain->value.moments_Nm[2] = std::numeric_limits<double>::quiet_NaN();
+  Supervision found;
+  screen.Screen(TimeOf(0.0), {}, readings, found);
+  EXPECT_FALSE(readings.strain);
+  EXPECT_EQ(found.voted_out, Bit(VotedSensor::kStrain));
+
+  readings = At(0.1, p_RW);
+  readings.load = {TimeOf(0.1), {}};
+  screen.Screen(TimeOf(0.1), {}, readings, found);
+  EXPECT_TRUE(readings.load);
+  readings = At(0.2, p_RW);
+  readings.load = {TimeOf(0.05), {}};
+  screen.Screen(TimeOf(0.2), {}, readings, found);
+  EXPECT_FALSE(readings.load);
+
+  readings = At(0.3, p_RW);
+  readings.wrist->value.p_RW.x() = std::numeric_limits<double>::infinity();
+  found = {};
+  screen.Screen(TimeOf(0.3), {}, readings, found);
+  EXPECT_FALSE(readings.wrist);
+  EXPECT_EQ(found.stop, Stop::kNotFinite);
+  EXPECT_EQ(found.reaction, Reaction::kHold);
+}
+
+TEST_F(SampleScreening, FiguresThatRepeatWhileTheWristMovesAreTakenOut) {
+  int taken_out_at = -1;
+  for (int i = 0; i < 10; ++i) {
+    const double t_s = i / 30.0;
+    SensorReadings readings = At(t_s, {0.002 * t_s, 0, 0.3});
+    readings.load = {TimeOf(t_s), {}};  // the same force
+    Supervision found;
+    screen.Screen(TimeOf(t_s), {}, readings, found);
+    if (!readings.load && taken_out_at < 0) taken_out_at = i;
+  }
+  // 6 deviations of the wrist's noise, 0.3 mm, at 0.067 mm a sample.
+  EXPECT_EQ(taken_out_at, 5);
+}
+
+TEST_F(SampleScreening, AWristThatStandsMayRepeatItself) {
+  for (int i = 0; i < 100; ++i) {
+    SensorReadings readings = At(i / 30.0, {0, 0, 0.3});
+    readings.load = {TimeOf(i / 30.0), {}};
+    Supervision found;
+    screen.Screen(TimeOf(i / 30.0), {}, readings, found);
+    ASSERT_TRUE(readings.load);
+    ASSERT_EQ(found.reaction, Reaction::kNone);
+  }
+}
+
+TEST_F(SampleScreening, ATipMayMoveAsTheFreeShaftOrNotAtAllButNotJump) {
+  const Eigen::Vector3d p_RW(0, 0, 0.3);
+  const SensorReadings first = At(0.0, p_RW);
+  late.Note(first);
+  screen.BelieveTip(first, late);
+  // The wrist goes 3 mm to the side: the free tip goes 3 mm to the other.
+  SensorReadings next = At(0.033, p_RW + Eigen::Vector3d(0.003, 0, 0));
+  late.Note(next);
+  Eigen::Vector3d& p_RE = next.tip->value.tip.p_RE;
+  for (const double x_m : {0.0, -0.0015, -0.003}) {
+    p_RE = Eigen::Vector3d(x_m, 0, -0.3);
+    EXPECT_FALSE(screen.TipJumps(next, late)) << x_m;
+  }
+  for (const double x_m : {0.003, -0.007, 0.02}) {
+    p_RE = Eigen::Vector3d(x_m, 0, -0.3);
+    EXPECT_TRUE(screen.TipJumps(next, late)) << x_m;
+  }
+  screen.Forget();
+  EXPECT_FALSE(screen.TipJumps(next, late));
+}
+
+}  // namespace
+}  // namespace flextip
