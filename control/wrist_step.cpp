@@ -15,10 +15,9 @@ constexpr double kRounding = 1e-12;
 /// it or as far as `max_step_m` goes.
 Eigen::Vector3d AwayFromPort(const Eigen::Vector3d& from_port, double nearest_m,
                              double max_step_m) {
-  const double distance = from_port.stableNorm();  // 1e-158 squares to next to nothing
-  if (!(distance > 0.0)) return Eigen::Vector3d::Zero();
-  const double step = std::clamp(nearest_m - distance, 0.0, max_step_m);
-  return (step / distance) * from_port;
+  // 1e-158 squares to next to nothing, and over 1e-310 nothing is finite.
+  const double step = std::clamp(nearest_m - from_port.stableNorm(), 0.0, max_step_m);
+  return step * from_port.stableNormalized();
 }
 
 }  // namespace

@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <functional>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
@@ -47,40 +51,39 @@ const Press& ThePress() {
 
 using Pictures = std::vector<Image>;
 
+constexpr int kTear = 290;  // a row through the tags
+
 struct Score {
-  int frames = 0, ok = 0, wrong = 0, doubted = 0;
-  double worst_m = 0.0;
+  int frames = 0, ok = 0, wrong = 0;  ///< wrong: ok, and beyond 6 stated deviations from the truth
+  double worst_m = 0.0;               ///< of the ok
   std::map<TipDoubt, int> doubts;
 };
 
-Score Track(const char* name, const Pictures& pictures, const TagCollar* collar = nullptr,
+/// Tracks `pictures`, prints their row of the table in the note. FLEXTIP_UNHELD: as if nothing were
+/// held against the wrist.
+Score Track(const std::string& name, const Pictures& pictures, const TagCollar* collar = nullptr,
             bool with_model = true) {
   const Press& press = ThePress();
   InstrumentTrackerSetup setup = TrackerSetupOf(press.recording, press.tracker, with_model);
   if (collar != nullptr) setup.collar = *collar;
-  if (std::getenv("FLEXTIP_NO_GATE")) setup.tracker.max_wrist_deviations = 1e300;
+  if (std::getenv("FLEXTIP_UNHELD") != nullptr) setup.tracker.max_wrist_deviations = 1e300;
   InstrumentTracker tracker(setup);
   Score score;
-  double most_sd = 0.0, sum_sd = 0;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const Image* const one[] = {&pictures[i]};
     const TimeNs t_ns = press.times[i];
     const TipTrack track = tracker.Follow(one, t_ns, ReadingsAt(press.recording, t_ns));
     ++score.frames;
     ++score.doubts[track.doubt];
-    score.doubted += track.doubt != TipDoubt::kNone;
-    if (track.wrist_deviations)
-      most_sd = std::max(most_sd, *track.wrist_deviations), sum_sd += *track.wrist_deviations;
     if (track.tip.status != TipStatus::kOk) continue;
     ++score.ok;
     const Eigen::Vector3d error = track.tip.p_RE - *ValueAt(press.truth, t_ns);
     score.worst_m = std::max(score.worst_m, error.norm());
     score.wrong += MahalanobisSquared(error, track.tip.covariance_m2) > 36.0;
   }
-  fmt::print("{:28} frames {} ok {} wrong {} worst {:.2f} mm, deviations mean {:.1f} most {:.1f};",
-             name, score.frames, score.ok, score.wrong, 1e3 * score.worst_m, sum_sd / score.frames,
-             most_sd);
-  for (const auto& [doubt, n] : score.doubts) fmt::print(" {}={}", Name(doubt), n);
+  fmt::print("| {} | {} of {} | {} | {:.2f} |", name, score.ok, score.frames, score.wrong,
+             1e3 * score.worst_m);
+  for (const auto& [doubt, n] : score.doubts) fmt::print(" {} {}", Name(doubt), n);
   fmt::print("\n");
   return score;
 }
@@ -134,42 +137,78 @@ Pictures Mixed(
   return out;
 }
 
-TEST(TrackerDoubt, Table) {
-  const double w = 1280, h = 720;
-  Track("as rendered", ThePress().pictures);
-  Track("as rendered, no model", ThePress().pictures, nullptr, false);
-  Track("upside down",
-        Warped([&](double x, double y) { return Eigen::Vector2d(w - 1 - x, h - 1 - y); }));
-  Track("shifted by 40 px", Warped([&](double x, double y) { return Eigen::Vector2d(x - 40, y); }));
-  Track("zoomed by 1.2", Warped([&](double x, double y) {
-          return Eigen::Vector2d(w / 2 + (x - w / 2) / 1.2, h / 2 + (y - h / 2) / 1.2);
-        }));
-  Track("scaled by a half", Warped([&](double x, double y) {
-          return Eigen::Vector2d(w / 2 + (x - w / 2) * 2, h / 2 + (y - h / 2) * 2);
-        }));
-  Track("rolled half a picture",
-        Warped([&](double x, double y) { return Eigen::Vector2d(std::fmod(x + w / 2, w), y); }));
-  Track("doubled with a far frame",
-        Mixed([](int, std::uint8_t a,
-                 std::uint8_t b) { return static_cast<std::uint8_t>((a + b) / 2); },
-              [](int i) { return (i + 30) % 60; }));
-  Track("frozen for 20 frames", Reordered([](int i) { return i >= 15 && i < 35 ? 15 : i; }));
-  Track("half a second late", Reordered([](int i) { return i - 15; }));
-  Track("shuffled", Reordered([](int i) { return (i * 37) % 60; }));
-  for (int back : {1, 3, 10})
-    Track(fmt::format("torn, {} frames", back).c_str(),
-          Mixed([](int row, std::uint8_t a, std::uint8_t b) { return row < 360 ? a : b; },
-                [back](int i) { return i - back; }));
-  for (bool model : {false, true}) {
+const double kWidth = 1280, kHeight = 720;
+
+TEST(Sight, HealthyPicturesAreNotDoubted) {
+  const Score score = Track("as rendered", ThePress().pictures);
+  EXPECT_EQ(score.ok, score.frames);
+  EXPECT_EQ(score.doubts.at(TipDoubt::kNone), score.frames);
+  EXPECT_EQ(score.wrong, 0);
+}
+
+TEST(Sight, PicturesOfAnotherGeometryAreNotBelieved) {
+  using Eigen::Vector2d;
+  const auto about_centre = [](double factor) {
+    return [factor](double x, double y) {
+      return Vector2d(kWidth / 2 + (x - kWidth / 2) * factor,
+                      kHeight / 2 + (y - kHeight / 2) * factor);
+    };
+  };
+  const std::pair<const char*, std::function<Vector2d(double, double)>> warps[] = {
+      {"upside down", [](double x, double y) { return Vector2d(kWidth - 1 - x, kHeight - 1 - y); }},
+      {"shifted by 40 px", [](double x, double y) { return Vector2d(x - 40, y); }},
+      {"zoomed by 1.2", about_centre(1.0 / 1.2)},
+      {"scaled by a half", about_centre(2.0)},
+      {"rolled half a picture",
+       [](double x, double y) { return Vector2d(std::fmod(x + kWidth / 2, kWidth), y); }}};
+  for (const auto& [name, from] : warps) {
+    const Score score = Track(name, Warped(from));
+    EXPECT_EQ(score.ok, 0) << name;
+    EXPECT_GT(score.doubts.count(TipDoubt::kNotByWrist), 0U) << name;
+  }
+}
+
+TEST(Sight, PicturesOfAnotherTimeAreNotBelieved) {
+  const Score frozen =
+      Track("frozen for 20 frames", Reordered([](int i) { return i >= 15 && i < 35 ? 15 : i; }));
+  EXPECT_EQ(frozen.doubts.at(TipDoubt::kStandsStill), 19);
+  EXPECT_EQ(frozen.wrong, 0);
+  EXPECT_GE(frozen.ok, 41);
+  // The first ones may come by the right place.
+  const Score late = Track("half a second late", Reordered([](int i) { return i - 15; }));
+  EXPECT_LE(late.wrong, 1);
+  EXPECT_GT(late.doubts.at(TipDoubt::kNotByWrist), 30);
+  const Score shuffled = Track("shuffled", Reordered([](int i) { return (i * 37) % 60; }));
+  EXPECT_LE(shuffled.wrong, 3);
+  const auto half = [](int, std::uint8_t a, std::uint8_t b) {
+    return static_cast<std::uint8_t>((a + b) / 2);
+  };
+  const Score doubled =
+      Track("doubled with a far frame", Mixed(half, [](int i) { return (i + 30) % 60; }));
+  EXPECT_EQ(doubled.wrong, 0);
+}
+
+/// What is not seen: a tear against the frame before moves some tags by a few tenths of a
+/// millimetre. What is older no longer fits.
+TEST(Sight, ATearAgainstAnOlderFrameIsNotBelieved) {
+  const auto torn = [](int row, std::uint8_t a, std::uint8_t b) { return row < kTear ? a : b; };
+  Track("torn, the lower half 1 frame old", Mixed(torn, [](int i) { return i - 1; }));
+  const Score old =
+      Track("torn, the lower half 10 frames old", Mixed(torn, [](int i) { return i - 10; }));
+  EXPECT_LE(old.wrong, 3);
+}
+
+/// A tag 3 mm off beside others, and a size of 4 for 5 mm: as without the wrist, no tip holds.
+TEST(Sight, APredictionDoesNotExcuseACollarThatContradictsItself) {
+  for (const bool with_model : {false, true}) {
+    const std::string how = with_model ? "" : ", no wrist";
     TagCollar collar = *ThePress().recording.tags0;
-    for (std::size_t k = 0; k < collar.tags.size(); ++k) {
-      TagCollar off = collar;
-      off.tags[k].T_EG.p.x() += 0.003;
-      Track(fmt::format("tag {} 3 mm off{}", k, model ? "" : ", no model").c_str(),
-            ThePress().pictures, &off, model);
-    }
+    collar.tags[2].T_EG.p.x() += 0.003;
+    const Score off = Track("tag 2 3 mm off" + how, ThePress().pictures, &collar, with_model);
+    EXPECT_EQ(off.ok, 0);
+    collar = *ThePress().recording.tags0;
     for (CollarTag& tag : collar.tags) tag.size_m = 0.004;
-    Track(model ? "size 4 for 5" : "size 4 for 5, no model", ThePress().pictures, &collar, model);
+    EXPECT_EQ(Track("tags of 4 for 5 mm" + how, ThePress().pictures, &collar, with_model).ok, 0);
   }
 }
 

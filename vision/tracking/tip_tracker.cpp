@@ -1,5 +1,6 @@
 #include "vision/tracking/tip_tracker.h"
 
+#include <bit>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -20,6 +21,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // How much of the corner noise seen so far is remembered from frame to frame.
 constexpr double kNoiseMemory = 0.9;
 constexpr double kMinSearch_px = 8.0, kMaxSearch_px = 60.0;
+constexpr int kRemembered = 10;    // seen tips
 constexpr int kThoroughEvery = 5;  // of the frames of a lost tip, at full resolution
 
 const TagCollar& Checked(const TagCollar& collar) {
@@ -60,6 +62,7 @@ struct TipTracker::Impl {
   TimeNs last_ns = 0, last_seen_ns = 0;  // of last_T_RE, and of the last tags
   Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();  // rad/s
   int predicted_frames = 0, lost_frames = 0;
+  int contradictions = 0;           // a bit a seen tip, the newest lowest: it was not allowed
   double noise_sum_px2, noise_dof;  // squared corner errors so far, fading, and their freedom
 
   Impl(const std::vector<CameraCalibration>& c, const TagCollar& collar, const TrackerOptions& o)
@@ -91,6 +94,7 @@ struct TipTracker::Impl {
                                              const TipPrediction& expected,
                                              const std::optional<TipPrediction>& model);
   Sight FindFromTags(const std::vector<TagDetection>& tags);
+  bool IsBelieved(const Sight& sight, const std::optional<TipPrediction>& allowed);
   TipTrack Finish(Sight sight, TimeNs t_ns, const std::optional<TipPrediction>& expected,
                   const std::optional<TipPrediction>& model, const Images& images,
                   const std::optional<TipPrediction>& allowed = {});
@@ -112,7 +116,7 @@ void TipTracker::Impl::VisitState(StateText& state) {
   state(last_ns);
   state(last_seen_ns);
   state(turn_rate);
-  for (int* count : {&predicted_frames, &lost_frames}) state(*count);
+  for (int* count : {&predicted_frames, &lost_frames, &contradictions}) state(*count);
   for (double* value : {&noise_sum_px2, &noise_dof}) state(*value);
   if (state.IsThere(outline.has_value()) != outline.has_value()) {
     throw InputError("saved state: of a run with another choice of the outline");
@@ -238,6 +242,15 @@ void TipTracker::Impl::Report(const Sight& sight, TipTrack& track) const {
   track.direction_noise_rad = DirectionNoise({sight.T_RE, sight.covariance});
 }
 
+// Where most of the last tips contradict the wrist, one that happens to lie near is no better: late
+// or shuffled pictures come by the right place.
+bool TipTracker::Impl::IsBelieved(const Sight& sight, const std::optional<TipPrediction>& allowed) {
+  if (!allowed) return true;
+  const bool is_allowed = IsAllowed(sight, allowed);
+  contradictions = ((contradictions << 1) | (is_allowed ? 0 : 1)) & ((1 << kRemembered) - 1);
+  return is_allowed && std::popcount(static_cast<unsigned>(contradictions)) <= kRemembered / 2;
+}
+
 TipTrack TipTracker::Impl::Finish(Sight sight, TimeNs t_ns,
                                   const std::optional<TipPrediction>& expected,
                                   const std::optional<TipPrediction>& model, const Images& images,
@@ -257,7 +270,7 @@ TipTrack TipTracker::Impl::Finish(Sight sight, TimeNs t_ns,
   track.outline_used = sight.outline_used;
   track.ambiguous = sight.ambiguous;
   track.alternative_T_RE = sight.alternative_T_RE;
-  if (sight.Found() && !IsAllowed(sight, allowed)) {
+  if (sight.Found() && !IsBelieved(sight, allowed)) {
     track.doubt = TipDoubt::kNotByWrist;
     sight.source = TrackSource::kNone;  // from here on as if nothing had been seen
   }
