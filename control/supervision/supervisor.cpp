@@ -149,11 +149,16 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
     p_held_.reset();
     decision.p_RW_command = Limit(cycle, decision.supervision);
   } else {
-    // The wrist as measured when the hold began: its noise would let it wander.
-    if (!p_held_) p_held_ = cycle.p_RW && cycle.p_RW->allFinite() ? cycle.p_RW : p_last_;
+    // While it moved, the last command: a reading may be what is wrong. Else the wrist as measured
+    // when the hold began, since its noise would let it wander.
+    const bool readable = cycle.p_RW && cycle.p_RW->allFinite();
+    if (!p_held_) p_held_ = moving_ || !readable ? p_last_ : cycle.p_RW;
+    if (decision.resumed && readable) p_held_ = cycle.p_RW;
+    if (!p_held_ && readable) p_held_ = cycle.p_RW;
     decision.p_RW_command = p_held_;
     v_last_m_s_.setZero();
   }
+  moving_ = moves;
   if (decision.p_RW_command) Keep(cycle, *decision.p_RW_command);
   t_last_ns_ = cycle.t_ns;
   return decision;

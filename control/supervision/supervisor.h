@@ -35,7 +35,7 @@ class Supervisor {
   };
 
   /// Returns the command that may go out: the wish within the rate limits, or, in a hold and in a
-  /// fault, the wrist as it was measured when that began.
+  /// fault, the last command of the motion; without motion before, the wrist as it was measured.
   Decision Decide(const SupervisedCycle& cycle);
 
   /// Returns whether the wrist did not move for the robot's lag though it was sent away all the
@@ -66,7 +66,7 @@ class Supervisor {
   TimeNs wrong_since_ns_ = 0;                      // since when it may point wrong; 0: it does not
   TimeNs held_since_ns_ = 0, clear_since_ns_ = 0;  // 0: not held, not clear
   Stop held_by_ = Stop::kNone;
-  bool fault_ = false;
+  bool fault_ = false, moving_ = false;
 };
 
 }  // namespace flextip

@@ -31,7 +31,9 @@ void SensorGuard::ScreenTip(TimeNs t_ns, const LateSamples& late, SensorReadings
                             Supervision& found) {
   jumped_ = 0;
   if (options_.kind == SupervisionKind::kFixedThresholds) {
-    if (screen_.TipIsFarther(options_.fixed_jump_m, readings)) {
+    const bool jumps = screen_.TipIsFarther(options_.fixed_jump_m, readings);
+    screen_.BelieveTip(readings, late);
+    if (jumps) {
       readings.tip.reset();
       found.voted_out |= Bit(VotedSensor::kTip);
       Hold(Stop::kTipJump, found);
@@ -69,8 +71,7 @@ void SensorGuard::Vote(TimeNs t_ns, const ShaftChange& change, Measurements& z,
 
 void SensorGuard::Believe(const LateSamples& late, const SensorReadings& readings,
                           const Supervision& found) {
-  const bool undecided = found.reaction >= Reaction::kHold;
-  if (undecided && options_.kind == SupervisionKind::kFull) return;
+  if (options_.kind != SupervisionKind::kFull || found.reaction >= Reaction::kHold) return;
   if (!IsOut(found, VotedSensor::kTip)) screen_.BelieveTip(readings, late);
   if (!IsOut(found, VotedSensor::kEm)) screen_.BelieveEm(readings, late);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -65,19 +66,50 @@ void Drop(VotedSensor sensor, Measurements& z) {
 SensorVote::SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options)
     : options_(options),
       limits_(options.false_alarm),
+      instrument_(estimator.instrument),
+      p_RP_(estimator.p_RP),
       all_(OptionsOf(estimator, estimator.port_prior_m)),
       without_one_(OptionsOf(estimator, estimator.port_prior_m)),
       loose_port_(OptionsOf(estimator, kMovedPort_m)) {}
 
+/// The model bends as the instrument does, but for its tolerances: a part of the bending counts as
+/// noise.
+Measurements SensorVote::WithModelError(const Measurements& z) const {
+  Measurements wide = z;
+  const double place_m = options_.model_error * bend_m_;
+  const double turn_rad = options_.model_error * slope_rad_;
+  if (wide.tip) wide.tip->covariance_m2.diagonal().array() += place_m * place_m;
+  wide.tip_direction_noise_rad = std::hypot(z.tip_direction_noise_rad, turn_rad);
+  wide.wrist_orientation_noise_rad = std::hypot(z.wrist_orientation_noise_rad, turn_rad);
+  wide.port_direction_noise_rad = std::hypot(z.port_direction_noise_rad, turn_rad);
+  if (wide.em) {
+    wide.em->position_noise_m = std::hypot(z.em->position_noise_m, place_m);
+    wide.em->orientation_noise_rad = std::hypot(z.em->orientation_noise_rad, turn_rad);
+  }
+  if (wide.strain) {
+    const double moment_Nm = options_.model_error * slope_rad_ * instrument_.bending_stiffness_Nm2 /
+                             instrument_.length_m;
+    wide.strain->moment_noise_Nm = std::hypot(z.strain->moment_noise_Nm, moment_Nm);
+  }
+  return wide;
+}
+
 SensorVote::Ballot SensorVote::Ask(ShaftEstimator& estimator, const Measurements& z,
-                                   const ShaftChange& change) const {
-  const ShaftEstimate estimate = estimator.Update(z, change);
+                                   const ShaftChange& change) {
+  const ShaftEstimate estimate = estimator.Update(WithModelError(z), change);
   const bool fitted =
       estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
   Ballot ballot;
   ballot.limit = limits_.Of(estimate.measurements);
   ballot.chi2 = estimate.chi2;
   ballot.agrees = fitted && estimate.chi2 <= ballot.limit;
+  if (fitted && (ballot.agrees || !bend_known_)) {
+    const Eigen::Vector3d to_port = p_RP_ - z.p_RW;
+    const Eigen::Vector3d axis = to_port.normalized();
+    bend_m_ = (estimate.p_RE - z.p_RW - instrument_.length_m * axis).norm();
+    slope_rad_ = std::acos(std::clamp(axis.dot(estimate.d_RE), -1.0, 1.0));
+    bend_known_ = true;
+  }
   return ballot;
 }
 

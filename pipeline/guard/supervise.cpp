@@ -1,4 +1,5 @@
 // The stages of a control cycle in which the supervisor acts.
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/instrument_controller.h"
@@ -11,6 +12,17 @@ namespace {
 // astray.
 constexpr double kTakeOver_m = 0.0005;
 constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is taken up
+
+constexpr double kForceDeviations = 3.0;
+
+/// Whether the tip force is above `limit_N` (0: none), whatever its deviation along it is.
+bool PressesTooHard(const ShaftEstimate& estimate, double limit_N) {
+  if (limit_N <= 0.0 || estimate.status != EstimateStatus::kOk) return false;
+  const Eigen::Vector3d& f_N = estimate.model.f_tip_N;
+  const Eigen::Vector3d along = f_N.normalized();
+  const double variance = along.dot(estimate.covariance.bottomRightCorner<3, 3>() * along);
+  return f_N.norm() - kForceDeviations * std::sqrt(std::max(0.0, variance)) > limit_N;
+}
 
 }  // namespace
 
@@ -69,9 +81,7 @@ void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerC
     const bool is_out = IsOut(found, VotedSensor::kTip) || IsOut(found, VotedSensor::kEm);
     hold(no_tip && guard_.TipIsStale(inputs.t_ns), Stop::kStaleTip);
     hold(no_tip && is_out, Stop::kTipDisagrees);
-    hold(options.max_tip_force_N > 0.0 && command.estimate.status == EstimateStatus::kOk &&
-             command.estimate.model.f_tip_N.norm() > options.max_tip_force_N,
-         Stop::kForce);
+    hold(PressesTooHard(command.estimate, options.max_tip_force_N), Stop::kForce);
     if (acts && !command.J_tip_wrist.isZero(0.0)) {
       found.worst_angle_rad =
           motion_guard_.Update(command.J_tip_wrist, command.estimate, command.measurements.p_RW);
