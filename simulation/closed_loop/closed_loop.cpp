@@ -34,7 +34,8 @@ class Loop {
         curves_(setup.sensor_effects.camera_latency_s),
         sensor_faults_(setup.faults, setup.fault_seed),
         plant_faults_(setup.faults, setup.plant, setup.fault_seed),
-        robot_faults_(setup.faults, setup.fault_seed) {
+        robot_faults_(setup.faults, setup.fault_seed),
+        p_RW_sent_(setup.p_RW_start) {
     result_.recording = setup.base;
     if (camera_ != nullptr) StartCamera();
     shape_ = plant_.Solve(servo_.p_RW());
@@ -186,10 +187,13 @@ class Loop {
   void Command(const ControllerCommand& command,
                const std::optional<Sample<WristMeasurement>>& wrist,
                const std::optional<Sample<WristMeasurement>>& given) {
-    if (command.status == ControlStatus::kNoWrist || robot_faults_.LosesCommand(Seconds(t_ns_)))
-      return;
+    const bool unknown = command.status == ControlStatus::kNoWrist;
+    if (unknown && command.supervision.reaction < Reaction::kHold) return;
+    p_RW_sent_ = command.p_RW_command;
+    if (robot_faults_.LosesCommand(Seconds(t_ns_))) return;
     const bool faulted = wrist && given && wrist->value.p_RW != given->value.p_RW;
-    const Eigen::Vector3d& read = faulted ? wrist->value.p_RW : command.measurements.p_RW;
+    const Eigen::Vector3d& read =
+        wrist && (faulted || unknown) ? wrist->value.p_RW : command.measurements.p_RW;
     const Eigen::Vector3d p_RW = command.p_RW_command + (p_RW_at_reading_ - read);
     if (p_RW.allFinite()) servo_.MoveTo(p_RW);
   }
@@ -218,7 +222,7 @@ class Loop {
     update.supervision = command.supervision;
     update.resumed = resumed;
     update.p_RW = servo_.p_RW();
-    update.p_RW_command = command.p_RW_command;
+    update.p_RW_command = p_RW_sent_;
     update.f_tip_N = shape_.f_tip_N;
     result_.updates.push_back(update);
   }
@@ -260,6 +264,7 @@ class Loop {
   RobotFaults robot_faults_;
   Supervision supervision_;  // of the last cycle
   double resumed_s_ = -1.0;
+  Eigen::Vector3d p_RW_sent_ = Eigen::Vector3d::Zero();  // the last command
   Eigen::Vector3d p_RE_goal_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d wrist_shift_ = Eigen::Vector3d::Zero();  // of the true wrist from the encoders
   Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();   // by the controller

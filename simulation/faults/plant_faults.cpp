@@ -49,7 +49,8 @@ PlantFaults::PlantFaults(const std::vector<Fault>& faults, const PlantSetup& set
       continue;
     std::mt19937_64 rng(FaultSeed(seed, i));
     std::normal_distribution<double> normal;
-    OneFault one{faults[i]};
+    OneFault one;
+    one.fault = faults[i];
     for (double& x : one.direction) x = normal(rng);
     one.direction.normalize();
     faults_.push_back(std::move(one));

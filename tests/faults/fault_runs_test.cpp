@@ -20,7 +20,7 @@ using simulation::LoopResult;
 using simulation::LoopUpdate;
 using testing::HasSubstr;
 
-FaultRun Run(FaultKind kind, FaultStream stream, double size, double duration_s = 0.3) {
+FaultRun RunWith(FaultKind kind, FaultStream stream, double size, double duration_s = 0.3) {
   FaultRun run;
   run.base = {.move = Move::kPress, .controller = ControllerKind::kRodTrack, .suite = Suite::kAll};
   run.faults = {Fault{kind, stream, 0.0, duration_s, size}};
@@ -36,7 +36,7 @@ FaultRecord Judged(const FaultRun& run, SupervisionKind kind) {
 /// A tip that is off by 15 mm drags the instrument 15 mm off where nobody looks.
 TEST(FaultRuns, AnUnsupervisedLoopFollowsATipThatIsOff) {
   const FaultRecord record =
-      Judged(Run(FaultKind::kOffset, FaultStream::kTip, 0.015), SupervisionKind::kNone);
+      Judged(RunWith(FaultKind::kOffset, FaultStream::kTip, 0.015), SupervisionKind::kNone);
   EXPECT_THAT(record.hazard, HasSubstr("path"));
   EXPECT_GT(record.deviation_m, 0.01);
   EXPECT_LT(record.healthy_deviation_m, 0.002);
@@ -48,7 +48,7 @@ TEST(FaultRuns, AnUnsupervisedLoopFollowsATipThatIsOff) {
 TEST(FaultRuns, AFaultOfNoSizeIsNoHazard) {
   for (const FaultKind kind : {FaultKind::kOffset, FaultKind::kDrift, FaultKind::kSpikes}) {
     const FaultRecord record =
-        Judged(Run(kind, FaultStream::kTip, 0.0, 1.0), SupervisionKind::kNone);
+        Judged(RunWith(kind, FaultStream::kTip, 0.0, 1.0), SupervisionKind::kNone);
     EXPECT_EQ(record.hazard, "none") << record.fault;
     EXPECT_DOUBLE_EQ(record.deviation_m, record.healthy_deviation_m) << record.fault;
   }
@@ -75,7 +75,7 @@ LoopResult Said(Reaction reaction, Stop stop, std::uint8_t voted_out, bool goes_
 }
 
 FaultRecord Findings(FaultStream stream, const LoopResult& result) {
-  FaultRun run = Run(FaultKind::kOffset, stream, 0.01);
+  FaultRun run = RunWith(FaultKind::kOffset, stream, 0.01);
   run.faults.front().start_s = 0.95;
   FaultRecord record;
   record.outcome = "end";
@@ -114,7 +114,7 @@ TEST(Findings, AVoteNamesItsSensorAndHoldsNothing) {
 }
 
 TEST(Findings, AStopBeforeTheFaultIsFalse) {
-  FaultRun run = Run(FaultKind::kOffset, FaultStream::kTip, 0.01);
+  FaultRun run = RunWith(FaultKind::kOffset, FaultStream::kTip, 0.01);
   run.faults.front().start_s = 1.45;
   FaultRecord record;
   SetFindings(run, Said(Reaction::kHold, Stop::kTipJump, 0, true), record);

@@ -21,7 +21,7 @@ LoopSetup Press(const std::vector<Fault>& faults = {}) {
   return setup;
 }
 
-LoopResult Run(FaultKind kind, FaultStream stream, double size, double duration_s = 0.4) {
+LoopResult RunPress(FaultKind kind, FaultStream stream, double size, double duration_s = 0.4) {
   return RunClosedLoop(Press({{kind, stream, kStart_s, duration_s, size}}), nullptr);
 }
 
@@ -49,7 +49,7 @@ class EachFault : public testing::TestWithParam<Case> {};
 TEST_P(EachFault, ChangesTheRunFromItsBeginOnAndIsRepeatable) {
   const auto [kind, stream, size] = GetParam();
   const LoopResult healthy = RunClosedLoop(Press(), nullptr);
-  const LoopResult faulted = Run(kind, stream, size), again = Run(kind, stream, size);
+  const LoopResult faulted = RunPress(kind, stream, size), again = RunPress(kind, stream, size);
   const double first_s = FirstDifference(healthy, faulted);
   EXPECT_GE(first_s, kStart_s);
   EXPECT_LT(first_s, kStart_s + 0.45);
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(, EachFault,
 
 TEST(FaultedLoop, TheRecordingHasTheSensorWithoutItsFault) {
   const LoopResult healthy = RunClosedLoop(Press(), nullptr);
-  const LoopResult faulted = Run(FaultKind::kOffset, FaultStream::kTip, 0.01);
+  const LoopResult faulted = RunPress(FaultKind::kOffset, FaultStream::kTip, 0.01);
   const auto& tips = faulted.recording.vision0->tips;
   const auto at = std::find_if(tips.begin(), tips.end(),
                                [](const auto& tip) { return Seconds(tip.t_ns) >= kStart_s; });
@@ -92,7 +92,7 @@ TEST(FaultedLoop, TheRecordingHasTheSensorWithoutItsFault) {
 }
 
 TEST(FaultedLoop, AWristThatStandsKeepsItsPlace) {
-  const LoopResult run = Run(FaultKind::kWristStands, FaultStream::kRobot, 0.0);
+  const LoopResult run = RunPress(FaultKind::kWristStands, FaultStream::kRobot, 0.0);
   std::vector<Eigen::Vector3d> stood;
   for (const LoopUpdate& update : run.updates) {
     const double t_s = Seconds(update.t_ns);
@@ -103,7 +103,7 @@ TEST(FaultedLoop, AWristThatStandsKeepsItsPlace) {
 }
 
 TEST(FaultedLoop, ALateCycleTakesThePlaceOfThoseBeforeIt) {
-  const LoopResult run = Run(FaultKind::kCycleLate, FaultStream::kRobot, 0.05);
+  const LoopResult run = RunPress(FaultKind::kCycleLate, FaultStream::kRobot, 0.05);
   double longest_s = 0.0;
   for (std::size_t i = 1; i < run.updates.size(); ++i) {
     const double step_s = Seconds(run.updates[i].t_ns) - Seconds(run.updates[i - 1].t_ns);
@@ -115,7 +115,7 @@ TEST(FaultedLoop, ALateCycleTakesThePlaceOfThoseBeforeIt) {
 
 /// The encoders read on as if nothing were; the true wrist is aside.
 TEST(FaultedLoop, AnEncoderThatSlipsShowsInTheTruthAlone) {
-  const LoopResult run = Run(FaultKind::kEncoderSlip, FaultStream::kRobot, 0.004);
+  const LoopResult run = RunPress(FaultKind::kEncoderSlip, FaultStream::kRobot, 0.004);
   const auto& readings = run.recording.wrist0->samples;
   ASSERT_EQ(readings.size(), run.truth.size());
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -125,14 +125,14 @@ TEST(FaultedLoop, AnEncoderThatSlipsShowsInTheTruthAlone) {
 }
 
 TEST(FaultedLoop, AFaultThatEndsTheEquilibriumEndsTheRunWithItsResult) {
-  const LoopResult run = Run(FaultKind::kPortMoved, FaultStream::kPlant, 2.0);
+  const LoopResult run = RunPress(FaultKind::kPortMoved, FaultStream::kPlant, 2.0);
   EXPECT_FALSE(run.lost_equilibrium.empty());
   ASSERT_FALSE(run.updates.empty());
   EXPECT_GE(Seconds(run.updates.back().t_ns), kStart_s - 0.04);
 }
 
 TEST(FaultedLoop, ANumberThatIsNoneDoesNotReachThePlant) {
-  const LoopResult run = Run(FaultKind::kNotFinite, FaultStream::kWrist, 0.0);
+  const LoopResult run = RunPress(FaultKind::kNotFinite, FaultStream::kWrist, 0.0);
   EXPECT_TRUE(run.lost_equilibrium.empty()) << run.lost_equilibrium;
   for (const auto& sample : run.truth) EXPECT_TRUE(sample.value.p_RE.allFinite());
 }

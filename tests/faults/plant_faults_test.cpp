@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 constexpr double kStart_s = 1.0, kLasts_s = 1.0;
 
 /// A shaft with 1 N on the tip.
-PlantSetup Setup() {
+PlantSetup LoadedShaft() {
   PlantSetup setup;
   setup.instrument = {.length_m = 0.6, .outer_diameter_m = 0.00238, .bending_stiffness_Nm2 = 0.304};
   setup.p_RP = {0.28, 0.0, 0.0};
@@ -21,7 +21,7 @@ PlantSetup Setup() {
 
 /// The shaft at `t_s`, stepped there in tenths of a second.
 PlantShape At(double t_s, FaultKind kind, double size) {
-  const PlantSetup setup = Setup();
+  const PlantSetup setup = LoadedShaft();
   Plant plant(setup, {40, 40});
   PlantFaults faults({{kind, FaultStream::kPlant, kStart_s, kLasts_s, size}}, setup, 1);
   PlantShape shape = plant.Solve(Vector3d::Zero(), 0.0);
@@ -33,11 +33,11 @@ PlantShape At(double t_s, FaultKind kind, double size) {
   return shape;
 }
 
-PlantShape Healthy() { return Plant(Setup(), {40, 40}).Solve(Vector3d::Zero()); }
+PlantShape Healthy() { return Plant(LoadedShaft(), {40, 40}).Solve(Vector3d::Zero()); }
 
 TEST(PlantFaults, ThePortMovesAndComesBack) {
-  EXPECT_LT((At(0.9, FaultKind::kPortMoved, 0.01).p_RP - Setup().p_RP).norm(), 1e-15);
-  EXPECT_NEAR((At(1.5, FaultKind::kPortMoved, 0.01).p_RP - Setup().p_RP).norm(), 0.01, 1e-12);
+  EXPECT_LT((At(0.9, FaultKind::kPortMoved, 0.01).p_RP - LoadedShaft().p_RP).norm(), 1e-15);
+  EXPECT_NEAR((At(1.5, FaultKind::kPortMoved, 0.01).p_RP - LoadedShaft().p_RP).norm(), 0.01, 1e-12);
   EXPECT_LT((At(2.2, FaultKind::kPortMoved, 0.01).T_RE().p - Healthy().T_RE().p).norm(), 1e-7);
 }
 
@@ -49,7 +49,7 @@ TEST(PlantFaults, TheLoadLetsGo) {
 }
 
 TEST(PlantFaults, TissueLetsGoByItsStiffness) {
-  PlantSetup setup = Setup();
+  PlantSetup setup = LoadedShaft();
   setup.load = {};
   setup.load.tissue = {.p_surface = Healthy().T_RE().p + Vector3d(0.0, 0.03, 0.0),
                        .normal = Vector3d::UnitY(),
@@ -63,7 +63,7 @@ TEST(PlantFaults, TissueLetsGoByItsStiffness) {
 }
 
 TEST(PlantFaults, WhatHoldsTheTipPullsByItsStiffness) {
-  const PlantSetup setup = Setup();
+  const PlantSetup setup = LoadedShaft();
   Plant plant(setup, {40, 40});
   PlantFaults faults({{FaultKind::kTipCaught, FaultStream::kPlant, kStart_s, kLasts_s, 500.0}},
                      setup, 1);
@@ -90,7 +90,7 @@ TEST(PlantFaults, AGraspLoadsTheShaftAcross) {
 
 TEST(PlantFaults, AnEncoderSlipsForGood) {
   const PlantFaults faults({{FaultKind::kEncoderSlip, FaultStream::kRobot, 1.0, 0.1, 0.004}},
-                           Setup(), 1);
+                           LoadedShaft(), 1);
   EXPECT_EQ(faults.WristShift(0.9), Vector3d::Zero());
   EXPECT_NEAR(faults.WristShift(1.0).norm(), 0.004, 1e-15);
   EXPECT_EQ(faults.WristShift(99.0), faults.WristShift(1.0));

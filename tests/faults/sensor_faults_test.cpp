@@ -32,7 +32,7 @@ SensorReadings Clean(int cycle) {
 }
 
 /// All cycles' readings under the faults.
-std::vector<SensorReadings> Run(const std::vector<Fault>& faults, std::uint64_t seed = 1) {
+std::vector<SensorReadings> CyclesOf(const std::vector<Fault>& faults, std::uint64_t seed = 1) {
   SensorFaults injected(faults, seed);
   std::vector<SensorReadings> cycles;
   for (int i = 0; i < kCycles; ++i) {
@@ -42,8 +42,8 @@ std::vector<SensorReadings> Run(const std::vector<Fault>& faults, std::uint64_t 
   return cycles;
 }
 
-std::vector<SensorReadings> Run(FaultKind kind, FaultStream stream, double size) {
-  return Run({Fault{kind, stream, kStart_s, kLasts_s, size}});
+std::vector<SensorReadings> CyclesOf(FaultKind kind, FaultStream stream, double size) {
+  return CyclesOf({Fault{kind, stream, kStart_s, kLasts_s, size}});
 }
 
 bool IsIn(int cycle) {
@@ -61,12 +61,12 @@ int Age(const std::vector<SensorReadings>& cycles, int i) {
 }
 
 TEST(SensorFaults, WithoutOneNothingChanges) {
-  const auto cycles = Run({});
+  const auto cycles = CyclesOf({});
   for (int i = 0; i < kCycles; ++i) EXPECT_EQ(TipOff(cycles, i), Vector3d::Zero());
 }
 
 TEST(SensorFaults, AStuckTipKeepsItsFiguresUnderNewTimes) {
-  const auto cycles = Run(FaultKind::kStuck, FaultStream::kTip, 0.0);
+  const auto cycles = CyclesOf(FaultKind::kStuck, FaultStream::kTip, 0.0);
   for (int i = 0; i < kCycles; ++i) {
     EXPECT_EQ(cycles[static_cast<std::size_t>(i)].tip->t_ns, Clean(i).tip->t_ns);
     EXPECT_EQ(Age(cycles, i), IsIn(i) ? i - 20 : 0) << i;
@@ -74,7 +74,7 @@ TEST(SensorFaults, AStuckTipKeepsItsFiguresUnderNewTimes) {
 }
 
 TEST(SensorFaults, ASpikeIsOneSample) {
-  const auto cycles = Run(FaultKind::kSpike, FaultStream::kTip, 0.05);
+  const auto cycles = CyclesOf(FaultKind::kSpike, FaultStream::kTip, 0.05);
   for (int i = 0; i < kCycles; ++i)
     EXPECT_NEAR(TipOff(cycles, i).norm(), i == 20 ? 0.05 : 0.0, 1e-15) << i;
 }
@@ -94,8 +94,8 @@ TEST(SensorFaults, SpikesAreOneInFiveAndPointElsewhereEachTime) {
 }
 
 TEST(SensorFaults, AnOffsetIsTheSameAllTheTimeAndADriftGrows) {
-  const auto offset = Run(FaultKind::kOffset, FaultStream::kTip, 0.01);
-  const auto drift = Run(FaultKind::kDrift, FaultStream::kTip, 0.01);
+  const auto offset = CyclesOf(FaultKind::kOffset, FaultStream::kTip, 0.01);
+  const auto drift = CyclesOf(FaultKind::kDrift, FaultStream::kTip, 0.01);
   for (int i = 0; i < kCycles; ++i) {
     EXPECT_NEAR(TipOff(offset, i).norm(), IsIn(i) ? 0.01 : 0.0, 1e-12);
     EXPECT_NEAR(TipOff(drift, i).norm(), IsIn(i) ? 0.01 * (i / kRate_hz - kStart_s) : 0.0, 1e-12);
@@ -105,20 +105,23 @@ TEST(SensorFaults, AnOffsetIsTheSameAllTheTimeAndADriftGrows) {
 
 TEST(SensorFaults, ScaleAndUnitsMultiplyAndAxesSwap) {
   const Vector3d clean = Clean(30).em0->value.T_RS.p;
-  EXPECT_EQ(Run(FaultKind::kScale, FaultStream::kEm0, 1.5)[30].em0->value.T_RS.p, 1.5 * clean);
-  EXPECT_EQ(Run(FaultKind::kUnits, FaultStream::kEm0, 1000)[30].em0->value.T_RS.p, 1000 * clean);
-  EXPECT_EQ(Run(FaultKind::kSwappedAxes, FaultStream::kEm0, 0)[30].em0->value.T_RS.p,
+  EXPECT_EQ(CyclesOf(FaultKind::kScale, FaultStream::kEm0, 1.5)[30].em0->value.T_RS.p, 1.5 * clean);
+  EXPECT_EQ(CyclesOf(FaultKind::kUnits, FaultStream::kEm0, 1000)[30].em0->value.T_RS.p,
+            1000 * clean);
+  EXPECT_EQ(CyclesOf(FaultKind::kSwappedAxes, FaultStream::kEm0, 0)[30].em0->value.T_RS.p,
             Vector3d(clean.x(), clean.z(), clean.y()));
-  EXPECT_EQ(Run(FaultKind::kSwappedAxes, FaultStream::kEm0, 1)[30].em0->value.T_RS.p,
+  EXPECT_EQ(CyclesOf(FaultKind::kSwappedAxes, FaultStream::kEm0, 1)[30].em0->value.T_RS.p,
             Vector3d(clean.y(), clean.x(), clean.z()));
-  EXPECT_EQ(Run(FaultKind::kSwappedAxes, FaultStream::kEm0, 2)[30].em0->value.T_RS.p,
+  EXPECT_EQ(CyclesOf(FaultKind::kSwappedAxes, FaultStream::kEm0, 2)[30].em0->value.T_RS.p,
             Vector3d(clean.z(), clean.y(), clean.x()));
-  EXPECT_EQ(Run(FaultKind::kSwappedAxes, FaultStream::kStrain, 0)[30].strain->value.moments_Nm,
+  EXPECT_EQ(CyclesOf(FaultKind::kSwappedAxes, FaultStream::kStrain, 0)[30].strain->value.moments_Nm,
             Eigen::Vector4d(2.0, 31.0, 4.0, 3.0));
 }
 
 TEST(SensorFaults, NotFiniteIsNoNumberInEachStream) {
-  const auto nan = [](FaultStream stream) { return Run(FaultKind::kNotFinite, stream, 0.0)[30]; };
+  const auto nan = [](FaultStream stream) {
+    return CyclesOf(FaultKind::kNotFinite, stream, 0.0)[30];
+  };
   EXPECT_TRUE(nan(FaultStream::kWrist).wrist->value.p_RW.array().isNaN().all());
   EXPECT_TRUE(nan(FaultStream::kTip).tip->value.tip.p_RE.array().isNaN().all());
   EXPECT_TRUE(nan(FaultStream::kEm0).em0->value.T_RS.p.array().isNaN().all());
@@ -127,7 +130,7 @@ TEST(SensorFaults, NotFiniteIsNoNumberInEachStream) {
 }
 
 TEST(SensorFaults, DelayedSamplesKeepTheTimesTheyWereTakenAt) {
-  const auto cycles = Run(FaultKind::kDelayed, FaultStream::kTip, 0.05);
+  const auto cycles = CyclesOf(FaultKind::kDelayed, FaultStream::kTip, 0.05);
   for (int i = 0; i < kCycles; ++i) {
     EXPECT_EQ(Age(cycles, i), IsIn(i) ? 5 : 0) << i;
     EXPECT_EQ(cycles[static_cast<std::size_t>(i)].tip->t_ns,
@@ -136,9 +139,9 @@ TEST(SensorFaults, DelayedSamplesKeepTheTimesTheyWereTakenAt) {
 }
 
 TEST(SensorFaults, DroppedSamplesLeaveTheLastOne) {
-  const auto all = Run(FaultKind::kDropped, FaultStream::kTip, 1.0);
+  const auto all = CyclesOf(FaultKind::kDropped, FaultStream::kTip, 1.0);
   for (int i = 0; i < kCycles; ++i) EXPECT_EQ(Age(all, i), IsIn(i) ? i - 19 : 0) << i;
-  const auto half = Run(FaultKind::kDropped, FaultStream::kTip, 0.5);
+  const auto half = CyclesOf(FaultKind::kDropped, FaultStream::kTip, 0.5);
   int dropped = 0;
   for (int i = 20; i < 50; ++i) dropped += Age(half, i) > 0;
   EXPECT_GT(dropped, 5);
@@ -146,18 +149,18 @@ TEST(SensorFaults, DroppedSamplesLeaveTheLastOne) {
 }
 
 TEST(SensorFaults, RepeatedSamplesComeInThePlaceOfTheNextOnes) {
-  const auto cycles = Run(FaultKind::kRepeated, FaultStream::kTip, 2.0);
+  const auto cycles = CyclesOf(FaultKind::kRepeated, FaultStream::kTip, 2.0);
   for (int i = 20; i < 50; ++i) EXPECT_EQ(Age(cycles, i), (i - 20) % 3) << i;
 }
 
 TEST(SensorFaults, OutOfOrderGoesBackAtEverySecondSample) {
-  const auto cycles = Run(FaultKind::kOutOfOrder, FaultStream::kTip, 3.0);
+  const auto cycles = CyclesOf(FaultKind::kOutOfOrder, FaultStream::kTip, 3.0);
   for (int i = 20; i < 50; ++i) EXPECT_EQ(Age(cycles, i), i % 2 == 1 ? 3 : 0) << i;
 }
 
 TEST(SensorFaults, StampsJumpAndRunByAnotherClock) {
-  const auto jump = Run(FaultKind::kStampJump, FaultStream::kStrain, -0.5);
-  const auto clock = Run(FaultKind::kOtherClock, FaultStream::kStrain, 1.5);
+  const auto jump = CyclesOf(FaultKind::kStampJump, FaultStream::kStrain, -0.5);
+  const auto clock = CyclesOf(FaultKind::kOtherClock, FaultStream::kStrain, 1.5);
   for (int i = 0; i < kCycles; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const TimeNs clean = Clean(i).strain->t_ns;
@@ -169,12 +172,12 @@ TEST(SensorFaults, StampsJumpAndRunByAnotherClock) {
 }
 
 TEST(SensorFaults, AWrongTagIsOffAlongTheShaft) {
-  const auto cycles = Run(FaultKind::kWrongTag, FaultStream::kTip, 0.006);
+  const auto cycles = CyclesOf(FaultKind::kWrongTag, FaultStream::kTip, 0.006);
   EXPECT_LT((TipOff(cycles, 30) - Vector3d(0.006, 0.0, 0.0)).norm(), 1e-15);
 }
 
 TEST(SensorFaults, ASecondInstrumentStandsWhereItStands) {
-  const auto cycles = Run(FaultKind::kSecondInstrument, FaultStream::kTip, 0.1);
+  const auto cycles = CyclesOf(FaultKind::kSecondInstrument, FaultStream::kTip, 0.1);
   std::optional<Vector3d> p_other;
   int other = 0;
   for (int i = 20; i < 50; ++i) {
@@ -190,7 +193,7 @@ TEST(SensorFaults, ASecondInstrumentStandsWhereItStands) {
 }
 
 TEST(SensorFaults, CoveredTagsLoseTheTip) {
-  const auto cycles = Run(FaultKind::kTagsCovered, FaultStream::kTip, 0.0);
+  const auto cycles = CyclesOf(FaultKind::kTagsCovered, FaultStream::kTip, 0.0);
   for (int i = 0; i < kCycles; ++i) {
     EXPECT_EQ(cycles[static_cast<std::size_t>(i)].tip->value.tip.status,
               IsIn(i) ? TipStatus::kLost : TipStatus::kOk);
@@ -199,7 +202,7 @@ TEST(SensorFaults, CoveredTagsLoseTheTip) {
 
 /// The bias is linear in the place, of the size where the sensor was first.
 TEST(SensorFaults, MetalBendsTheFieldByThePlace) {
-  const auto cycles = Run(FaultKind::kMetal, FaultStream::kEm0, 0.01);
+  const auto cycles = CyclesOf(FaultKind::kMetal, FaultStream::kEm0, 0.01);
   const auto bias = [&](int i) -> Vector3d {
     return cycles[static_cast<std::size_t>(i)].em0->value.T_RS.p - Clean(i).em0->value.T_RS.p;
   };
@@ -210,7 +213,7 @@ TEST(SensorFaults, MetalBendsTheFieldByThePlace) {
 }
 
 TEST(SensorFaults, ABrokenGageStandsAtItsRailAndTheOthersGoOn) {
-  const auto cycles = Run(FaultKind::kGageBroken, FaultStream::kStrain, 7.0);
+  const auto cycles = CyclesOf(FaultKind::kGageBroken, FaultStream::kStrain, 7.0);
   int rails = 0, clean = 0;
   for (int i = 0; i < 4; ++i) {
     const double value = cycles[30].strain->value.moments_Nm[i];
@@ -222,7 +225,7 @@ TEST(SensorFaults, ABrokenGageStandsAtItsRailAndTheOthersGoOn) {
 }
 
 TEST(SensorFaults, OneStreamIsDisturbedAndNoOther) {
-  const auto cycles = Run(FaultKind::kOffset, FaultStream::kLoad, 3.0);
+  const auto cycles = CyclesOf(FaultKind::kOffset, FaultStream::kLoad, 3.0);
   const SensorReadings clean = Clean(30);
   EXPECT_EQ(cycles[30].wrist->value.p_RW, clean.wrist->value.p_RW);
   EXPECT_EQ(cycles[30].em0->value.T_RS.p, clean.em0->value.T_RS.p);
@@ -234,7 +237,7 @@ TEST(SensorFaults, OneStreamIsDisturbedAndNoOther) {
 TEST(SensorFaults, AreTheSameByTheirSeedAlone) {
   const Fault tip{FaultKind::kSpikes, FaultStream::kTip, 0.0, 1.0, 0.01};
   const Fault em{FaultKind::kOffset, FaultStream::kEm0, 0.0, 1.0, 0.01};
-  const auto one = Run({tip}, 5), again = Run({tip, em}, 5), other = Run({tip}, 6);
+  const auto one = CyclesOf({tip}, 5), again = CyclesOf({tip, em}, 5), other = CyclesOf({tip}, 6);
   bool differs = false;
   for (int i = 0; i < kCycles; ++i) {
     EXPECT_EQ(TipOff(one, i), TipOff(again, i));
