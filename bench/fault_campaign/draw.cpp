@@ -19,9 +19,11 @@ constexpr int kPairsPerRound = 6;  // beside one of each single fault
 constexpr std::array kDurations_s{0.1, 0.3, 1.0};
 constexpr std::array kStarts{0.1, 0.3, 0.5, 0.65};
 
+enum class Factor { kWhich, kSecond, kSize, kDuration, kStart, kMove, kFloor, kKind, kSuite };
+
 /// Of each round through the values one permutation, by the factor's own seed: the values are even,
 /// and factors have nothing to do with one another.
-int Even(std::uint64_t seed, int factor, int number, int values) {
+int Even(std::uint64_t seed, Factor factor, int number, int values) {
   const auto key =
       static_cast<std::uint64_t>(factor) << 32 | static_cast<std::uint64_t>(number / values);
   std::mt19937_64 rng(simulation::FaultSeed(seed, key));
@@ -33,8 +35,6 @@ int Even(std::uint64_t seed, int factor, int number, int values) {
   }
   return order[static_cast<std::size_t>(number % values)];
 }
-
-enum Factor { kWhich, kSecond, kSizeOf, kDuration, kStart, kMoveOf, kFloor, kKind, kSuiteOf, kGap };
 
 std::vector<FaultChoice> MakeChoices() {
   using K = FaultKind;
@@ -131,22 +131,22 @@ FaultRun DrawRun(std::uint64_t seed, int number) {
   const auto even = [&](Factor factor, int values) { return Even(seed, factor, number, values); };
   FaultRun run;
   run.number = number;
-  run.size = even(kSizeOf, kSizes);
-  const double duration_s = kDurations_s[static_cast<std::size_t>(even(kDuration, 3))];
-  const int which = even(kWhich, singles + kPairsPerRound);
-  const auto second = static_cast<std::size_t>(even(kSecond, singles));
+  run.size = even(Factor::kSize, kSizes);
+  const double duration_s = kDurations_s[static_cast<std::size_t>(even(Factor::kDuration, 3))];
+  const int which = even(Factor::kWhich, singles + kPairsPerRound);
+  const auto second = static_cast<std::size_t>(even(Factor::kSecond, singles));
   const std::size_t first = which < singles
                                 ? static_cast<std::size_t>(which)
                                 : (second + 17 + static_cast<std::size_t>(which)) % choices.size();
   run.faults.push_back(Drawn(choices[first], run.size, duration_s));
   if (which >= singles) run.faults.push_back(Drawn(choices[second], run.size, duration_s));
-  run.start_part = kStarts[static_cast<std::size_t>(even(kStart, 4))];
-  run.base.move = static_cast<Move>(even(kMoveOf, kMoves));
-  run.base.fixture = even(kFloor, 2) == 1;
-  run.base.controller = static_cast<ControllerKind>(even(kKind, kControllerKinds));
+  run.start_part = kStarts[static_cast<std::size_t>(even(Factor::kStart, 4))];
+  run.base.move = static_cast<Move>(even(Factor::kMove, kMoves));
+  run.base.fixture = even(Factor::kFloor, 2) == 1;
+  run.base.controller = static_cast<ControllerKind>(even(Factor::kKind, kControllerKinds));
   const std::vector<Suite> suites = SuitesWith(run.faults);
   run.base.suite =
-      suites[static_cast<std::size_t>(even(kSuiteOf, static_cast<int>(suites.size())))];
+      suites[static_cast<std::size_t>(even(Factor::kSuite, static_cast<int>(suites.size())))];
   run.base.seed = simulation::FaultSeed(seed, static_cast<std::size_t>(number % kNoiseSeeds));
   return run;
 }

@@ -51,9 +51,8 @@ TEST(PlantFaults, TheLoadLetsGo) {
 TEST(PlantFaults, TissueLetsGoByItsStiffness) {
   PlantSetup setup = LoadedShaft();
   setup.load = {};
-  setup.load.tissue = {.p_surface = Healthy().T_RE().p + Vector3d(0.0, 0.03, 0.0),
-                       .normal = Vector3d::UnitY(),
-                       .stiffness_N_m = 20.0};
+  setup.load.tissue = {
+      .p_surface = {0.6, 0.03, 0.0}, .normal = Vector3d::UnitY(), .stiffness_N_m = 20.0};
   Plant plant(setup, {40, 40});
   PlantFaults faults({{FaultKind::kTissueLetsGo, FaultStream::kPlant, 1.0, 1.0, 1.0}}, setup, 1);
   PlantShape shape = plant.Solve(Vector3d::Zero());
@@ -73,7 +72,7 @@ TEST(PlantFaults, WhatHoldsTheTipPullsByItsStiffness) {
   shape = plant.Solve({0.0, 0.002, 0.0}, 1.1);
   const Vector3d pull = shape.f_tip_N - setup.load.constant_N;
   EXPECT_LT((pull - 500.0 * (p_caught - shape.T_RE().p)).norm(), 1e-9);
-  EXPECT_GT(pull.norm(), 0.05);
+  EXPECT_GT(pull.norm(), 0.01);
   faults.Act(2.5, shape, plant);
   EXPECT_LT((plant.Solve({0.0, 0.002, 0.0}, 2.5).f_tip_N - setup.load.constant_N).norm(), 1e-9);
 }
