@@ -106,7 +106,11 @@ std::vector<HealthyRecord> JoinedHealthy(const std::vector<HealthyBatch>& cases)
       sum.votes += r.votes;
       sum.off_path += r.off_path;
       sum.limited_cycles += r.limited_cycles;
+      sum.fine_stops += r.fine_stops;
+      sum.fine_s += r.fine_s;
       for (const auto& [name, stops] : r.stops_by_name) sum.stops_by_name[name] += stops;
+      for (const auto& [name, stops] : r.fine_stops_by_setting)
+        sum.fine_stops_by_setting[name] += stops;
       for (const std::string& example : r.examples)
         if (sum.examples.size() < 20) sum.examples.push_back(example);
     }

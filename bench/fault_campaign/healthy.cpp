@@ -15,7 +15,8 @@
 namespace flextip::bench {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HealthyRecord, kind, runs, without_equilibrium, simulated_s,
-                                   stops, votes, off_path, limited_cycles, stops_by_name, examples)
+                                   stops, votes, off_path, limited_cycles, fine_stops, fine_s,
+                                   stops_by_name, fine_stops_by_setting, examples)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HealthyBatch, name, records)
 
 namespace {
@@ -81,7 +82,11 @@ double SimulatedTime(const LoopResult& result) {
   return 1e-9 * static_cast<double>(result.updates.back().t_ns - simulation::kSimulationStart_ns);
 }
 
-void Count(const HealthyRun& run, int number, const LoopResult& result, HealthyRecord& record) {
+void Count(const HealthyRun& run, int number, bool fine, const LoopResult& result,
+           HealthyRecord& record) {
+  record.simulated_s += SimulatedTime(result);
+  record.off_path += result.max_deviation_m > kPath_m;
+  if (fine) record.fine_s += SimulatedTime(result);
   Supervision last;
   for (const simulation::LoopUpdate& update : result.updates) {
     const Supervision& now = update.supervision;
@@ -90,8 +95,13 @@ void Count(const HealthyRun& run, int number, const LoopResult& result, HealthyR
     if (now.reaction >= Reaction::kHold && last.reaction < Reaction::kHold) {
       ++record.stops;
       ++record.stops_by_name[Name(now.stop)];
+      record.fine_stops += fine;
+      if (fine) {
+        ++record.fine_stops_by_setting[fmt::format("{}, {}: {}", Name(run.base.controller),
+                                                   Name(run.base.suite), Name(now.stop))];
+      }
       const double t_s = 1e-9 * static_cast<double>(update.t_ns - simulation::kSimulationStart_ns);
-      if (record.examples.size() < 4) {
+      if (fine && record.examples.size() < 4) {
         record.examples.push_back(fmt::format("{}: {} at {:.2f} s, run {}", run.base.Text(),
                                               Name(now.stop), t_s, number));
       }
@@ -127,18 +137,20 @@ HealthyBatch RunHealthy(std::uint64_t first_seed, int first, double duration_s,
     HealthyRun run = DrawHealthyRun(first_seed, number);
     run.setup.resume_s = 0.0;  // a person looks once a second
     run.setup.max_s = 120.0;
-    for (std::size_t i = 0; i < kinds.size(); ++i) {
-      HealthyRecord& record = one.records[i];
-      ++record.runs;
-      try {
-        const LoopResult result =
-            RunClosedLoop(Supervised(run.setup, run.base.move, kinds[i]), nullptr);
-        record.simulated_s += SimulatedTime(result);
-        record.off_path += result.max_deviation_m > kPath_m;
-        Count(run, number, result, record);
-      } catch (const WorkError&) {
-        ++record.without_equilibrium;
+    try {
+      const LoopResult unsupervised = RunClosedLoop(run.setup, nullptr);
+      const bool fine = unsupervised.max_deviation_m <= kPath_m;
+      for (std::size_t i = 0; i < kinds.size(); ++i) {
+        HealthyRecord& record = one.records[i];
+        ++record.runs;
+        const bool none = kinds[i] == SupervisionKind::kNone;
+        Count(run, number, fine,
+              none ? unsupervised
+                   : RunClosedLoop(Supervised(run.setup, run.base.move, kinds[i]), nullptr),
+              record);
       }
+    } catch (const WorkError&) {
+      ++one.records.front().without_equilibrium;
     }
   }
   return one;

@@ -27,7 +27,11 @@ struct HealthyRecord {
   int votes = 0;           ///< begins of a sensor being out
   int off_path = 0;        ///< runs that leave the path by more than 2 mm
   int limited_cycles = 0;  ///< with the reaction limit
+  /// Of stops and time those in runs that keep within 2 mm of the path without supervision.
+  int fine_stops = 0;
+  double fine_s = 0.0;
   std::map<std::string, int> stops_by_name;
+  std::map<std::string, int> fine_stops_by_setting;  ///< "rod-track, vision: tip_jump"
   std::vector<std::string> examples;  ///< "press, rod-track, vision: tip_jump at 1.2 s, run 17"
 };
 struct HealthyBatch {

@@ -104,7 +104,10 @@ std::string FiguresJson(const std::vector<KindFigures>& figures,
                                {"off_path", r.off_path},
                                {"limited_cycles", r.limited_cycles},
                                {"without_equilibrium", r.without_equilibrium},
-                               {"stops_by_name", r.stops_by_name}};
+                               {"fine_stops", r.fine_stops},
+                               {"fine_s", r.fine_s},
+                               {"stops_by_name", r.stops_by_name},
+                               {"fine_stops_by_setting", r.fine_stops_by_setting}};
   }
   return json.dump(1) + "\n";
 }
@@ -131,13 +134,19 @@ std::string SummaryText(const std::vector<KindFigures>& figures,
 std::string HealthyText(const std::vector<HealthyRecord>& healthy) {
   std::string text = "\nHealthy hours\n";
   for (const HealthyRecord& r : healthy) {
-    const double tens = r.simulated_s / kTenHours_s;
+    const auto per_ten = [](int stops, double simulated_s) {
+      return simulated_s > 0.0 ? stops * kTenHours_s / simulated_s : 0.0;
+    };
     text += fmt::format(
-        "{}: {:.2f} h in {} runs; false stops per 10 h: {:.2f}; sensors out per 10 h: {:.2f}; runs "
-        "beyond 2 mm {}; limited cycles {}; no equilibrium {}\n",
-        r.kind, r.simulated_s / 3600.0, r.runs, tens > 0 ? r.stops / tens : 0.0,
-        tens > 0 ? r.votes / tens : 0.0, r.off_path, r.limited_cycles, r.without_equilibrium);
+        "{}: {:.2f} h in {} runs; false stops per 10 h: {:.2f}, in runs that are fine without: "
+        "{:.2f} ({} in {:.2f} h); sensors out per 10 h: {:.2f}; runs beyond 2 mm {}; limited "
+        "cycles "
+        "{}; no equilibrium {}\n",
+        r.kind, r.simulated_s / 3600.0, r.runs, per_ten(r.stops, r.simulated_s),
+        per_ten(r.fine_stops, r.fine_s), r.fine_stops, r.fine_s / 3600.0,
+        per_ten(r.votes, r.simulated_s), r.off_path, r.limited_cycles, r.without_equilibrium);
     if (r.stops > 0) text += fmt::format("  {}\n", Joined(r.stops_by_name));
+    if (r.fine_stops > 0) text += fmt::format("  fine: {}\n", Joined(r.fine_stops_by_setting));
     for (const std::string& example : r.examples) text += fmt::format("  {}\n", example);
   }
   return text;
