@@ -135,6 +135,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   report/report.h
   simulation/closed_loop/closed_loop.h
   simulation/closed_loop/scenario.h
+  simulation/faults/fault.h
   simulation/plant/chain_curvature.h
   simulation/plant/chain_geometry.h
   simulation/plant/chain_problem.h

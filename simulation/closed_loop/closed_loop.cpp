@@ -6,6 +6,9 @@
 
 #include "core/error.h"
 #include "pipeline/instrument_controller.h"
+#include "simulation/faults/plant_faults.h"
+#include "simulation/faults/robot_faults.h"
+#include "simulation/faults/sensor_faults.h"
 #include "simulation/plant/curve_history.h"
 
 namespace flextip::simulation {
@@ -28,7 +31,11 @@ class Loop {
         controller_(ControllerOptionsOf(setup), setup.model ? setup.model() : nullptr,
                     TrackerOf(setup, camera != nullptr ? &camera->tracker : nullptr)),
         servo_(setup.servo, setup.p_RW_start, setup.seed),
-        curves_(setup.sensor_effects.camera_latency_s) {
+        curves_(setup.sensor_effects.camera_latency_s),
+        sensor_faults_(setup.faults, setup.fault_seed),
+        plant_faults_(setup.faults, setup.plant, setup.fault_seed),
+        robot_faults_(setup.faults, setup.fault_seed),
+        p_RW_sent_(setup.p_RW_start) {
     result_.recording = setup.base;
     if (camera_ != nullptr) StartCamera();
     shape_ = plant_.Solve(servo_.p_RW());
@@ -41,15 +48,15 @@ class Loop {
 
   LoopResult Run(const std::function<void(int, int)>& progress) {
     const int total = path_->MaxUpdates();
-    for (int updates = 0; !path_->Done();) {
-      const TimeNs update_ns = UpdateTime(updates);
+    TimeNs update_ns = UpdateTime(0);
+    for (int updates = 0; !IsOver();) {
       t_ns_ = std::min(sensors_.NextDue().value_or(update_ns), update_ns);
-      if (t_ns_ > kSimulationStart_ns) MoveWrist();
+      if (t_ns_ > kSimulationStart_ns && !MoveWrist()) break;
       Sense();
       const bool at_update = t_ns_ == update_ns;
       if (at_update) {
         Update();
-        ++updates;
+        update_ns = NextUpdate(updates);
         if (progress) progress(static_cast<int>(result_.updates.size()), total);
       }
       Score(at_update);
@@ -65,24 +72,54 @@ class Loop {
     return kSimulationStart_ns + std::llround(update * 1e9 / setup_.update_rate_hz);
   }
 
+  double Seconds(TimeNs t_ns) const {
+    return 1e-9 * static_cast<double>(t_ns - kSimulationStart_ns);
+  }
+
+  /// The time of the cycle after `updates`, which is moved on. A late one takes the place of those
+  /// that were due before it.
+  TimeNs NextUpdate(int& updates) {
+    do ++updates;
+    while (UpdateTime(updates) <= t_ns_);
+    const TimeNs due_ns = UpdateTime(updates);
+    return due_ns + std::llround(1e9 * robot_faults_.LateBy(Seconds(due_ns)));
+  }
+
+  bool IsOver() const {
+    return path_->Done() || (setup_.max_s > 0.0 && Seconds(t_ns_) >= setup_.max_s);
+  }
+
   TimeNs CameraTime(int number) const {
     return kSimulationStart_ns + std::llround(number * 1e9 / setup_.base.cam0->calibration.rate_hz);
   }
 
   void StartCamera() {
+    for (const Fault& fault : setup_.faults) {
+      if (fault.stream == FaultStream::kTip)
+        throw InputError("faults of the tip need a tip by its figures, not by a camera");
+    }
     result_.recording.vision0.emplace();
     result_.recording.vision0->comment = "tip by vision, as the loop saw it";
     result_.recording.vision0->rate_hz = setup_.base.cam0->calibration.rate_hz;
   }
 
-  void MoveWrist() {
+  /// Returns false where the shaft has no equilibrium any more because of a fault.
+  bool MoveWrist() {
+    const double t_s = Seconds(t_ns_);
+    servo_.SetMaxSpeed(setup_.servo.max_speed_m_s * robot_faults_.SpeedPart(t_s));
     servo_.Advance(t_ns_);
-    shape_ = plant_.Solve(servo_.p_RW(), 1e-9 * static_cast<double>(t_ns_ - kSimulationStart_ns));
-    if (!shape_.IsUsable()) {
-      throw WorkError(fmt::format("the shaft lost its equilibrium {:.3f} s into the run: {}",
-                                  static_cast<double>(t_ns_ - kSimulationStart_ns) * 1e-9,
-                                  shape_.message));
+    plant_faults_.Act(t_s, shape_, plant_);
+    wrist_shift_ = plant_faults_.WristShift(t_s);
+    PlantShape shape = plant_.Solve(servo_.p_RW() + wrist_shift_, t_s);
+    if (shape.IsUsable()) {
+      shape_ = std::move(shape);
+      shape_.p_RW_measured = servo_.p_RW();
+      return true;
     }
+    result_.lost_equilibrium =
+        fmt::format("the shaft lost its equilibrium {:.3f} s into the run: {}", t_s, shape.message);
+    if (setup_.faults.empty()) throw WorkError(result_.lost_equilibrium);
+    return false;
   }
 
   void Sense() {
@@ -91,7 +128,8 @@ class Loop {
     sensors_.Sample(shape_, t_ns_, result_.recording);
     if (camera_ != nullptr) curves_.Add(t_ns_, shape_.Curve());
     if (readings && readings->samples.size() > before) p_RW_at_reading_ = servo_.p_RW();
-    result_.truth.push_back({t_ns_, {shape_.T_RE().p, shape_.T_RE().Quaternion(), servo_.p_RW()}});
+    result_.truth.push_back(
+        {t_ns_, {shape_.T_RE().p, shape_.T_RE().Quaternion(), servo_.p_RW() + wrist_shift_}});
   }
 
   /// The camera's frame, rendered and kept. With a latency it shows the shaft as it was before.
@@ -115,9 +153,13 @@ class Loop {
     ControllerInputs inputs;
     inputs.t_ns = inputs.pictures_t_ns = t_ns_;
     inputs.sensors = NewestReadings(result_.recording);
+    const std::optional<Sample<WristMeasurement>> wrist = inputs.sensors.wrist;
+    sensor_faults_.Disturb(t_ns_, inputs.sensors);
     TakeOffLatencies(setup_, inputs);
-    inputs.p_RE_desired = path_->Advance(p_RE_known_);
+    if (!IsHeld()) p_RE_goal_ = path_->Advance(p_RE_known_);
+    inputs.p_RE_desired = p_RE_goal_;
     inputs.d_RE_desired = path_->Direction();
+    inputs.resume = Resumes();
     std::optional<Image> frame;
     if (camera_ != nullptr && t_ns_ >= next_picture_ns_) frame = TakePicture();
     const Image* const pictures[] = {frame ? &*frame : nullptr};
@@ -125,12 +167,39 @@ class Loop {
     const ControllerCommand command = controller_.Step(inputs);
     if (frame) NoteTip(*controller_.Track());
     if (command.status != ControlStatus::kNoTip) p_RE_known_ = command.p_RE_used;
-    // The arm is commanded in its encoders' figures, whose error is that of the newest reading.
-    servo_.MoveTo(command.p_RW_command + (p_RW_at_reading_ - command.measurements.p_RW));
-    Note(command);
+    Command(command, wrist, inputs.sensors.wrist);
+    Note(command, inputs.resume);
   }
 
-  void Note(const ControllerCommand& command) {
+  bool IsHeld() const { return supervision_.reaction >= Reaction::kHold; }
+
+  /// Whether a person says so in this cycle.
+  bool Resumes() {
+    if (!setup_.resume_s || supervision_.reaction != Reaction::kFault) return false;
+    const double t_s = Seconds(t_ns_);
+    if (t_s < std::max(*setup_.resume_s, resumed_s_ + 1.0)) return false;
+    resumed_s_ = t_s;
+    return true;
+  }
+
+  /// The arm is commanded in its encoders' figures, whose error is that of the newest reading; of
+  /// `wrist`, where the controller was `given` another one. It refuses what is not finite.
+  void Command(const ControllerCommand& command,
+               const std::optional<Sample<WristMeasurement>>& wrist,
+               const std::optional<Sample<WristMeasurement>>& given) {
+    const bool unknown = command.status == ControlStatus::kNoWrist;
+    if (unknown && command.supervision.reaction < Reaction::kHold) return;
+    p_RW_sent_ = command.p_RW_command;
+    if (robot_faults_.LosesCommand(Seconds(t_ns_))) return;
+    const bool faulted = wrist && given && wrist->value.p_RW != given->value.p_RW;
+    const Eigen::Vector3d& read =
+        wrist && (faulted || unknown) ? wrist->value.p_RW : command.measurements.p_RW;
+    const Eigen::Vector3d p_RW = command.p_RW_command + (p_RW_at_reading_ - read);
+    if (p_RW.allFinite()) servo_.MoveTo(p_RW);
+  }
+
+  void Note(const ControllerCommand& command, bool resumed) {
+    supervision_ = command.supervision;
     if (!result_.recording.command0) {
       result_.recording.command0.emplace();
       result_.recording.command0->comment = Name(setup_.controller.kind);
@@ -151,6 +220,10 @@ class Loop {
     update.status = command.status;
     update.tip = command.measurements.tip;
     update.supervision = command.supervision;
+    update.resumed = resumed;
+    update.p_RW = servo_.p_RW();
+    update.p_RW_command = p_RW_sent_;
+    update.f_tip_N = shape_.f_tip_N;
     result_.updates.push_back(update);
   }
 
@@ -186,7 +259,15 @@ class Loop {
   PlantShape shape_;
   WristServo servo_;
   CurveHistory curves_;
-  Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();  // by the controller
+  SensorFaults sensor_faults_;
+  PlantFaults plant_faults_;
+  RobotFaults robot_faults_;
+  Supervision supervision_;  // of the last cycle
+  double resumed_s_ = -1.0;
+  Eigen::Vector3d p_RW_sent_ = Eigen::Vector3d::Zero();  // the last command
+  Eigen::Vector3d p_RE_goal_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d wrist_shift_ = Eigen::Vector3d::Zero();  // of the true wrist from the encoders
+  Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();   // by the controller
   Eigen::Vector3d p_RW_at_reading_ = Eigen::Vector3d::Zero();
   TimeNs t_ns_ = kSimulationStart_ns, next_picture_ns_ = kSimulationStart_ns;
   double squared_direction_noise_ = 0.0, squared_deviation_ = 0.0;

@@ -12,6 +12,8 @@
 #include "control/controller.h"
 #include "control/direction_controller.h"
 #include "control/fixtures.h"
+#include "control/supervision/stops.h"
+#include "control/supervision/supervisor_options.h"
 #include "control/tip_path.h"
 #include "core/image.h"
 #include "estimation/instrument_model.h"
@@ -19,6 +21,7 @@
 #include "pipeline/instrument_controller.h"
 #include "recording/recording.h"
 #include "recording/truth.h"
+#include "simulation/faults/fault.h"
 #include "simulation/plant/plant.h"
 #include "simulation/render/laparoscope.h"
 #include "simulation/sensors/sensors.h"
@@ -48,6 +51,12 @@ struct LoopSetup {
   Fixtures fixtures;
   double port_prior_m = kPortRegistration_m;
   SupervisorOptions supervision;
+  std::vector<Fault> faults;
+  std::uint64_t fault_seed = 1;  ///< of the faults' directions and chances
+  /// A person lets a faulted loop go on at this time of the run and each second after it; empty:
+  /// never.
+  std::optional<double> resume_s;
+  double max_s = 0.0;  ///< the run ends here, reached or not; 0: at the path's end
   std::uint64_t seed = 1;
 };
 
@@ -65,8 +74,12 @@ struct LoopUpdate {
   Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();          ///< true
   double deviation_m = 0.0;                                ///< of the true tip from the path
   ControlStatus status = ControlStatus::kOk;
-  Supervision supervision;
   std::optional<TipObservation> tip;  ///< as the controller had it, carried on to now where late
+  Supervision supervision;
+  bool resumed = false;                                    ///< a person said so in this cycle
+  Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();          ///< by the encoders, without noise
+  Eigen::Vector3d p_RW_command = Eigen::Vector3d::Zero();  ///< perhaps not finite
+  Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();       ///< true
 };
 
 struct LoopResult {
@@ -80,6 +93,8 @@ struct LoopResult {
   std::map<std::string, int> control_statuses, tip_statuses;
   std::map<std::string, int> fixture_statuses;  ///< empty without fixtures
   int steps_limited = 0, steps_damped = 0;
+  /// With faults, why the shaft has no equilibrium any more, where the run ended so.
+  std::string lost_equilibrium;
 };
 
 /// Returns what the controller of a run is made of, and the tracker of recordings for `camera`;
@@ -92,8 +107,9 @@ std::unique_ptr<InstrumentTracker> TrackerOf(const LoopSetup& setup, const Track
 void TakeOffLatencies(const LoopSetup& setup, ControllerInputs& inputs);
 
 /// Runs one controller along the path. `camera` null: the tip comes from `sensors.tip` instead.
-/// Throws InputError where the plant has no equilibrium at the start and WorkError where it loses
-/// it on the way.
+/// The goal waits while the supervisor holds the wrist. Throws InputError where the plant has no
+/// equilibrium at the start, and for faults of the tip with a camera; WorkError where the plant
+/// loses its equilibrium without a fault.
 LoopResult RunClosedLoop(const LoopSetup& setup, const LoopCamera* camera,
                          const std::function<void(int done, int total)>& progress = {});
 

@@ -28,6 +28,9 @@ class Plant {
   const PlantSetup& Setup() const { return setup_; }
   /// Changes the load; the next solve starts from the shape under the old one.
   void SetLoad(const TipLoad& load) { setup_.load = load; }
+  /// Changes the effects but for the shaft's own (length, stiffness, taper, bend); what has a
+  /// memory keeps it.
+  void SetEffects(const PlantEffects& effects) { setup_.effects = effects; }
   /// Turns the instrument about its own axis.
   void SetRoll(double roll_rad) { setup_.roll_rad = roll_rad; }
 

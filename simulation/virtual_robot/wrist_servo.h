@@ -28,6 +28,8 @@ class WristServo {
   void Stay();
   /// Puts the wrist to a place where it stays.
   void PutAt(const Eigen::Vector3d& p_RW);
+  /// Changes the largest speed; 0: the wrist stands.
+  void SetMaxSpeed(double max_speed_m_s) { setup_.max_speed_m_s = max_speed_m_s; }
   /// Moves time on to `t_ns`.
   void Advance(TimeNs t_ns);
 

@@ -12,6 +12,7 @@ namespace {
 
 using Names = std::set<std::string>;
 const std::string kClosedLoop = "simulation/closed_loop";
+const std::string kFaults = "simulation/faults";
 const std::string kServe = "live/serve";
 
 Names With(Names names, const Names& more) {
@@ -20,14 +21,14 @@ Names With(Names names, const Names& more) {
 }
 
 /// Returns folder -> the folders whose headers it may include. A folder may always include its own.
-/// The closed loop and the served robot are folders of their own: they join others.
+/// The closed loop, its faults and the served robot are folders of their own: they join others.
 const std::map<std::string, Names>& Arrows() {
   static const Names models{"core", "kinematics", "estimation", "control", "vision", "recording"};
   static const Names libraries{
       "core",     "kinematics",   "estimation",  "control",    "vision",    "recording",
       "pipeline", "plausibility", "calibration", "simulation", kClosedLoop, "diagnosis",
       "report",   "workspace",    "targets",     "exchange",   "exports",   "batch",
-      "live",     kServe,         "task"};
+      "live",     kServe,         "task",        kFaults};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
@@ -45,9 +46,10 @@ const std::map<std::string, Names>& Arrows() {
       {kServe, {"core", "recording", "simulation", kClosedLoop, "live"}},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
+      {kFaults, {"core", "recording", "estimation", "pipeline", "simulation"}},
       {kClosedLoop,
        {"core", "recording", "vision", "estimation", "control", "pipeline", "task", "diagnosis",
-        "simulation"}},
+        "simulation", kFaults}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording", "report"}},
@@ -115,7 +117,7 @@ std::vector<Include> IncludesOf(const std::string& text) {
 }
 
 std::string FolderOf(const std::string& path) {
-  for (const std::string& folder : {kClosedLoop, kServe})
+  for (const std::string& folder : {kClosedLoop, kFaults, kServe})
     if (path.starts_with(folder + "/")) return folder;
   return path.substr(0, path.find('/'));
 }
