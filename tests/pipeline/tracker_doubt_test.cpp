@@ -60,17 +60,20 @@ struct Score {
 };
 
 /// Tracks `pictures`, prints their row of the table in the note. FLEXTIP_UNHELD: as if nothing were
-/// held against the wrist.
+/// held against the wrist, and no picture stood still.
 Score Track(const std::string& name, const Pictures& pictures, const TagCollar* collar = nullptr,
             bool with_model = true) {
   const Press& press = ThePress();
   InstrumentTrackerSetup setup = TrackerSetupOf(press.recording, press.tracker, with_model);
   if (collar != nullptr) setup.collar = *collar;
-  if (std::getenv("FLEXTIP_UNHELD") != nullptr) setup.tracker.max_wrist_deviations = 1e300;
+  const bool unheld = std::getenv("FLEXTIP_UNHELD") != nullptr;
+  if (unheld) setup.tracker.max_wrist_deviations = 1e300;
   InstrumentTracker tracker(setup);
   Score score;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const Image* const one[] = {&pictures[i]};
+    Image picture = pictures[i];
+    if (unheld) picture.data[0] = static_cast<std::uint8_t>(i);
+    const Image* const one[] = {&picture};
     const TimeNs t_ns = press.times[i];
     const TipTrack track = tracker.Follow(one, t_ns, ReadingsAt(press.recording, t_ns));
     ++score.frames;
