@@ -97,7 +97,8 @@ TEST_F(Absurd, CornersOfAPictureThatNoMemoryHolds) {
                                   "#flextip-corners 1\n#board chessboard:9x6:0.025\n"
                                   "#resolution 100000 100000\n#image,id [],x [px],y [px]\n"
                                   "a,0,1,1\n");
-  EXPECT_TRUE(Refuses({"calibrate", "camera", "--corners", file}, {"corners.csv:3:", "pixels"}));
+  EXPECT_TRUE(Refuses({"calibrate", "camera", "--corners", file, "--board", "chessboard:9x6:0.025"},
+                      {"corners.csv:3:", "pixels"}));
 }
 
 TEST_F(Absurd, APipeIsRefusedByEveryCommand) {
@@ -109,7 +110,7 @@ TEST_F(Absurd, APipeIsRefusedByEveryCommand) {
       {"map", pipe},
       {"estimate", sample, "--calibration", pipe},
       {"estimate", sample, "--model", pipe},
-      {"calibrate", "camera", "--corners", pipe},
+      {"calibrate", "camera", "--corners", pipe, "--board", "chessboard:9x6:0.025"},
       {"collar", "--camera", pipe},
       {"import", "csv", pipe},
       {"import", "rosbag", pipe},
