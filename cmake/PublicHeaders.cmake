@@ -52,6 +52,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   core/camera.h
   core/check.h
   core/error.h
+  core/printable.h
   core/image.h
   core/instrument.h
   core/judgement.h
@@ -124,6 +125,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   recording/recording_reader.h
   recording/recording_writer.h
   recording/streams/sensor_streams.h
+  recording/text/bounds.h
   recording/text/csv.h
   recording/tip_score.h
   recording/truth.h
