@@ -83,8 +83,6 @@ TEST_F(Absurd, SimulateRefusesWhatWouldNotEnd) {
                       {"direction.yaml:", "speed_m_s", "1e-9", "m/s"}));
   EXPECT_TRUE(Refuses({"simulate", Changed(scenario, "", "(\n  speed_m_s:) [0-9.]+", "$1 1e-6")},
                       {"direction.yaml:", "speed_m_s", "takes", "3600 s"}));
-  EXPECT_TRUE(Refuses({"simulate", Changed(scenario, "", "(rate_hz:) [0-9.]+", "$1 90000")},
-                      {"direction.yaml", "samples", "expected at most"}));
 }
 
 TEST_F(Absurd, MapRefusesWhatNoMemoryHolds) {
