@@ -52,6 +52,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   core/camera.h
   core/check.h
   core/error.h
+  core/printable.h
   core/image.h
   core/instrument.h
   core/judgement.h

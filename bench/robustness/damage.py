@@ -86,10 +86,12 @@ class Campaign:
         for name in ("thesis", "tolerance"):
             self.cases.append(("map", data / f"maps/{name}.yaml", lambda f: ["map", f]))
         self.cases.append(("corners", self.commands.inputs / "corners.csv",
-                           lambda f: ["calibrate", "camera", "--corners", f]))
+                           lambda f: ["calibrate", "camera", "--corners", f, "--board",
+                                      "chessboard:9x6:0.025"]))
         self.cases.append(("import", self.commands.inputs / "robot.csv",
                            lambda f: ["import", "csv", f, "--length", "0.6", "--diameter", "2.4mm",
-                                      "--stiffness", "0.3", "--port", "0.28,0,0"]))
+                                      "--stiffness", "0.3", "--port", "0.28,0,0", "--set",
+                                      "wrist0.orientation_noise_rad=0.001"]))
         self.ends = collections.Counter()
         self.wrong = []
 
