@@ -61,7 +61,6 @@ set(FLEXTIP_PUBLIC_HEADERS
   core/mean_sd.h
   core/median.h
   core/pose.h
-  core/printable.h
   core/rotation.h
   core/state_text.h
   core/tag_collar.h

@@ -83,6 +83,9 @@ class InstrumentController {
   /// of LateSampleOptions'. The gain follows. Allocates nothing.
   void SetTimeDeviations(double tip_sd_s, double em0_sd_s);
 
+  /// Takes the command that really went out in the last cycle, where the caller limited it further.
+  void NoteSent(const Eigen::Vector3d& p_RW) { supervisor_.NoteSent(p_RW); }
+
   /// Returns the tracker's result for the last pictures; empty before the first.
   const std::optional<TipTrack>& Track() const { return track_; }
   /// Returns the gain that the controllers have, with the delay's part taken off.

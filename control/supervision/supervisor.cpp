@@ -32,6 +32,13 @@ void Supervisor::Keep(const SupervisedCycle& cycle, const Eigen::Vector3d& p_RW)
   p_last_ = p_RW;
 }
 
+void Supervisor::NoteSent(const Eigen::Vector3d& p_RW) {
+  if (count_ == 0 || !p_RW.allFinite()) return;
+  sent_[(next_ + kSize - 1) % kSize].p_RW = p_RW;
+  p_last_ = p_RW;
+  if (p_held_) p_held_ = p_RW;
+}
+
 bool Supervisor::IsAstray(const SupervisedCycle& cycle) const {
   if (!cycle.p_RW || count_ == 0) return false;
   const double allowed_m = kSettle_m + kDeviations * std::sqrt(2.0) * cycle.p_RW_noise_m;

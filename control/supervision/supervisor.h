@@ -42,6 +42,9 @@ class Supervisor {
   /// time, or moved farther in a cycle than it was sent; both by more than noise.
   bool IsAstray(const SupervisedCycle& cycle) const;
 
+  /// Takes what really went out in this cycle, where somebody limited the command further.
+  void NoteSent(const Eigen::Vector3d& p_RW);
+
   /// Returns the command sent last; empty before the first.
   const std::optional<Eigen::Vector3d>& LastCommand() const { return p_last_; }
 

@@ -126,6 +126,7 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
   }
   Fault(inputs, outputs);
   if (outputs.hold != Hold::kNone) HoldStill(inputs, outputs);
+  if (outputs.has_command) controller_.NoteSent(outputs.p_RW_command);
   outputs.p_RE = p_RE_known_;
   return outputs;
 }

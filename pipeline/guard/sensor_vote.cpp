@@ -95,7 +95,7 @@ Measurements SensorVote::WithModelError(const Measurements& z) const {
 }
 
 SensorVote::Ballot SensorVote::Ask(ShaftEstimator& estimator, const Measurements& z,
-                                   const ShaftChange& change) {
+                                   const ShaftChange& change) const {
   const ShaftEstimate estimate = estimator.Update(WithModelError(z), change);
   const bool fitted =
       estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
@@ -103,14 +103,17 @@ SensorVote::Ballot SensorVote::Ask(ShaftEstimator& estimator, const Measurements
   ballot.limit = limits_.Of(estimate.measurements);
   ballot.chi2 = estimate.chi2;
   ballot.agrees = fitted && estimate.chi2 <= ballot.limit;
-  if (fitted && (ballot.agrees || !bend_known_)) {
-    const Eigen::Vector3d to_port = p_RP_ - z.p_RW;
-    const Eigen::Vector3d axis = to_port.normalized();
-    bend_m_ = (estimate.p_RE - z.p_RW - instrument_.length_m * axis).norm();
-    slope_rad_ = std::acos(std::clamp(axis.dot(estimate.d_RE), -1.0, 1.0));
-    bend_known_ = true;
-  }
+  const Eigen::Vector3d axis = (p_RP_ - z.p_RW).normalized();
+  ballot.bend_m = (estimate.p_RE - z.p_RW - instrument_.length_m * axis).norm();
+  ballot.slope_rad = std::acos(std::clamp(axis.dot(estimate.d_RE), -1.0, 1.0));
   return ballot;
+}
+
+void SensorVote::LearnBend(const Ballot& ballot) {
+  if (!std::isfinite(ballot.bend_m) || !std::isfinite(ballot.slope_rad)) return;
+  bend_known_ = true;
+  bend_m_ = ballot.bend_m;
+  slope_rad_ = ballot.slope_rad;
 }
 
 /// The sensor to take out; -1 where it cannot be told, -2 where none alone explains it.
@@ -154,8 +157,10 @@ bool SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& chang
   if (!all.agrees) {
     // A fit from the last load may have ended beside the least squares.
     all_.Reset();
+    if (!bend_known_) LearnBend(all);
     all = Ask(all_, z, change);
   }
+  if (all.agrees) LearnBend(all);
   found.chi2 = all.chi2;
   found.chi2_limit = all.limit;
   if (all.agrees) {
@@ -177,6 +182,7 @@ bool SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& chang
   const int out = Choose(t_ns, jumped, without, candidates);
   if (out >= 0) {
     Drop(static_cast<VotedSensor>(out), z);
+    LearnBend(without[static_cast<std::size_t>(out)]);
     found.voted_out |= Bit(out);
     out_ns_[static_cast<std::size_t>(out)] = t_ns;
     return false;

@@ -31,8 +31,10 @@ class SensorVote {
   struct Ballot {
     bool agrees = false;
     double chi2 = 0.0, limit = 0.0;
+    double bend_m = 0.0, slope_rad = 0.0;  ///< of the tip from the straight shaft
   };
-  Ballot Ask(ShaftEstimator& estimator, const Measurements& z, const ShaftChange& change);
+  Ballot Ask(ShaftEstimator& estimator, const Measurements& z, const ShaftChange& change) const;
+  void LearnBend(const Ballot& ballot);
   Measurements WithModelError(const Measurements& z) const;
   int Choose(TimeNs t_ns, std::uint8_t jumped, const std::array<Ballot, kVotedSensors>& without,
              std::uint8_t candidates) const;

@@ -122,6 +122,7 @@ TEST_F(FigureFiles, ThatAreBrokenAreNamed) {
 }
 
 TEST_F(FigureFiles, WithoutAFolderAreRefused) {
+  WriteFigures(folder_ / "none", {});  // a file, which is no folder
   EXPECT_THROW(WriteFigures(folder_ / "none" / "figures.json", {}), WorkError);
 }
 

@@ -119,7 +119,8 @@ TEST(Report, ShowsPicturesAsTheyAre) {
 
 TEST(Report, SaysWhereItCannotBeWritten) {
   const Report report("title");
-  EXPECT_THROW(report.Write("/no/such/folder/report.html"), WorkError);
+  // A file is no folder.
+  EXPECT_THROW(report.Write("/etc/hostname/report.html"), WorkError);
 }
 
 }  // namespace

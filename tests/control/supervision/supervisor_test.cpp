@@ -49,7 +49,7 @@ TEST(Supervisor, LetsAQuietCommandThrough) {
   EXPECT_EQ(*decision.p_RW_command, wish);
 }
 
-TEST(Supervisor, HoldsAtTheMeasuredWristAndGoesOnByItself) {
+TEST(Supervisor, HoldsAtTheLastCommandAndGoesOnByItself) {
   Supervisor supervisor(Full());
   const double dt_s = 1.0 / 30.0;
   int held = 0;
@@ -61,8 +61,8 @@ TEST(Supervisor, HoldsAtTheMeasuredWristAndGoesOnByItself) {
     if (decision.supervision.reaction != Reaction::kHold) continue;
     ++held;
     EXPECT_EQ(decision.supervision.stop, Stop::kTipJump);
-    // The wrist of the tenth cycle, not of this one.
-    EXPECT_EQ(*decision.p_RW_command, kWrist - Eigen::Vector3d(0, 1e-5, 0));
+    // The command of the ninth cycle, not a reading of this one.
+    EXPECT_EQ(*decision.p_RW_command, kWrist + Eigen::Vector3d(1e-5, 1e-5, 0));
   }
   // Five cycles of cause, and 0.2 s without.
   EXPECT_EQ(held, 5 + 6);
