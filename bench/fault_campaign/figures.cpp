@@ -40,11 +40,14 @@ KindFigures OfKind(const std::string& kind, const std::vector<FaultRecord>& reco
       if (r.hazard.find(hazard) != std::string::npos) ++figures.by_hazard[hazard];
     figures.no_equilibrium += r.outcome == "no equilibrium";
     figures.threw += r.outcome.starts_with("threw");
+    figures.false_stops += r.false_stop;
+    ++figures.going_on[r.going_on];
+    // A loop that was stopped before the fault keeps hazards away and finds faults by chance.
+    if (r.false_stop) continue;
+    if (!r.coarse) Add(r, figures.unstopped);
     figures.detected += r.detected;
     figures.named_right += r.named == "right";
     figures.named_wrong += r.named == "wrong";
-    figures.false_stops += r.false_stop;
-    ++figures.going_on[r.going_on];
     if (IsJump(r)) {
       ++figures.jumps;
       if (r.detected) jump_cycles.push_back(r.detection_cycles);

@@ -55,6 +55,8 @@ std::string KindText(const KindFigures& of) {
       "\n{}: {:.1f} hazards per 1000 runs ({} of {}); of coarse runs {:.1f} ({} of {}).\n", of.kind,
       of.fine.PerThousand(), of.fine.hazards, of.fine.runs, of.coarse.PerThousand(),
       of.coarse.hazards, of.coarse.runs);
+  text += fmt::format("  not stopped before the fault: {:.1f} ({} of {})\n",
+                      of.unstopped.PerThousand(), of.unstopped.hazards, of.unstopped.runs);
   text += fmt::format("  hazards: {}; no equilibrium {}, threw {}\n", Joined(of.by_hazard),
                       of.no_equilibrium, of.threw);
   text += fmt::format("  detected {}, sensor named right {}, wrong {}; stops before a fault {}\n",
@@ -76,6 +78,7 @@ std::string FiguresJson(const std::vector<KindFigures>& figures,
     nlohmann::json& kind = json["faults"][of.kind];
     kind = {{"fine", Json(of.fine)},
             {"coarse", Json(of.coarse)},
+            {"unstopped", Json(of.unstopped)},
             {"by_hazard", of.by_hazard},
             {"by_fault", Json(of.by_fault)},
             {"by_size", Json(of.by_size)},

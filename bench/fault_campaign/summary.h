@@ -18,13 +18,15 @@ struct HazardCount {
 /// One kind of supervision.
 struct KindFigures {
   std::string kind;
-  HazardCount fine;    ///< runs that keep within 2 mm of the path without fault
-  HazardCount coarse;  ///< the others: counted from 2 mm beyond their own deviation
+  HazardCount fine;       ///< runs that keep within 2 mm of the path without fault
+  HazardCount coarse;     ///< the others: counted from 2 mm beyond their own deviation
+  HazardCount unstopped;  ///< of `fine` those without a stop before the fault
   std::map<std::string, int> by_hazard;  ///< of both: "path", "command", ...
   std::map<std::string, HazardCount> by_fault, by_size, by_controller, by_suite;  ///< of both
   int no_equilibrium = 0, threw = 0;
-  int detected = 0, named_right = 0, named_wrong = 0, false_stops = 0;
   std::map<std::string, int> going_on;
+  int false_stops = 0;  ///< runs with a stop before the fault; they count in nothing below
+  int detected = 0, named_right = 0, named_wrong = 0;
   /// Of tip, em0 or wrist that jump by 5 mm or more (offset, spike, wrong tag): found, of how many,
   /// and the median of the cycles.
   int jumps = 0, jumps_found = 0;

@@ -63,7 +63,7 @@ TEST(FaultRuns, TheSameRunTwiceIsTheSame) {
 }
 
 /// A small campaign. Its figures move with every change of a controller or supervisor: only what is
-/// far apart is asked for. (297 and 54 hazards per 1000 when it was written.)
+/// far apart is asked for.
 TEST(FaultRuns, TheFullSupervisorKeepsMostHazardsAway) {
   constexpr int kRuns = 200;
   Twins twins;
@@ -169,6 +169,11 @@ TEST(FaultFigures, CountHazardsByKindAndKeepCoarseRunsApart) {
   EXPECT_EQ(figures[1].jumps_found, 1);
   EXPECT_DOUBLE_EQ(figures[1].jump_cycles, 2.0);
   EXPECT_TRUE(Worst(records, 5).empty());
+  // Stopped before the fault: found by chance.
+  records[3].false_stop = true;
+  EXPECT_EQ(FiguresOf(records)[1].jumps, 0);
+  EXPECT_EQ(FiguresOf(records)[1].unstopped.runs, 0);
+  EXPECT_EQ(FiguresOf(records)[1].fine.runs, 1);
   EXPECT_THAT(HazardSvg(figures), HasSubstr("offset tip"));
 }
 
