@@ -13,10 +13,10 @@
 #include "control/supervision/supervisor.h"
 #include "core/image.h"
 #include "estimation/instrument_model.h"
+#include "pipeline/guard/sensor_guard.h"
 #include "pipeline/instrument_estimator.h"
 #include "pipeline/instrument_tracker.h"
 #include "pipeline/late_samples.h"
-#include "pipeline/guard/sensor_guard.h"
 #include "pipeline/sensor_readings.h"
 
 namespace flextip {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "kinematics/tip_bending.h"
-#include "pipeline/sensor_readings.h"
 #include "pipeline/guard/still_pictures.h"
-#include "pipeline/tip_predictor.h"
 #include "pipeline/guard/tip_range.h"
+#include "pipeline/sensor_readings.h"
+#include "pipeline/tip_predictor.h"
 #include "recording/recording.h"
 #include "vision/tracking/tip_tracker.h"
 

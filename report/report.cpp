@@ -254,8 +254,6 @@ std::string Report::Html() const {
   return html + "</body>\n</html>\n";
 }
 
-void Report::Write(const std::filesystem::path& path) const {
-  WriteTextFile(path, Html());
-}
+void Report::Write(const std::filesystem::path& path) const { WriteTextFile(path, Html()); }
 
 }  // namespace flextip::report

@@ -62,25 +62,25 @@ nlohmann::json ToJson(const TrackSums& s) {
 }
 
 TrackSums SumsFromJson(const nlohmann::json& j) {
-  return {.frames = j.at("frames"),
-          .ok = j.at("ok"),
-          .predicted = j.at("predicted"),
-          .lost = j.at("lost"),
-          .tags = j.at("tags"),
-          .by_pixels = j.at("by_pixels"),
-          .by_corners = j.at("by_corners"),
-          .squared_direction_noise = j.at("squared_direction_noise"),
-          .squared_rms_px = j.at("squared_rms_px"),
-          .squared_noise_grey = j.at("squared_noise_grey"),
-          .seconds = j.at("seconds"),
-          .score = ScoreFromJson(j.at("score")),
-          .score_predicted = ScoreFromJson(j.at("score_predicted")),
-          .not_by_wrist = j.at("not_by_wrist"),
-          .not_by_collar = j.at("not_by_collar"),
-          .stood_still = j.at("stood_still"),
-          .from_wrist_m = j.at("from_wrist_m"),
-          .miss_m = Eigen::Vector3d(j.at("miss_m").at(0), j.at("miss_m").at(1),
-                                    j.at("miss_m").at(2))};
+  return {
+      .frames = j.at("frames"),
+      .ok = j.at("ok"),
+      .predicted = j.at("predicted"),
+      .lost = j.at("lost"),
+      .tags = j.at("tags"),
+      .by_pixels = j.at("by_pixels"),
+      .by_corners = j.at("by_corners"),
+      .squared_direction_noise = j.at("squared_direction_noise"),
+      .squared_rms_px = j.at("squared_rms_px"),
+      .squared_noise_grey = j.at("squared_noise_grey"),
+      .seconds = j.at("seconds"),
+      .score = ScoreFromJson(j.at("score")),
+      .score_predicted = ScoreFromJson(j.at("score_predicted")),
+      .not_by_wrist = j.at("not_by_wrist"),
+      .not_by_collar = j.at("not_by_collar"),
+      .stood_still = j.at("stood_still"),
+      .from_wrist_m = j.at("from_wrist_m"),
+      .miss_m = Eigen::Vector3d(j.at("miss_m").at(0), j.at("miss_m").at(1), j.at("miss_m").at(2))};
 }
 
 const char* Name(TrackSource source) {

@@ -128,6 +128,12 @@ int SensorVote::Choose(TimeNs t_ns, std::uint8_t jumped,
     if (out_ns != 0 && Seconds(t_ns - out_ns) <= options_.resume_after_s) lately |= Bit(i);
   }
   if (explain == 0) return -2;
+  // Without the wrist's turn nobody knows about which axes the gages measure: both are left out.
+  const std::uint8_t turn = Bit(static_cast<int>(VotedSensor::kWristTurn));
+  if ((explain & Bit(static_cast<int>(VotedSensor::kStrain))) != 0) {
+    explain &= static_cast<std::uint8_t>(~turn);
+    lately &= static_cast<std::uint8_t>(~turn);
+  }
   for (const std::uint8_t choice : {explain, static_cast<std::uint8_t>(explain & lately),
                                     static_cast<std::uint8_t>(explain & jumped)}) {
     if (std::popcount(choice) == 1) return std::countr_zero(choice);
@@ -177,7 +183,11 @@ bool SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& chang
     if ((candidates & Bit(i)) == 0) continue;
     Measurements rest = z;
     Drop(static_cast<VotedSensor>(i), rest);
-    without[static_cast<std::size_t>(i)] = Ask(without_one_, rest, change);
+    Ballot& ballot = without[static_cast<std::size_t>(i)];
+    ballot = Ask(without_one_, rest, change);
+    if (ballot.agrees) continue;
+    without_one_.Reset();
+    ballot = Ask(without_one_, rest, change);
   }
   const int out = Choose(t_ns, jumped, without, candidates);
   if (out >= 0) {

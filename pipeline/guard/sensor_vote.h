@@ -13,7 +13,7 @@
 namespace flextip {
 
 /// Chi-squared of all sensors together, with all covariances, and, where it is above its limit, of
-/// all but one. Allocates nothing; one fit a call, eight where sensors disagree.
+/// all but one. Allocates nothing; one fit a call, fifteen at most where sensors disagree.
 class SensorVote {
  public:
   SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options);

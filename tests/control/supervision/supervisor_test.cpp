@@ -107,8 +107,7 @@ TEST(Supervisor, AWristThatLagsWithinItsLagIsNotAstray) {
     const auto way = [](double t) {
       return Eigen::Vector3d(0.02 * std::sin(2.0 * t), 0.01 * std::cos(3.1 * t), 0.0);
     };
-    const Eigen::Vector3d measured =
-        kWrist + way(t_s - 0.15) + DrawVector<3>(noise, rng);
+    const Eigen::Vector3d measured = kWrist + way(t_s - 0.15) + DrawVector<3>(noise, rng);
     const auto decision = supervisor.Decide(Cycle(t_s, measured, kWrist + way(t_s)));
     ASSERT_NE(decision.supervision.stop, Stop::kWristNotFollowing) << t_s;
   }
