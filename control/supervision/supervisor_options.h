@@ -33,7 +33,7 @@ struct SupervisorOptions {
   /// Of one test in one cycle: one in ten hours of 30 Hz over the ten tests of a cycle.
   double false_alarm = 1e-7;
   /// What tolerances of an instrument leave of its bending unexplained, as a part of it.
-  double model_error = 0.02;
+  double model_error = 0.01;
   double resume_after_s = 0.2;  ///< a hold ends when its cause has been gone for so long
   double fault_after_s = 2.0;   ///< a hold that lasts so long becomes a fault
   double stale_s = 0.12;        ///< a stream without a new sample for so long is gone
