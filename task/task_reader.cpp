@@ -103,6 +103,11 @@ void TaskReader::ReadSupervisor(const YamlMap& map) {
     }
     options.kind = *kind;
   }
+  RateLimits& rates = options.rates;
+  rates.max_step_m = section.PositiveOr("max_step_m", rates.max_step_m);
+  rates.max_speed_m_s = section.PositiveOr("max_speed_m_s", rates.max_speed_m_s);
+  rates.max_acceleration_m_s2 =
+      section.PositiveOr("max_acceleration_m_s2", rates.max_acceleration_m_s2);
   options.resume_after_s = section.PositiveOr("resume_after_s", options.resume_after_s);
   options.fault_after_s = section.PositiveOr("fault_after_s", options.fault_after_s);
   options.stale_s = section.PositiveOr("stale_s", options.stale_s);

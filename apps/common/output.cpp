@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <system_error>
 
 #include "apps/common/run_facts.h"
@@ -57,7 +58,10 @@ bool HasNoNumber(const nlohmann::ordered_json& json) {
 
 OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
                            const OutputOptions& options)
-    : command_(command), paths_(options.paths), force_(options.force), inputs_(options.inputs) {
+    : command_(command), paths_(options.paths), force_(options.force) {
+  // An input that a command may have and does not is an empty name.
+  std::copy_if(options.inputs.begin(), options.inputs.end(), std::back_inserter(inputs_),
+               [](const fs::path& input) { return !input.empty(); });
   paths_.result = ResultAsSaid(name.filename().empty() ? name.parent_path() : name);
   if (name.empty()) throw InputError("the output folder has no name");
   name_ = Normal(name);
@@ -69,7 +73,7 @@ OutputFolder::OutputFolder(const fs::path& name, const std::string& command,
     if (!force_) {
       throw InputError::At(name.string(), 0, "exists and is not empty; --force replaces it");
     }
-    RefuseToReplace(options.inputs);
+    RefuseToReplace(inputs_);
   }
   folder_ = name_;
   in_place_ = options.in_place;

@@ -1,4 +1,5 @@
 """Every command of flextip with a small input."""
+import math
 import pathlib
 import shutil
 import subprocess
@@ -13,12 +14,14 @@ def corners():
     lines = ["#flextip-corners 1", "#board chessboard:9x6:0.025", "#resolution 640 480",
              "#image,id [],x [px],y [px]"]
     for view in range(12):
-        ax, ay = 0.5 * ((view % 4) - 1.5), 0.5 * ((view // 4) - 1.0)
+        # Turned about its x, then its y axis.
+        a, b = 0.4 * ((view // 4) - 1.0), 0.4 * ((view % 4) - 1.5)
         for number, (i, j) in enumerate(BOARD):
             x, y = 0.025 * (i - 4), 0.025 * (j - 2.5)
-            z = 0.4 + 0.02 * view + ax * x + ay * y
-            u, v = 320 + 600 * (x + 0.01 * ax) / z, 240 + 600 * (y + 0.01 * ay) / z
-            lines.append(f"view{view:02},{number},{u:.6f},{v:.6f}")
+            y, z = y * math.cos(a), y * math.sin(a)
+            x, z = x * math.cos(b) + z * math.sin(b), z * math.cos(b) - x * math.sin(b)
+            z += 0.4 + 0.02 * view
+            lines.append(f"view{view:02},{number},{320 + 600 * x / z:.6f},{240 + 600 * y / z:.6f}")
     return "\n".join(lines) + "\n"
 
 
@@ -63,15 +66,17 @@ class Commands:
             "export mcap": (["export", "mcap", sample], ""),
             "export pictures": (["export", "pictures", tracked], folder),
             "compare": (["compare", tracked, tracked], folder),
-            "convert camera": (["convert", "camera", camera, "--to", "opencv", "--drop", "pose",
-                                "--drop", "gamma"], ""),
+            "convert camera": (["convert", "camera", "--to", "opencv", "--drop", "pose", "--drop",
+                                "gamma", "--", camera], ""),
             "batch": (["batch", "check", inputs / "list.txt"], folder),
         }
 
     def words(self, name, out, force=False):
+        """Returns the command's line; --force goes before what may end the options."""
         arguments, _ = self.lines[name]
-        return [self.program, *map(str, arguments), *self.target(name, out),
-                *(["--force"] if force else [])]
+        verbs = 2 if arguments[0] in ("calibrate", "import", "export", "convert") else 1
+        return [self.program, *arguments[:verbs], *(["--force"] if force else []),
+                *map(str, arguments[verbs:]), *self.target(name, out)]
 
     def target(self, name, out):
         return [str(out)] if name == "convert camera" else ["-o", str(out)]

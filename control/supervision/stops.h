@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
 namespace flextip {
 
@@ -35,7 +34,6 @@ inline constexpr int kStops = static_cast<int>(Stop::kOperator) + 1;
 
 /// Returns the name as in recordings and messages: "tip_jump".
 const char* Name(Stop stop);
-std::string_view Meaning(Stop stop);  ///< a short sentence for people
 
 enum class Reaction : std::uint8_t {
   kNone,

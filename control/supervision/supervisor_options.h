@@ -32,8 +32,9 @@ struct SupervisorOptions {
   double rate_hz = 30.0;  ///< of the cycles
   /// Of one test in one cycle: one in ten hours of 30 Hz over the ten tests of a cycle.
   double false_alarm = 1e-7;
-  /// What tolerances of an instrument leave of its bending unexplained, as a part of it.
-  double model_error = 0.01;
+  /// One standard deviation of the bending stiffness within specification, as a part of it: the
+  /// tolerance of docs/effects.md.
+  double stiffness_tolerance = 0.02;
   double resume_after_s = 0.2;  ///< a hold ends when its cause has been gone for so long
   double fault_after_s = 2.0;   ///< a hold that lasts so long becomes a fault
   double stale_s = 0.12;        ///< a stream without a new sample for so long is gone

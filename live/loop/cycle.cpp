@@ -32,9 +32,11 @@ InstrumentControllerOptions OptionsOf(const Session& session) {
   options.supervision = session.task.supervision;
   options.supervision.rate_hz = session.rate_hz;
   options.supervision.resume_after_s = session.limits.resume_after_s;
-  // A camera may be slower than the supervisor's usual tip, and a session says when it is stale.
-  if (session.camera)
-    options.supervision.stale_s = std::max(options.supervision.stale_s, session.camera->stale_s);
+  // A session says when its streams are stale.
+  double& stale_s = options.supervision.stale_s;
+  if (session.camera) stale_s = std::max(stale_s, session.camera->stale_s);
+  for (const auto& stream : session.streams)
+    if (stream) stale_s = std::max(stale_s, stream->stale_s);
   return options;
 }
 

@@ -22,6 +22,22 @@ EstimatorOptions OptionsOf(EstimatorOptions options, double port_prior_m) {
   return options;
 }
 
+/// Moments and forces are compared with a bending by the stiffness that the data state, which is
+/// wrong by its tolerance. Places and directions are compared with each other: the fitted load
+/// takes a wrong stiffness up.
+Measurements WithTolerance(const Measurements& z, double part) {
+  Measurements wide = z;
+  if (wide.strain) {
+    const double moment_Nm = z.strain->moments_Nm.cwiseAbs().maxCoeff();
+    wide.strain->moment_noise_Nm = std::hypot(z.strain->moment_noise_Nm, part * moment_Nm);
+  }
+  if (wide.load) {
+    const double force_N = z.load->f_tip_N.norm();
+    wide.load->force_noise_N = std::hypot(z.load->force_noise_N, part * force_N);
+  }
+  return wide;
+}
+
 std::uint8_t Bit(int sensor) { return static_cast<std::uint8_t>(1U << sensor); }
 
 }  // namespace
@@ -66,54 +82,21 @@ void Drop(VotedSensor sensor, Measurements& z) {
 SensorVote::SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options)
     : options_(options),
       limits_(options.false_alarm),
-      instrument_(estimator.instrument),
-      p_RP_(estimator.p_RP),
       all_(OptionsOf(estimator, estimator.port_prior_m)),
       without_one_(OptionsOf(estimator, estimator.port_prior_m)),
       loose_port_(OptionsOf(estimator, kMovedPort_m)) {}
 
-/// The model bends as the instrument does, but for its tolerances: a part of the bending counts as
-/// noise.
-Measurements SensorVote::WithModelError(const Measurements& z) const {
-  Measurements wide = z;
-  const double place_m = options_.model_error * bend_m_;
-  const double turn_rad = options_.model_error * slope_rad_;
-  if (wide.tip) wide.tip->covariance_m2.diagonal().array() += place_m * place_m;
-  wide.tip_direction_noise_rad = std::hypot(z.tip_direction_noise_rad, turn_rad);
-  wide.wrist_orientation_noise_rad = std::hypot(z.wrist_orientation_noise_rad, turn_rad);
-  wide.port_direction_noise_rad = std::hypot(z.port_direction_noise_rad, turn_rad);
-  if (wide.em) {
-    wide.em->position_noise_m = std::hypot(z.em->position_noise_m, place_m);
-    wide.em->orientation_noise_rad = std::hypot(z.em->orientation_noise_rad, turn_rad);
-  }
-  if (wide.strain) {
-    const double moment_Nm = options_.model_error * slope_rad_ * instrument_.bending_stiffness_Nm2 /
-                             instrument_.length_m;
-    wide.strain->moment_noise_Nm = std::hypot(z.strain->moment_noise_Nm, moment_Nm);
-  }
-  return wide;
-}
-
 SensorVote::Ballot SensorVote::Ask(ShaftEstimator& estimator, const Measurements& z,
                                    const ShaftChange& change) const {
-  const ShaftEstimate estimate = estimator.Update(WithModelError(z), change);
+  const ShaftEstimate estimate =
+      estimator.Update(WithTolerance(z, options_.stiffness_tolerance), change);
   const bool fitted =
       estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
   Ballot ballot;
   ballot.limit = limits_.Of(estimate.measurements);
   ballot.chi2 = estimate.chi2;
   ballot.agrees = fitted && estimate.chi2 <= ballot.limit;
-  const Eigen::Vector3d axis = (p_RP_ - z.p_RW).normalized();
-  ballot.bend_m = (estimate.p_RE - z.p_RW - instrument_.length_m * axis).norm();
-  ballot.slope_rad = std::acos(std::clamp(axis.dot(estimate.d_RE), -1.0, 1.0));
   return ballot;
-}
-
-void SensorVote::LearnBend(const Ballot& ballot) {
-  if (!std::isfinite(ballot.bend_m) || !std::isfinite(ballot.slope_rad)) return;
-  bend_known_ = true;
-  bend_m_ = ballot.bend_m;
-  slope_rad_ = ballot.slope_rad;
 }
 
 /// The sensor to take out; -1 where it cannot be told, -2 where none alone explains it.
@@ -163,10 +146,8 @@ bool SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& chang
   if (!all.agrees) {
     // A fit from the last load may have ended beside the least squares.
     all_.Reset();
-    if (!bend_known_) LearnBend(all);
     all = Ask(all_, z, change);
   }
-  if (all.agrees) LearnBend(all);
   found.chi2 = all.chi2;
   found.chi2_limit = all.limit;
   if (all.agrees) {
@@ -192,7 +173,6 @@ bool SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& chang
   const int out = Choose(t_ns, jumped, without, candidates);
   if (out >= 0) {
     Drop(static_cast<VotedSensor>(out), z);
-    LearnBend(without[static_cast<std::size_t>(out)]);
     found.voted_out |= Bit(out);
     out_ns_[static_cast<std::size_t>(out)] = t_ns;
     return false;

@@ -31,20 +31,13 @@ class SensorVote {
   struct Ballot {
     bool agrees = false;
     double chi2 = 0.0, limit = 0.0;
-    double bend_m = 0.0, slope_rad = 0.0;  ///< of the tip from the straight shaft
   };
   Ballot Ask(ShaftEstimator& estimator, const Measurements& z, const ShaftChange& change) const;
-  void LearnBend(const Ballot& ballot);
-  Measurements WithModelError(const Measurements& z) const;
   int Choose(TimeNs t_ns, std::uint8_t jumped, const std::array<Ballot, kVotedSensors>& without,
              std::uint8_t candidates) const;
 
   SupervisorOptions options_;
   ChiSquaredLimits limits_;
-  Instrument instrument_;
-  Eigen::Vector3d p_RP_;
-  bool bend_known_ = false;
-  double bend_m_ = 0.0, slope_rad_ = 0.0;  // of the tip from the straight shaft, as fitted last
   ShaftEstimator all_, without_one_, loose_port_;
   std::array<TimeNs, kVotedSensors> out_ns_{};  // when it was voted out last; 0: never
 };

@@ -1,7 +1,7 @@
 // The stages of a control cycle in which the supervisor acts.
-#include <algorithm>
 #include <cmath>
 
+#include "control/supervision/least_norm.h"
 #include "pipeline/instrument_controller.h"
 #include "pipeline/tip_fusion.h"
 
@@ -15,13 +15,12 @@ constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is take
 
 constexpr double kForceDeviations = 3.0;
 
-/// Whether the tip force is above `limit_N` (0: none), whatever its deviation along it is.
+/// Whether the tip force is above `limit_N` (0: none), wherever it is within its deviations. Along
+/// the shaft it is often not known.
 bool PressesTooHard(const ShaftEstimate& estimate, double limit_N) {
   if (limit_N <= 0.0 || estimate.status != EstimateStatus::kOk) return false;
-  const Eigen::Vector3d& f_N = estimate.model.f_tip_N;
-  const Eigen::Vector3d along = f_N.normalized();
-  const double variance = along.dot(estimate.covariance.bottomRightCorner<3, 3>() * along);
-  return f_N.norm() - kForceDeviations * std::sqrt(std::max(0.0, variance)) > limit_N;
+  return LeastNorm(estimate.model.f_tip_N, estimate.covariance.bottomRightCorner<3, 3>(),
+                   kForceDeviations) > limit_N;
 }
 
 }  // namespace

@@ -37,6 +37,16 @@ TEST(CollarCommand, MakesACollarWithOneCommand) {
   EXPECT_TRUE(PageIsMadeAgain(folder / "c"));
 }
 
+TEST(CollarCommand, ForceReplacesACollarWithoutACamera) {
+  const TestFolder folder;
+  const auto out = (folder / "c").string();
+  ASSERT_EQ(RunProgram({"collar", "-o", out}).exit_code, 0);
+  EXPECT_TRUE(IsRefused(RunProgram({"collar", "-o", out}), {"--force"}));
+  const auto again = RunProgram({"collar", "-o", out, "--force"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(SummaryIn(folder / "c")["inputs"].empty());
+}
+
 TEST(CollarCommand, TakesLengthsWithUnits) {
   const TestFolder folder;
   const auto out = (folder / "c").string();

@@ -79,8 +79,7 @@ TEST(FaultRuns, TheFullSupervisorKeepsMostHazardsAway) {
   EXPECT_GT(figures[0].fine.PerThousand(), 150.0);
   EXPECT_LT(figures[1].fine.PerThousand(), 0.5 * figures[0].fine.PerThousand());
   EXPECT_GT(figures[1].jumps, 0);
-  // Under 2 N the tolerance of the instrument hides jumps of 4 mm (docs/notes/faults.md).
-  EXPECT_GE(figures[1].jumps_found, 0.75 * figures[1].jumps);
+  EXPECT_EQ(figures[1].jumps_found, figures[1].jumps);
 }
 
 /// What a supervisor said, made by hand: a hold in the third cycle of the fault, gone again.

@@ -18,6 +18,7 @@ namespace flextip {
 namespace {
 
 using flextip::test_support::Line;
+using flextip::test_support::Refusal;
 using flextip::test_support::Replace;
 using flextip::test_support::ReplaceLine;
 using flextip::test_support::TemporaryFolder;
@@ -25,16 +26,6 @@ using flextip::test_support::WriteSample;
 using flextip::test_support::WriteText;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-template <class Work>
-std::string Refusal(const Work& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
 
 TEST(Bounds, AreFoundByTheUnitInTheName) {
   EXPECT_STREQ(BoundsOf("length_m").unit, "m");

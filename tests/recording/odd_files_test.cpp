@@ -19,24 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using flextip::test_support::ReadText;
+using flextip::test_support::Refusal;
 using flextip::test_support::TemporaryFolder;
 using flextip::test_support::WriteSample;
 using flextip::test_support::WriteText;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-template <class Work>
-std::string Refusal(const Work& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    return error.what();
-  } catch (const WorkError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
 
 void Exchange(const fs::path& file, const std::string& by) {
   fs::remove_all(file);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/error.h"
 #include "recording/recording.h"
 #include "recording/truth.h"
 
@@ -35,6 +36,19 @@ void WriteSample(const std::filesystem::path& folder);
 
 std::string ReadText(const std::filesystem::path& file);
 void WriteText(const std::filesystem::path& file, const std::string& text);
+
+/// Returns the message with which `work` is refused; "not refused" where it is not.
+template <class Work>
+std::string Refusal(const Work& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error.what();
+  } catch (const WorkError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
 
 /// Replaces line `line` (from 1) of a text file.
 void ReplaceLine(const std::filesystem::path& file, int line, const std::string& text);

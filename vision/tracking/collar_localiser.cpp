@@ -11,21 +11,11 @@
 namespace flextip {
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 constexpr double kMinSearchCorrelation = 0.35;
-constexpr double kAmbiguousRatio = 30.0;     // twice the log of the odds
-constexpr double kAmbiguousPerPixel = 0.15;  // log of the ratio of the noises
-constexpr double kCornerFallback_px = 0.35;  // what corners alone may be wrong by: gamma, blur
 constexpr double kMaxTurn_rad = 0.5, kMaxTurnUnsure_rad = 0.25;  // from one picture to the next
-constexpr int kPlanarChecksSpared = 4;
-constexpr double kSmallTurn_rad = 0.08;
 constexpr double kFirstBlurSd_px2 = 3.0;
 constexpr double kLinearGamma = 1.0;  // the second guess where a camera's is not known
 constexpr int kDetectMargin_px = 12;
-constexpr int kStandingChecksSpared = 4;   // of a tag beside which no other was seen
-constexpr double kMaxNeighbour_px = 60.0;  // about where a neighbour should be, it is looked for
-constexpr double kContradiction = 6.0;     // standard deviations of two poses from each other
 
 TagDetectorOptions DetectorFor(const TagCollar& collar, TagDetectorOptions options) {
   options.family = collar.family;
@@ -39,18 +29,6 @@ Image Crop(const Image& image, int x0, int y0, int width, int height) {
     std::copy(from, from + static_cast<std::ptrdiff_t>(width) * image.channels, crop.Row(y));
   }
   return crop;
-}
-
-// The pose under which a tag, seen as from T_CE, looks nearly the same: turned about its centre so
-// that the normal comes to lie on the other side of the line of sight.
-Pose OtherPlanarPose(const Pose& T_CE, const Pose& T_EG) {
-  const Pose T_CG = T_CE * T_EG;
-  const Eigen::Vector3d normal = T_CG.R.col(2), sight = T_CG.p.normalized();
-  const Eigen::Vector3d axis = normal.cross(sight);
-  const double angle = std::atan2(axis.norm(), normal.dot(sight));
-  if (axis.norm() < 1e-6) return T_CE;
-  const Pose turned{ExpRotation(2 * angle * axis.normalized()) * T_CG.R, T_CG.p};
-  return turned * T_EG.Inverse();
 }
 
 }  // namespace
@@ -172,62 +150,6 @@ std::vector<TagDetection> CollarLocaliser::PredictedTags(const PhotometricResult
     tags.push_back(detection);
   }
   return tags;
-}
-
-std::set<int> CollarLocaliser::FacesOf(const Sight& sight) const {
-  std::set<int> ids;
-  for (const ViewFit& view : sight.pixels.views) {
-    for (const FaceFit& face : view.faces) ids.insert(face.tag_id);
-  }
-  return ids;
-}
-
-// A tag alone fits a picture wherever the collar's file has it. So one that was never fitted
-// together with another is looked at beside those that the detector finds, by the same test that
-// corners must pass without an expected pose.
-Sight CollarLocaliser::HeldAgainstCollar(const Images& images, Sight sight) {
-  const std::set<int> faces = FacesOf(sight);
-  if (collar_.tags.size() < 2 || faces.size() != 1) return sight;
-  const auto tag = std::find_if(collar_.tags.begin(), collar_.tags.end(),
-                                [&](const CollarTag& t) { return t.id == *faces.begin(); });
-  int& standing = standings_[tag - collar_.tags.begin()];
-  if (standing == kAgrees) return sight;
-  if (standing_checks_spared_ > 0) {
-    --standing_checks_spared_;
-  } else {
-    standing = Contradicts(images, sight) ? kContradicts : kUnknown;
-    standing_checks_spared_ = standing == kContradicts ? 0 : kStandingChecksSpared;
-  }
-  if (standing != kContradicts) return sight;
-  Sight nothing;
-  nothing.tags = sight.tags;
-  nothing.contradicts_collar = true;
-  return nothing;
-}
-
-bool CollarLocaliser::Contradicts(const Images& images, const Sight& sight) {
-  const std::set<int> faces = FacesOf(sight);
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    if (images[i] == nullptr) continue;
-    const auto tags = DetectNear(*images[i], i, sight.T_RE, kMaxNeighbour_px);
-    const auto shows = [&](bool fitted) {
-      return std::any_of(tags.begin(), tags.end(), [&](const TagDetection& t) {
-        return faces.contains(t.id) == fitted &&
-               std::any_of(collar_.tags.begin(), collar_.tags.end(),
-                           [&](const CollarTag& c) { return c.id == t.id; });
-      });
-    };
-    if (!shows(true) || !shows(false)) continue;
-    CollarPoseOptions pose = options_.pose;
-    pose.corner_noise_floor_px = kCornerFallback_px;
-    const Sight corners = FromTags(i, tags, sight.T_RE, pose);
-    if (!corners.Found()) return true;
-    if (Deviations({sight.T_RE, sight.covariance}, {corners.T_RE, corners.covariance}) >
-        kContradiction) {
-      return true;
-    }
-  }
-  return false;
 }
 
 Sight CollarLocaliser::FindNear(const Images& images, const Pose& T_RE, double radius_px) {
@@ -380,53 +302,6 @@ Sight CollarLocaliser::FitCandidates(const Images& images, const Sight& corners)
   const bool better =
       other.Found() && (!sight.Found() || LogLikelihoodRatio2(other.pixels, sight.pixels) > 0);
   return better ? other : sight;
-}
-
-// Where the other planar pose was clearly worse, it is for some frames: a tip does not jump to it.
-bool CollarLocaliser::MaySkipPlanarCheck(const Sight& sight, const Pose& expected_T_RE) {
-  const double turn = PoseDifference(expected_T_RE, sight.T_RE).head<3>().norm();
-  if (planar_checks_spared_ == 0 || turn > kSmallTurn_rad) return false;
-  --planar_checks_spared_;
-  return true;
-}
-
-// With one plane in view two poses may fit: tries the other, keeps the likelier, and where both
-// are nearly as likely takes the one that is expected.
-void CollarLocaliser::CheckOtherPlanarPose(const Images& images,
-                                           const std::optional<Pose>& near_T_RE, Sight& sight) {
-  planar_checks_spared_ = 0;
-  if (sight.source != TrackSource::kPixels || !sight.pixels.one_plane) return;
-  planar_checks_spared_ = kPlanarChecksSpared;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    if (images[i] == nullptr || sight.pixels.views[i].faces.empty()) continue;
-    const auto tag = std::find_if(
-        collar_.tags.begin(), collar_.tags.end(),
-        [&](const CollarTag& t) { return t.id == sight.pixels.views[i].faces[0].tag_id; });
-    const Pose& T_RC = models_[i]->Calibration().T_RC;
-    const Pose other = T_RC * OtherPlanarPose(T_RC.Inverse() * sight.T_RE, tag->T_EG);
-    Sight second = FitPixels(images, other, true, &sight.pixels);
-    if (!second.Found()) return;
-    const double apart = PoseDifference(sight.T_RE, second.T_RE).head<3>().norm();
-    if (apart < 0.02) return;  // the same minimum
-    double ratio = LogLikelihoodRatio2(sight.pixels, second.pixels);
-    // Residuals that are not noise (glare, blur) go together: their number proves little.
-    const bool unclear = std::abs(ratio) < kAmbiguousRatio ||
-                         std::abs(ratio) < 2 * kAmbiguousPerPixel * sight.pixels.pixels;
-    bool swap = ratio < 0;
-    if (unclear && near_T_RE) {
-      swap = PoseDifference(*near_T_RE, second.T_RE).head<3>().norm() <
-             PoseDifference(*near_T_RE, sight.T_RE).head<3>().norm();
-    }
-    if (swap) std::swap(sight, second);
-    sight.alternative_T_RE = second.T_RE;
-    sight.ambiguous = unclear;
-    if (unclear) planar_checks_spared_ = 0;
-    if (unclear && !near_T_RE) {
-      const Eigen::Matrix<double, 6, 1> difference = PoseDifference(sight.T_RE, second.T_RE);
-      sight.covariance += 0.5 * difference * difference.transpose();
-    }
-    return;
-  }
 }
 
 }  // namespace flextip

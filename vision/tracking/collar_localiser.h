@@ -29,6 +29,9 @@ struct Sight {
   bool Found() const { return source != TrackSource::kNone; }
 };
 
+/// What corners alone may be wrong by: gamma, blur.
+inline constexpr double kCornerFallback_px = 0.35;
+
 /// One picture a camera; null: none.
 using Images = std::vector<const Image*>;
 

@@ -79,6 +79,42 @@ TEST_F(Running, NamesALostSource) {
   EXPECT_STREQ(Name(static_cast<StreamName>(last.held_by)), "strain0");
 }
 
+TEST_F(Running, AWrongTipIsLeftToTheOtherSensors) {
+  RunUntilMoving();
+  const Eigen::Vector3d start = peer.Tip();
+  peer.tip_offset_m = 0.03;
+  for (int i = 0; i < 100; ++i) {
+    Step();
+    ASSERT_LT(std::abs(peer.Tip().y() - start.y()), 1e-3) << i;
+  }
+}
+
+struct TrackingByTheTipAlone : Running {
+  TrackingByTheTipAlone() : Running(Text()) {}
+  static std::string Text() {
+    std::string text = SessionText() + "supervisor: {fault_after_s: 0.3}\n";
+    const std::string kind = "rod-track";
+    return text.replace(text.find(kind), kind.size(), "flex-track");
+  }
+};
+
+TEST_F(TrackingByTheTipAlone, AFaultPausesTheRobotUntilAPersonEnablesIt) {
+  RunUntilMoving();
+  peer.tip_offset_m = 0.03;
+  for (int i = 0; i < 5; ++i) Step();
+  EXPECT_EQ(last.hold, Hold::kTipDisagrees);
+  const Eigen::Vector3d held = peer.Wrist();
+  for (int i = 0; i < 60; ++i) Step();
+  EXPECT_EQ(peer.state.state, CrtkState::kPaused);
+  EXPECT_EQ(peer.Wrist(), held);
+  // The cause goes: nothing moves before somebody says so.
+  peer.tip_offset_m = 0.0;
+  for (int i = 0; i < 60; ++i) EXPECT_NE(Step().hold, Hold::kNone);
+  peer.state.state = CrtkState::kEnabled;
+  for (int i = 0; i < 60; ++i) Step();
+  EXPECT_EQ(last.hold, Hold::kNone);
+}
+
 TEST_F(Running, APauseByAPersonStays) {
   RunUntilMoving();
   peer.state.state = CrtkState::kPaused;

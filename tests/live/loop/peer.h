@@ -43,7 +43,7 @@ class Peer {
     if (r.vision0 && tip_there) {
       const TipObservation& tip = r.vision0->tips.back().value;
       std::vector<double> v;
-      for (int i = 0; i < 3; ++i) v.push_back(1e3 * tip.p_RE[i]);
+      for (int i = 0; i < 3; ++i) v.push_back(1e3 * (tip.p_RE[i] + (i == 1 ? tip_offset_m : 0.0)));
       for (int i = 0; i < 9; ++i) v.push_back(1e6 * tip.covariance_m2(i / 3, i % 3));
       for (int i = 0; i < 3; ++i) v.push_back((*tip.d_RE)[i]);
       v.push_back(0.003);
@@ -73,7 +73,8 @@ class Peer {
 
   CrtkOperatingState state;
   bool wrist_there = true, tip_there = true, strain_there = true;
-  TimeNs tip_clock_ns = 0;  // how far the tip's clock is ahead
+  TimeNs tip_clock_ns = 0;    // how far the tip's clock is ahead
+  double tip_offset_m = 0.0;  // of what is seen of the tip, along y
 
  private:
   static simulation::PlantSetup SetupOf(const Session& session) {

@@ -1,0 +1,88 @@
+// What the supervisor does for a loop with a fault, by the truth, beside the same loop without.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "simulation/closed_loop/closed_loop.h"
+#include "simulation/closed_loop/scenario.h"
+
+namespace flextip::simulation {
+namespace {
+
+constexpr double kStart_s = 0.5;
+
+LoopSetup Press(SupervisionKind kind, const std::vector<Fault>& faults = {}) {
+  LoopSetup setup =
+      ReadScenario(std::string(FLEXTIP_SOURCE_DIR) + "/testdata/scenarios/press.yaml").loop;
+  setup.plant_options = {30, 30};
+  setup.controller.kind = ControllerKind::kRodTrack;
+  setup.supervision.kind = kind;
+  setup.supervision.rate_hz = setup.update_rate_hz;
+  setup.faults = faults;
+  return setup;
+}
+
+/// The longest way of the command from one cycle to the next.
+double LongestStep(const LoopResult& result) {
+  double longest_m = 0.0;
+  for (std::size_t i = 1; i < result.updates.size(); ++i) {
+    longest_m = std::max(
+        longest_m, (result.updates[i].p_RW_command - result.updates[i - 1].p_RW_command).norm());
+  }
+  return longest_m;
+}
+
+TEST(SupervisedLoop, OneTipThatIsWrongMovesNothing) {
+  const std::vector<Fault> spike{{FaultKind::kSpike, FaultStream::kTip, kStart_s, 0.1, 0.02}};
+  const LoopResult alone = RunClosedLoop(Press(SupervisionKind::kNone, spike), nullptr);
+  const LoopResult guarded = RunClosedLoop(Press(SupervisionKind::kFull, spike), nullptr);
+  const LoopResult healthy = RunClosedLoop(Press(SupervisionKind::kFull), nullptr);
+  EXPECT_GT(alone.max_deviation_m, 0.002);
+  EXPECT_LT(guarded.max_deviation_m, healthy.max_deviation_m + 5e-4);
+  const bool named = std::any_of(guarded.updates.begin(), guarded.updates.end(), [](const auto& u) {
+    return IsOut(u.supervision, VotedSensor::kTip);
+  });
+  EXPECT_TRUE(named);
+}
+
+TEST(SupervisedLoop, OthersCarryATipThatIsCoveredFromItsFirstCycleOnWithoutAJump) {
+  const std::vector<Fault> covered{
+      {FaultKind::kTagsCovered, FaultStream::kTip, kStart_s, 1.0, 0.0}};
+  const LoopResult healthy = RunClosedLoop(Press(SupervisionKind::kFull), nullptr);
+  const LoopResult guarded = RunClosedLoop(Press(SupervisionKind::kFull, covered), nullptr);
+  for (const LoopUpdate& update : guarded.updates) {
+    ASSERT_EQ(update.status, ControlStatus::kOk);
+    ASSERT_LT(update.supervision.reaction, Reaction::kHold) << Name(update.supervision.stop);
+  }
+  EXPECT_LT(guarded.max_deviation_m, healthy.max_deviation_m + 5e-4);
+  EXPECT_LT(LongestStep(guarded), 1.5 * LongestStep(healthy));
+}
+
+TEST(SupervisedLoop, ATipThatPressesTooHardIsHeld) {
+  LoopSetup setup = Press(SupervisionKind::kFull);
+  setup.supervision.max_tip_force_N = 0.2;  // the press reaches 0.5
+  setup.max_s = 3.0;
+  const LoopResult result = RunClosedLoop(setup, nullptr);
+  double most_N = 0.0;
+  bool held = false;
+  for (const LoopUpdate& update : result.updates) {
+    most_N = std::max(most_N, update.f_tip_N.norm());
+    held |= update.supervision.stop == Stop::kForce;
+  }
+  EXPECT_TRUE(held);
+  // The estimate's deviations and the way of one cycle are what it may be late by.
+  EXPECT_GT(most_N, 0.2);
+  EXPECT_LT(most_N, 0.35);
+}
+
+TEST(SupervisedLoop, WithoutOneNothingIsTested) {
+  const LoopResult result = RunClosedLoop(Press(SupervisionKind::kNone), nullptr);
+  for (const LoopUpdate& update : result.updates) {
+    ASSERT_EQ(update.supervision.stop, Stop::kNone);
+    ASSERT_EQ(update.supervision.chi2_limit, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace flextip::simulation
