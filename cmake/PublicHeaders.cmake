@@ -42,6 +42,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   control/motion_error.h
   control/supervision/chi_squared.h
   control/supervision/motion_guard.h
+  control/supervision/path_watch.h
   control/supervision/rate_limits.h
   control/supervision/stops.h
   control/supervision/supervisor.h
@@ -113,6 +114,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   pipeline/guard/sample_screen.h
   pipeline/guard/sensor_guard.h
   pipeline/sensor_readings.h
+  pipeline/guard/sensor_tolerances.h
   pipeline/guard/sensor_vote.h
   pipeline/guard/still_pictures.h
   pipeline/guard/tip_range.h

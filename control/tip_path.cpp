@@ -3,20 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra/segment.h"
 #include "core/rotation.h"
 
 namespace flextip {
-namespace {
-
-double DistanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
-                         const Eigen::Vector3d& b) {
-  const Eigen::Vector3d ab = b - a;
-  const double length2 = ab.squaredNorm();
-  const double u = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - u * ab).norm();
-}
-
-}  // namespace
 
 TipPath::TipPath(const PathSetup& setup, const Pose& T_RE, double update_rate_hz)
     : setup_(setup), update_rate_hz_(update_rate_hz), points_{T_RE.p}, d_start_(T_RE.R.col(0)) {
@@ -73,10 +63,11 @@ Eigen::Vector3d TipPath::AdvanceStep(const Eigen::Vector3d& p_RE_known) {
 }
 
 double TipPath::Deviation(const Eigen::Vector3d& p) const {
-  double distance = DistanceToSegment(p, points_[leg_], points_[leg_ + 1]);
-  if (leg_ > 0)
-    distance = std::min(distance, DistanceToSegment(p, points_[leg_ - 1], points_[leg_]));
-  return distance;
+  const auto distance_from_leg = [&](std::size_t leg) {
+    return (p - NearestOnSegment(points_[leg], points_[leg + 1], p)).norm();
+  };
+  const double distance = distance_from_leg(leg_);
+  return leg_ > 0 ? std::min(distance, distance_from_leg(leg_ - 1)) : distance;
 }
 
 int TipPath::MaxUpdates() const {

@@ -67,6 +67,7 @@ InstrumentController::InstrumentController(const InstrumentControllerOptions& op
       motion_guard_(kMotionDeviations, options.control.max_tissue_gain,
                     options.supervision.rate_hz),
       supervisor_(options.supervision),
+      path_watch_(options.supervision.max_tip_deviation_m, options.supervision.tolerances.tip_m),
       between_(BetweenTips(options)),
       without_tip_(BetweenTips(options)),
       late_(options.late, options.control.max_tissue_gain),
@@ -94,9 +95,10 @@ ControllerCommand InstrumentController::Step(const ControllerInputs& inputs) {
   command.t_ns = inputs.t_ns;
   const SensorReadings seen = See(inputs, command.supervision);
   const std::optional<Measurements> gathered = Gather(Carry(seen, command.supervision));
+  by_all_.reset();
   if (gathered) {
     command.measurements = Correct(inputs.t_ns, *gathered);
-    Vote(inputs.t_ns, command.measurements, command.supervision);
+    by_all_ = Vote(inputs.t_ns, command.measurements, command.supervision);
     command.estimate = Estimate(inputs.t_ns, command.measurements);
     Fuse(command);
     command.goal = Keep(inputs, command.estimate);
@@ -119,7 +121,10 @@ SensorReadings InstrumentController::See(const ControllerInputs& inputs, Supervi
     seen.tip = {inputs.pictures_t_ns, {track_->tip, track_->direction_noise_rad}};
   }
   const bool is_new = seen.tip && (!tip_t_ns_ || seen.tip->t_ns > *tip_t_ns_);
-  if (is_new) tip_t_ns_ = seen.tip->t_ns;
+  if (is_new) {
+    tip_t_ns_ = seen.tip->t_ns;
+    tip_is_hidden_ = seen.tip->value.tip.status == TipStatus::kLost;
+  }
   if (!is_new) seen.tip.reset();
   guard_.ScreenTip(inputs.t_ns, late_, seen, found);
   return seen;

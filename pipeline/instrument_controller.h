@@ -10,6 +10,7 @@
 #include "control/direction_controller.h"
 #include "control/fixtures.h"
 #include "control/supervision/motion_guard.h"
+#include "control/supervision/path_watch.h"
 #include "control/supervision/supervisor.h"
 #include "core/image.h"
 #include "estimation/instrument_model.h"
@@ -101,12 +102,15 @@ class InstrumentController {
   void Learn(TimeNs t_ns, const ShaftEstimate& estimate);
   Measurements Correct(TimeNs t_ns, const Measurements& measured);
   ShaftEstimate Estimate(TimeNs t_ns, const Measurements& measurements);
-  void Vote(TimeNs t_ns, Measurements& z, Supervision& found);
+  std::optional<VotedShaft> Vote(TimeNs t_ns, Measurements& z, Supervision& found);
   void Fuse(ControllerCommand& command);
   FixturesOutput Keep(const ControllerInputs& inputs, const ShaftEstimate& estimate) const;
   void Control(const ControllerInputs& inputs, ControllerCommand& command);
   void ControlPlace(ControllerCommand& command);
   void ControlDirection(const Eigen::Vector3d& d_RE_desired, ControllerCommand& command);
+  bool MayPointWrong(ControllerCommand& command);
+  bool LosesItsLoad(const ControllerCommand& command) const;
+  Eigen::Vector3d WayOfTip(const Eigen::Vector3d& p_RW);
   void Supervise(const ControllerInputs& inputs, ControllerCommand& command);
 
   InstrumentControllerOptions options_;
@@ -117,9 +121,13 @@ class InstrumentController {
   std::optional<DirectionController> direction_;
   std::optional<TipTrack> track_;
   std::optional<TimeNs> tip_t_ns_;  // of the last tip that counted
+  bool tip_is_hidden_ = false;      // in the newest sample of it
   SensorGuard guard_;
   MotionGuard motion_guard_;
   Supervisor supervisor_;
+  PathWatch path_watch_;
+  std::optional<VotedShaft> by_all_;  // of this cycle
+  std::optional<Eigen::Vector3d> p_RW_watched_;
   // Where the tip's source changes, the difference is taken up slowly.
   bool by_others_ = false;
   std::optional<Eigen::Vector3d> p_RE_last_;

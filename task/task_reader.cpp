@@ -116,6 +116,8 @@ void TaskReader::ReadSupervisor(const YamlMap& map) {
   if (options.false_alarm > kMostFalseAlarms)
     throw section.Error("false_alarm", "expected a probability of a cycle, at most 0.01");
   options.max_tip_force_N = section.PositiveOr("max_tip_force_N", options.max_tip_force_N);
+  options.max_tip_deviation_m =
+      section.PositiveOr("max_tip_deviation_m", options.max_tip_deviation_m);
   options.fixed_jump_m = section.PositiveOr("fixed_jump_m", options.fixed_jump_m);
   const double angle_deg =
       section.PositiveOr("max_motion_angle_deg", options.max_motion_angle_rad * kDegrees);

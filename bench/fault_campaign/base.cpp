@@ -111,12 +111,13 @@ LoopSetup SetupOf(const Base& base) {
   return setup;
 }
 
-LoopSetup Supervised(LoopSetup setup, Move move, SupervisionKind kind) {
+LoopSetup Supervised(LoopSetup setup, Move move, double max_deviation_m, SupervisionKind kind) {
   const Limits limits = LimitsOf(move);
   setup.supervision.kind = kind;
   setup.supervision.rates = limits.rates;
   setup.supervision.rate_hz = setup.update_rate_hz;
   setup.supervision.max_tip_force_N = limits.tip_force_N;
+  setup.supervision.max_tip_deviation_m = max_deviation_m;
   return setup;
 }
 

@@ -41,7 +41,9 @@ Limits LimitsOf(Move move);
 /// between two cycles nobody hears, and the plant need not be solved there.
 simulation::LoopSetup SetupOf(const Base& base);
 
-/// Returns `setup` under a supervisor of that kind with the move's limits.
-simulation::LoopSetup Supervised(simulation::LoopSetup setup, Move move, SupervisionKind kind);
+/// Returns `setup` under a supervisor of that kind with the move's limits, and with what its tip
+/// may be beside the path: who runs a coarse controller knows what it needs.
+simulation::LoopSetup Supervised(simulation::LoopSetup setup, Move move, double max_deviation_m,
+                                 SupervisionKind kind);
 
 }  // namespace flextip::bench

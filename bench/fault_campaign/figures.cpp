@@ -88,7 +88,8 @@ std::vector<FaultRecord> Worst(const std::vector<FaultRecord>& records, std::siz
   for (const FaultRecord& r : records)
     if (r.kind == strictest && r.hazard != "none") worst.push_back(r);
   std::stable_sort(worst.begin(), worst.end(), [](const FaultRecord& a, const FaultRecord& b) {
-    return a.deviation_m - a.healthy_deviation_m > b.deviation_m - b.healthy_deviation_m;
+    return a.hazard_deviation_m - a.healthy_deviation_m >
+           b.hazard_deviation_m - b.healthy_deviation_m;
   });
   worst.resize(std::min(worst.size(), count));
   return worst;

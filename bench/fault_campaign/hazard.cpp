@@ -9,8 +9,10 @@
 namespace flextip::bench {
 namespace {
 
-constexpr double kMoves_m = 5e-5;   // of the wrist in a cycle: less is standing
-constexpr double kNearer_m = 1e-5;  // of the tip in a cycle
+constexpr double kMoves_m = 5e-5;    // of the wrist in a cycle: less is standing
+constexpr double kSame_m = 1e-6;     // of two commands
+constexpr double kArrived_m = 5e-4;  // a servo may stay so far from its set-point
+constexpr double kNearer_m = 1e-5;   // of the tip in a cycle
 constexpr double kPath_m = 0.002, kFixture_m = 0.0005;
 
 double Depth(const Fixtures& fixtures, const Eigen::Vector3d& p) {
@@ -48,6 +50,18 @@ CommandMotion MotionAt(const std::vector<TrueCycle>& cycles, std::size_t i) {
 bool IsBeyond(const CommandMotion& motion, const HazardLimits& limits) {
   return motion.not_finite || motion.step_m > limits.step_m ||
          motion.speed_m_s > limits.speed_m_s || motion.acceleration_m_s2 > limits.acceleration_m_s2;
+}
+
+/// Whether the wrist moves because it was sent: its command changed in this cycle or the two
+/// before, or it is still on its way there. Held at one command it only shakes with its encoders'
+/// noise.
+bool Moves(const std::vector<TrueCycle>& cycles, std::size_t i) {
+  if (!((cycles[i].p_RW - cycles[i - 1].p_RW).norm() >= kMoves_m)) return false;
+  for (std::size_t k = i; k + 3 > i && k > 0; --k) {
+    const bool same = (cycles[k].p_RW_command - cycles[k - 1].p_RW_command).norm() <= kSame_m;
+    if (!same) return true;
+  }
+  return !((cycles[i].p_RW - cycles[i - 1].p_RW_command).norm() <= kArrived_m);
 }
 
 }  // namespace
@@ -98,11 +112,15 @@ Extremes ExtremesOf(const std::vector<TrueCycle>& cycles, double from_s) {
   return most;
 }
 
+double DeviationLimitOf(double healthy_deviation_m) {
+  return healthy_deviation_m > kPath_m ? healthy_deviation_m + kPath_m : kPath_m;
+}
+
 HazardLimits HazardLimitsOf(const Limits& limits, const Extremes& healthy) {
   const auto larger = [](double limit, double has) { return std::max(1.05 * limit, 1.2 * has); };
   HazardLimits hazard;
   hazard.coarse = healthy.deviation_m > kPath_m;
-  hazard.deviation_m = hazard.coarse ? healthy.deviation_m + kPath_m : kPath_m;
+  hazard.deviation_m = DeviationLimitOf(healthy.deviation_m);
   hazard.fixture_depth_m = std::max(0.0, healthy.fixture_depth_m) + kFixture_m;
   hazard.tip_force_N = larger(limits.tip_force_N, healthy.tip_force_N);
   hazard.step_m = larger(limits.rates.max_step_m, healthy.step_m);
@@ -119,6 +137,7 @@ Hazards JudgeHazards(const std::vector<TrueCycle>& cycles, const HazardLimits& l
     if (cycle.t_s < from_s) continue;
     hazards.deviation_m = std::max(hazards.deviation_m, cycle.deviation_m);
     const auto note = [&](Hazard hazard) {
+      hazards.hazard_deviation_m = std::max(hazards.hazard_deviation_m, cycle.deviation_m);
       hazards.bits |= static_cast<std::uint8_t>(1 << static_cast<int>(hazard));
       if (!hazards.first_s) hazards.first_s = cycle.t_s;
     };
@@ -128,8 +147,7 @@ Hazards JudgeHazards(const std::vector<TrueCycle>& cycles, const HazardLimits& l
     });
     if (i == 0 || is_thrown) continue;
     const TrueCycle& last = cycles[i - 1];
-    const bool moves = (cycle.p_RW - last.p_RW).norm() >= kMoves_m;
-    if (!moves) continue;
+    if (!Moves(cycles, i)) continue;
     if (cycle.deviation_m > limits.deviation_m && cycle.deviation_m > last.deviation_m - kNearer_m)
       note(Hazard::kPath);
     if (cycle.fixture_depth_m > limits.fixture_depth_m &&

@@ -39,6 +39,9 @@ struct HazardLimits {
   bool coarse = false;  ///< the run leaves the path by more than 2 mm without any fault
 };
 
+/// Returns 2 mm, or, where the healthy run has more, that and 2 mm.
+double DeviationLimitOf(double healthy_deviation_m);
+
 /// Returns 2 mm of deviation, or, where the healthy run has more, that and 2 mm; 0.5 mm beyond a
 /// fixture, or the healthy run's depth and that; the move's limits of rates and force with 5 %, or
 /// what the healthy run has with 20 %.
@@ -53,17 +56,18 @@ struct TimeSpan {
 };
 
 struct Hazards {
-  std::uint8_t bits = 0;          ///< bit i: Hazard i
-  std::optional<double> first_s;  ///< of the run
-  double deviation_m = 0.0;       ///< the largest from the fault's begin on
+  std::uint8_t bits = 0;            ///< bit i: Hazard i
+  std::optional<double> first_s;    ///< of the run
+  double deviation_m = 0.0;         ///< the largest from the fault's begin on
+  double hazard_deviation_m = 0.0;  ///< the largest in a cycle with a hazard
   bool Has(Hazard hazard) const { return (bits >> static_cast<int>(hazard) & 1) != 0; }
   std::string Text() const;  ///< "path force"; "none"
 };
 
 /// Judges the cycles from `from_s` on. What the tip does (path, fixture, force) counts where the
-/// wrist moves, by 0.05 mm or more in a cycle, and it gets no better: a wrist that stands off the
-/// path does not count, nor one on its way back. While the plant itself throws the tip (`thrown`),
-/// that does not count either: nobody could have helped.
+/// wrist moves, by 0.05 mm or more in a cycle, because it was sent, and it gets no better: a wrist
+/// that is held off the path does not count, nor one on its way back. While the plant itself throws
+/// the tip (`thrown`), that does not count either: nobody could have helped.
 Hazards JudgeHazards(const std::vector<TrueCycle>& cycles, const HazardLimits& limits,
                      double from_s, const std::vector<TimeSpan>& thrown);
 

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "batch/line_file.h"
+#include "bench/fault_campaign/hazard.h"
 #include "core/draw_vector.h"
 #include "core/error.h"
 #include "simulation/faults/fault.h"
@@ -126,6 +127,8 @@ HealthyRun DrawHealthyRun(std::uint64_t first_seed, int number) {
     tissue->tangential_stiffness_N_m = Uniform(rng, 0.0, 0.1) * tissue->stiffness_N_m;
   }
   DrawPlant(rng, run.setup);
+  run.setup.resume_s = 0.0;  // a person looks once a second
+  run.setup.max_s = 120.0;
   return run;
 }
 
@@ -134,19 +137,19 @@ HealthyBatch RunHealthy(std::uint64_t first_seed, int first, double duration_s,
   HealthyBatch one;
   for (const SupervisionKind kind : kinds) one.records.push_back({.kind = flextip::Name(kind)});
   for (int number = first; one.records.front().simulated_s < duration_s; ++number) {
-    HealthyRun run = DrawHealthyRun(first_seed, number);
-    run.setup.resume_s = 0.0;  // a person looks once a second
-    run.setup.max_s = 120.0;
+    const HealthyRun run = DrawHealthyRun(first_seed, number);
     try {
       const LoopResult unsupervised = RunClosedLoop(run.setup, nullptr);
       const bool fine = unsupervised.max_deviation_m <= kPath_m;
+      const double limit_m = DeviationLimitOf(unsupervised.max_deviation_m);
       for (std::size_t i = 0; i < kinds.size(); ++i) {
         HealthyRecord& record = one.records[i];
         ++record.runs;
         const bool none = kinds[i] == SupervisionKind::kNone;
         Count(run, number, fine,
-              none ? unsupervised
-                   : RunClosedLoop(Supervised(run.setup, run.base.move, kinds[i]), nullptr),
+              none
+                  ? unsupervised
+                  : RunClosedLoop(Supervised(run.setup, run.base.move, limit_m, kinds[i]), nullptr),
               record);
       }
     } catch (const WorkError&) {

@@ -6,6 +6,7 @@
 #include "bench/fault_campaign/picture.h"
 #include "bench/fault_campaign/run.h"
 #include "bench/fault_campaign/summary.h"
+#include "bench/fault_campaign/trace.h"
 #include "bench/tool.h"
 #include "recording/text/text.h"
 
@@ -22,6 +23,7 @@ struct Arguments {
   double healthy_hours = 0.0;
   std::vector<std::string> supervision{"all"};
   bool summarize = false;
+  std::vector<int> traces, healthy_traces;
   std::filesystem::path out;
 };
 
@@ -39,8 +41,14 @@ void AddOptions(CLI::App& app, Arguments& a) {
       ->check(CLI::IsMember({"all", "none", "rate-limits", "fixed-thresholds", "full"}));
   app.add_option("--jobs", a.jobs, "Cases at a time")->check(CLI::PositiveNumber);
   app.add_flag("--summarize", a.summarize, "Only read what was done");
+  app.add_option(
+         "--trace", a.traces,
+         "Only these runs, cycle by cycle, under the strictest kind asked for: run_N.csv, .svg")
+      ->delimiter(',');
+  app.add_option("--trace-healthy", a.healthy_traces, "The same of healthy runs")->delimiter(',');
   app.add_option("-o,--out", a.out,
-                 "Folder for cases.jsonl, healthy.jsonl, table.csv, figures.json, hazards.svg")
+                 "Folder for cases.jsonl, healthy.jsonl, table.csv, figures.json, hazards.svg and "
+                 "worst.svg")
       ->required();
   app.footer(
       "Example:\n  flextip_fault_campaign --runs 2000 --healthy-hours 10 --jobs 2 -o faults\n");
@@ -98,6 +106,30 @@ bool RunHours(const Arguments& a) {
   return RunCampaign(campaign);
 }
 
+/// The worst runs once more, for their picture.
+std::string WorstSvg(const Arguments& a, const std::vector<FaultRecord>& worst) {
+  Twins twins;
+  std::vector<Trace> traces;
+  for (const FaultRecord& record : worst) {
+    const auto kind = SupervisionKindNamed(record.kind);
+    if (kind) traces.push_back(TraceRun(DrawRun(a.first_seed, record.number), *kind, twins));
+  }
+  return TracesSvg(traces);
+}
+
+void TraceRuns(const Arguments& a) {
+  Twins twins;
+  const auto write = [&](const char* name, const Trace& trace) {
+    const std::string stem = fmt::format("{}_{}", name, trace.run.number);
+    WriteTextFile(a.out / (stem + ".csv"), TraceCsv(trace));
+    WriteTextFile(a.out / (stem + ".svg"), TracesSvg({trace}));
+  };
+  for (const int number : a.traces)
+    write("run", TraceRun(DrawRun(a.first_seed, number), KindsOf(a).back(), twins));
+  for (const int number : a.healthy_traces)
+    write("healthy", TraceHealthyRun(a.first_seed, number, KindsOf(a).back()));
+}
+
 void Summarize(const Arguments& a) {
   std::vector<FaultRecord> records;
   for (FaultCase& one : ReadFaultCases(a.out / "cases.jsonl"))
@@ -108,11 +140,17 @@ void Summarize(const Arguments& a) {
   WriteTextFile(a.out / "table.csv", TableText(records));
   WriteTextFile(a.out / "figures.json", FiguresJson(figures, healthy));
   WriteTextFile(a.out / "hazards.svg", HazardSvg(figures));
-  if (!figures.empty()) fmt::print("{}", SummaryText(figures, Worst(records, 20)));
+  const std::vector<FaultRecord> worst = Worst(records, 20);
+  WriteTextFile(a.out / "worst.svg", WorstSvg(a, worst));
+  if (!figures.empty()) fmt::print("{}", SummaryText(figures, worst));
   if (!healthy.empty()) fmt::print("{}", HealthyText(healthy));
 }
 
 void Run(Arguments& a) {
+  if (!a.traces.empty() || !a.healthy_traces.empty()) {
+    std::filesystem::create_directories(a.out);
+    return TraceRuns(a);
+  }
   if (!a.summarize) {
     std::filesystem::create_directories(a.out);
     if (a.runs > 0 && !RunFaults(a)) return;

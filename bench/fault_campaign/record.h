@@ -16,6 +16,7 @@ struct FaultRecord {
   double start_s = 0.0, duration_s = 0.0, amount = 0.0;  ///< amount: the first fault's size
   std::string hazard;                                    ///< "none", "path force", ...
   double deviation_m = 0.0;                              ///< the largest from the fault's begin on
+  double hazard_deviation_m = 0.0;                       ///< the largest in a cycle with a hazard
   double healthy_deviation_m = 0.0;                      ///< of the run without fault
   bool detected = false;     ///< a stop or a vote from the fault's begin on
   int detection_cycles = 0;  ///< 1: in the first cycle that could

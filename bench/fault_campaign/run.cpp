@@ -106,6 +106,7 @@ void Judge(const FaultRun& run, const Twin& twin, const LoopSetup& setup, const 
                                        record.start_s, ThrownOf(run));
   record.hazard = hazards.Text();
   record.deviation_m = hazards.deviation_m;
+  record.hazard_deviation_m = hazards.hazard_deviation_m;
   const bool over = TimeOf(result.updates.back()) >= setup.max_s - 0.1;
   record.outcome = !result.lost_equilibrium.empty() ? "no equilibrium" : over ? "time over" : "end";
   SetFindings(run, result, record);
@@ -189,22 +190,28 @@ void SetFindings(const FaultRun& run, const LoopResult& result, FaultRecord& rec
   SetGoingOn(result, record.outcome == "end", start_s, record);
 }
 
-std::vector<FaultRecord> RunFault(FaultRun run, const std::vector<SupervisionKind>& kinds,
-                                  Twins& twins) {
-  const Twin& twin = twins.Of(run.base);
+LoopSetup FaultedSetup(const Twin& twin, FaultRun& run) {
   StartAt(twin.duration_s, run);
   LoopSetup setup = SetupOf(run.base);
   setup.faults = run.faults;
   setup.resume_s = EndOf(run) + kResume_s;
   setup.max_s = std::max(twin.duration_s, *setup.resume_s) + kAfter_s;
   setup.fault_seed = simulation::FaultSeed(run.base.seed, static_cast<std::size_t>(run.number));
+  return setup;
+}
+
+std::vector<FaultRecord> RunFault(FaultRun run, const std::vector<SupervisionKind>& kinds,
+                                  Twins& twins) {
+  const Twin& twin = twins.Of(run.base);
+  const LoopSetup setup = FaultedSetup(twin, run);
   std::vector<FaultRecord> records;
   for (const SupervisionKind kind : kinds) {
     FaultRecord& record = records.emplace_back();
     Describe(run, twin, record);
     record.kind = flextip::Name(kind);
     try {
-      Judge(run, twin, setup, RunClosedLoop(Supervised(setup, run.base.move, kind), nullptr),
+      Judge(run, twin, setup,
+            RunClosedLoop(Supervised(setup, run.base.move, twin.limits.deviation_m, kind), nullptr),
             record);
     } catch (const std::exception& error) {
       record.outcome = std::string("threw: ") + error.what();

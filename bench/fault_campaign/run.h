@@ -26,6 +26,10 @@ class Twins {
   std::map<Base, Twin> twins_;
 };
 
+/// Returns the faulted run as the plant is to have it, without supervision, and sets the faults'
+/// begins in `run`.
+simulation::LoopSetup FaultedSetup(const Twin& twin, FaultRun& run);
+
 /// Runs `run` under each kind and judges it. A person resumes a second after the last fault is
 /// over.
 std::vector<FaultRecord> RunFault(FaultRun run, const std::vector<SupervisionKind>& kinds,

@@ -128,8 +128,8 @@ std::string SummaryText(const std::vector<KindFigures>& figures,
     text += fmt::format(
         "  run {}: {} {} ({}), {}{}, {}, {}: {}, {:.1f} mm; first {} {} after {:.2f} s; {}\n",
         r.number, r.fault, r.size, r.amount, r.move, r.floor ? " over a floor" : "", r.controller,
-        r.suite, r.hazard, 1e3 * r.deviation_m, r.detected ? r.first_stop : "nothing", r.reaction,
-        r.detection_s, r.going_on);
+        r.suite, r.hazard, 1e3 * r.hazard_deviation_m, r.detected ? r.first_stop : "nothing",
+        r.reaction, r.detection_s, r.going_on);
   }
   return text;
 }

@@ -44,18 +44,17 @@ MotionGuard::MotionGuard(double deviations, double max_tissue_gain, double rate_
       max_tissue_gain_(max_tissue_gain),
       axes_a_cycle_(std::clamp(static_cast<int>(kAxesRate_hz / rate_hz), 1, kAxes)) {}
 
-double MotionGuard::AngleAt(const Eigen::Matrix3d& J_hat, const ShaftEstimate& estimate,
-                            const Eigen::Vector3d& p_RW, const Vector9d& shift) {
+void MotionGuard::LookAt(const ShaftEstimate& estimate, const Eigen::Vector3d& p_RW,
+                         const Vector9d& shift, End& end) {
   ShaftModel model = estimate.model;
   model.p_RP += shift.segment<3>(3);
   model.f_tip_N += shift.tail<3>();
   const ShaftRodState rod = rod_.Solve(RodOf(model, p_RW + shift.head<3>()));
-  if (!rod.IsUsable()) return std::numbers::pi;
+  end.state = rod.IsUsable() ? End::State::kFound : End::State::kBuckled;
+  if (!rod.IsUsable()) return;
   const Eigen::Matrix3d C = rod.dp_RE.rightCols<3>();
   const Eigen::Matrix3d K = TrustedStiffness(model.tissue_stiffness_N_m, C, max_tissue_gain_);
-  const Eigen::Matrix3d J =
-      (Eigen::Matrix3d::Identity() - C * K).inverse() * rod.dp_RE.leftCols<3>();
-  return FindLargestAngle(J, J_hat).phi_max_rad;
+  end.J = (Eigen::Matrix3d::Identity() - C * K).inverse() * rod.dp_RE.leftCols<3>();
 }
 
 double MotionGuard::Update(const Eigen::Matrix3d& J_hat, const ShaftEstimate& estimate,
@@ -64,6 +63,7 @@ double MotionGuard::Update(const Eigen::Matrix3d& J_hat, const ShaftEstimate& es
       estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
   if (!fitted || !J_hat.allFinite() || !estimate.covariance.allFinite()) {
     seen_rad_.fill(0.0);
+    ends_.fill({});
     return 0.0;
   }
   const auto [mean, covariance] = WithPlausibleForce(estimate);
@@ -73,11 +73,41 @@ double MotionGuard::Update(const Eigen::Matrix3d& J_hat, const ShaftEstimate& es
     const double sd = std::sqrt(std::max(0.0, covariance(axis_, axis_)));
     Vector9d shift = Vector9d::Zero();
     if (sd > 0.0) shift = deviations_ / sd * covariance.col(axis_);
-    seen_rad_[static_cast<std::size_t>(axis_)] = std::max(
-        AngleAt(J_hat, estimate, p_RW, mean + shift), AngleAt(J_hat, estimate, p_RW, mean - shift));
+    for (const int side : {0, 1}) {
+      const auto at = static_cast<std::size_t>(2 * axis_ + side);
+      LookAt(estimate, p_RW, mean + (side == 0 ? 1.0 : -1.0) * shift, ends_[at]);
+      seen_rad_[at] = ends_[at].state == End::State::kFound
+                          ? FindLargestAngle(ends_[at].J, J_hat).phi_max_rad
+                          : std::numbers::pi;
+    }
     axis_ = (axis_ + 1) % kAxes;
   }
   return *std::max_element(seen_rad_.begin(), seen_rad_.end());
+}
+
+std::optional<Eigen::Matrix3d> MotionGuard::Jacobian() const {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  int found = 0;
+  for (const End& end : ends_) {
+    if (end.state != End::State::kFound) continue;
+    sum += end.J;
+    ++found;
+  }
+  if (found == 0) return {};
+  return sum / found;
+}
+
+double MotionGuard::StepAngle(const Eigen::Vector3d& dp_RE_wanted,
+                              const Eigen::Vector3d& dp_RW) const {
+  double largest_rad = 0.0;
+  for (const End& end : ends_) {
+    if (end.state == End::State::kUnknown) continue;
+    if (end.state == End::State::kBuckled) return std::numbers::pi;
+    const Eigen::Vector3d dp_RE = end.J * dp_RW;
+    const double angle_rad = std::atan2(dp_RE.cross(dp_RE_wanted).norm(), dp_RE.dot(dp_RE_wanted));
+    largest_rad = std::max(largest_rad, angle_rad);
+  }
+  return largest_rad;
 }
 
 }  // namespace flextip

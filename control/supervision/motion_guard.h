@@ -3,6 +3,8 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <cstdint>
+#include <optional>
 
 #include "control/controller.h"
 #include "estimation/shaft_estimator.h"
@@ -24,15 +26,29 @@ class MotionGuard {
   double Update(const Eigen::Matrix3d& J_hat, const ShaftEstimate& estimate,
                 const Eigen::Vector3d& p_RW);
 
+  /// Returns the exact Jacobian (d tip / d wrist), the mean over the rods; empty before Update.
+  std::optional<Eigen::Matrix3d> Jacobian() const;
+
+  /// Returns the largest angle (rad) between the tip's motion `dp_RE_wanted` and the one that the
+  /// wrist's step `dp_RW` makes, by the rods of the last calls of Update: at most what Update
+  /// returned, since that is for the worst motion. pi where a rod has buckled; zero before Update.
+  double StepAngle(const Eigen::Vector3d& dp_RE_wanted, const Eigen::Vector3d& dp_RW) const;
+
  private:
   static constexpr int kAxes = 9;
-  double AngleAt(const Eigen::Matrix3d& J_hat, const ShaftEstimate& estimate,
-                 const Eigen::Vector3d& p_RW, const Eigen::Matrix<double, 9, 1>& shift);
+  /// The exact Jacobian at one end of an axis.
+  struct End {
+    enum class State : std::uint8_t { kUnknown, kBuckled, kFound } state = State::kUnknown;
+    Eigen::Matrix3d J = Eigen::Matrix3d::Zero();
+  };
+  void LookAt(const ShaftEstimate& estimate, const Eigen::Vector3d& p_RW,
+              const Eigen::Matrix<double, 9, 1>& shift, End& end);
 
   double deviations_, max_tissue_gain_;
   int axes_a_cycle_;
   ShaftRod rod_;
-  std::array<double, kAxes> seen_rad_{};
+  std::array<End, 2 * kAxes> ends_;
+  std::array<double, 2 * kAxes> seen_rad_{};  // the worst angle at each end
   int axis_ = 0;
 };
 

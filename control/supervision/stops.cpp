@@ -10,7 +10,7 @@ constexpr std::array<const char*, kStops> kNames{
     "source_lost", "tip_jump",   "tip_disagrees", "model_disagrees", "wrist_not_following",
     "port_moved",  "port_depth", "speed",         "acceleration",    "jerk",
     "step",        "workspace",  "fixture",       "force",           "motion_angle",
-    "deadline",    "operator"};
+    "deadline",    "operator",   "tip_astray"};
 
 }  // namespace
 

@@ -28,9 +28,10 @@ enum class Stop : std::uint8_t {
   kForce,        ///< the tip presses with more than it may
   kMotionAngle,  ///< the tip might move by more than the limit beside what is wanted
   kDeadline,     ///< a cycle took too long, so many in a row
-  kOperator      ///< a person said stop
+  kOperator,     ///< a person said stop
+  kTipAstray     ///< the tip leaves the way that it was asked to go
 };
-inline constexpr int kStops = static_cast<int>(Stop::kOperator) + 1;
+inline constexpr int kStops = static_cast<int>(Stop::kTipAstray) + 1;
 
 /// Returns the name as in recordings and messages: "tip_jump".
 const char* Name(Stop stop);
@@ -56,6 +57,8 @@ struct Supervision {
   double chi2 = 0.0;           ///< of all sensors together; 0: not tested
   double chi2_limit = 0.0;
   double worst_angle_rad = 0.0;  ///< the largest seen lately; 0: not known
+  /// The wrist stays, in a hold or for this cycle alone: the goal should wait for it.
+  bool waits = false;
 };
 
 inline bool IsOut(const Supervision& supervision, VotedSensor sensor) {

@@ -3,25 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "control/supervision/rate_limits.h"
+#include "core/linear_algebra/segment.h"
 
 namespace flextip {
 namespace {
 
 double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 
-/// The distance of `p` from the segment from `a` to `b`.
-double DistanceFrom(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& p) {
-  const Eigen::Vector3d way = b - a;
-  const double length2 = way.squaredNorm();
-  const double along = length2 > 0.0 ? std::clamp((p - a).dot(way) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - along * way).norm();
-}
-
+constexpr double kLate = 1.5;  // of a cycle's time
 // Of three components at once, each normal, less than one in 1e7 is this many deviations long.
 constexpr double kDeviations = 6.0;
 constexpr double kSettle_m = 0.0005;  // a servo may stay so far from its set-point
+
+/// How far a reading may be beside the commanded way.
+double AllowedBeside_m(const SupervisedCycle& cycle) {
+  return kSettle_m + kDeviations * std::numbers::sqrt2 * cycle.p_RW_noise_m;
+}
 
 }  // namespace
 
@@ -41,15 +41,16 @@ void Supervisor::NoteSent(const Eigen::Vector3d& p_RW) {
 
 bool Supervisor::IsAstray(const SupervisedCycle& cycle) const {
   if (!cycle.p_RW || count_ == 0) return false;
-  const double allowed_m = kSettle_m + kDeviations * std::sqrt(2.0) * cycle.p_RW_noise_m;
+  const double allowed_m = AllowedBeside_m(cycle);
   const Sent& newest = sent_[(next_ + kSize - 1) % kSize];
   const double moved_m = (*cycle.p_RW - newest.p_RW_before).norm();
   double nearest_m = std::numeric_limits<double>::infinity(), farthest_m = 0.0, away_m = 0.0;
   std::optional<Eigen::Vector3d> later;
   for (std::size_t i = 1; i <= count_; ++i) {
     const Sent& sent = sent_[(next_ + kSize - i) % kSize];
-    nearest_m =
-        std::min(nearest_m, DistanceFrom(sent.p_RW, later.value_or(sent.p_RW), *cycle.p_RW));
+    const Eigen::Vector3d on_way =
+        NearestOnSegment(sent.p_RW, later.value_or(sent.p_RW), *cycle.p_RW);
+    nearest_m = std::min(nearest_m, (*cycle.p_RW - on_way).norm());
     farthest_m = std::max(farthest_m, (sent.p_RW - newest.p_RW_before).norm());
     away_m = std::max(away_m, (sent.p_RW_before - *cycle.p_RW).norm());
     later = sent.p_RW;
@@ -60,6 +61,16 @@ bool Supervisor::IsAstray(const SupervisedCycle& cycle) const {
   }
   // Not commanded for long enough yet to say.
   return false;
+}
+
+/// Whether the wrist stood in this cycle though it is not where it was sent: its goal should not
+/// run away from it.
+bool Supervisor::Lags(const SupervisedCycle& cycle) const {
+  if (!moving_ || !cycle.p_RW || count_ == 0) return false;
+  const Sent& newest = sent_[(next_ + kSize - 1) % kSize];
+  const double noise_m = kDeviations * std::numbers::sqrt2 * cycle.p_RW_noise_m;
+  return (*cycle.p_RW - newest.p_RW).norm() > AllowedBeside_m(cycle) &&
+         (*cycle.p_RW - newest.p_RW_before).norm() <= noise_m;
 }
 
 Eigen::Vector3d Supervisor::Limit(const SupervisedCycle& cycle, Supervision& supervision) {
@@ -115,6 +126,30 @@ void Supervisor::Judge(const SupervisedCycle& cycle, Decision& decision) {
   supervision.reaction = fault_ ? Reaction::kFault : Reaction::kHold;
 }
 
+/// Where a robot that moves is to stop: at once, where its reading lies on the commanded way and
+/// the acceleration allows it, else at the last command. A reading may be what is wrong.
+std::optional<Eigen::Vector3d> Supervisor::StopAt(const SupervisedCycle& cycle) const {
+  if (!p_last_ || !cycle.p_RW || !cycle.p_RW->allFinite()) return p_last_;
+  double nearest_m = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d stop = *p_last_, later = *p_last_;
+  for (std::size_t i = 1; i <= count_; ++i) {
+    const Sent& sent = sent_[(next_ + kSize - i) % kSize];
+    const Eigen::Vector3d on_way = NearestOnSegment(sent.p_RW, later, *cycle.p_RW);
+    const double distance_m = (*cycle.p_RW - on_way).norm();
+    if (distance_m < nearest_m) stop = on_way;
+    nearest_m = std::min(nearest_m, distance_m);
+    later = sent.p_RW;
+    if (Seconds(cycle.t_ns - sent.t_ns) > options_.follow_lag_s) break;
+  }
+  if (nearest_m > AllowedBeside_m(cycle)) return p_last_;
+  const double a_m_s2 = options_.rates.max_acceleration_m_s2;
+  if (a_m_s2 <= 0.0) return stop;
+  const double dt_s = std::max(0.0, Seconds(cycle.t_ns - t_last_ns_));
+  const double back_m = std::max(0.0, (a_m_s2 * dt_s - v_last_m_s_.norm()) * dt_s);
+  const Eigen::Vector3d back = stop - *p_last_;
+  return back.norm() <= back_m ? stop : Eigen::Vector3d(*p_last_ + back_m * back.normalized());
+}
+
 Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
   Decision decision;
   decision.supervision = cycle.found;
@@ -136,6 +171,10 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
   if (options_.kind == SupervisionKind::kFull) {
     if (cycle.p_wish && !cycle.p_wish->allFinite()) hold(Stop::kNotFinite);
     if (IsAstray(cycle)) hold(Stop::kWristNotFollowing);
+    const bool is_late =
+        t_last_ns_ > 0 && Seconds(cycle.t_ns - t_last_ns_) > kLate / options_.rate_hz;
+    late_cycles_ = is_late ? late_cycles_ + 1 : 0;
+    if (late_cycles_ >= options_.max_late_cycles) hold(Stop::kDeadline);
     if (!cycle.may_point_wrong) wrong_since_ns_ = 0;
     if (cycle.may_point_wrong && wrong_since_ns_ == 0) wrong_since_ns_ = cycle.t_ns;
     if (wrong_since_ns_ != 0 && Seconds(cycle.t_ns - wrong_since_ns_) > options_.resume_after_s)
@@ -145,25 +184,45 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
     Judge(cycle, decision);
   }
   // For a moment the robot only waits: the next estimate may know better.
-  const bool waits = options_.kind == SupervisionKind::kFull && cycle.may_point_wrong;
+  const bool waits =
+      options_.kind == SupervisionKind::kFull && (cycle.may_point_wrong || cycle.tip_is_hidden);
   if (waits && decision.supervision.reaction == Reaction::kNone) {
-    decision.supervision.stop = Stop::kMotionAngle;
+    decision.supervision.stop = cycle.may_point_wrong ? Stop::kMotionAngle : Stop::kStaleTip;
     decision.supervision.reaction = Reaction::kLimit;
   }
+  decision.supervision.waits =
+      waits || Lags(cycle) || decision.supervision.reaction >= Reaction::kHold;
   const bool moves = decision.supervision.reaction < Reaction::kHold && !waits && cycle.p_wish &&
                      cycle.p_wish->allFinite();
   if (moves) {
     p_held_.reset();
     decision.p_RW_command = Limit(cycle, decision.supervision);
   } else {
-    // While it moved, the last command: a reading may be what is wrong. Else the wrist as measured
-    // when the hold began, since its noise would let it wander.
+    // The same place all the while: the reading's noise would let the wrist wander.
+    // A robot that does not follow, while all sensors agree with where it says it is, stands there:
+    // it should not leap once it listens again.
     const bool readable = cycle.p_RW && cycle.p_RW->allFinite();
-    if (!p_held_) p_held_ = moving_ || !readable ? p_last_ : cycle.p_RW;
-    if (decision.resumed && readable) p_held_ = cycle.p_RW;
+    const Supervision& found = decision.supervision;
+    const bool stands = found.stop == Stop::kWristNotFollowing && found.chi2 > 0.0 &&
+                        found.chi2 <= found.chi2_limit;
+    if (!p_held_) p_held_ = (moving_ && !stands) || !readable ? StopAt(cycle) : cycle.p_RW;
+    // A person may have led the robot elsewhere.
+    const bool led = decision.resumed && readable && p_held_ &&
+                     (*cycle.p_RW - *p_held_).norm() > AllowedBeside_m(cycle);
+    if (led) p_held_ = cycle.p_RW;
     if (!p_held_ && readable) p_held_ = cycle.p_RW;
     decision.p_RW_command = p_held_;
-    v_last_m_s_.setZero();
+    const bool leaps = stands && p_last_ && p_held_ && options_.rates.max_acceleration_m_s2 > 0.0;
+    if (leaps) {
+      const double dt_s = Seconds(cycle.t_ns - t_last_ns_);
+      const Eigen::Vector3d from = *p_last_;
+      decision.p_RW_command =
+          LimitAcceleration(from, v_last_m_s_, *p_held_, dt_s, options_.rates.max_acceleration_m_s2)
+              .p;
+      v_last_m_s_ = (*decision.p_RW_command - from) / dt_s;
+    } else {
+      v_last_m_s_.setZero();
+    }
   }
   moving_ = moves;
   if (decision.p_RW_command) Keep(cycle, *decision.p_RW_command);

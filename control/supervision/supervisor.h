@@ -20,6 +20,7 @@ struct SupervisedCycle {
   std::optional<Eigen::Vector3d> p_wish;  ///< the controller's command; empty: none
   Supervision found;                      ///< the gravest finding so far; reaction as it asks for
   bool may_point_wrong = false;           ///< the Jacobian of the wish is not known well enough
+  bool tip_is_hidden = false;             ///< the wish is for a tip that is not seen just now
   bool resume = false;                    ///< a person says go on
 };
 
@@ -35,7 +36,8 @@ class Supervisor {
   };
 
   /// Returns the command that may go out: the wish within the rate limits, or, in a hold and in a
-  /// fault, the last command of the motion; without motion before, the wrist as it was measured.
+  /// fault, the wrist as it was measured when the hold began; the last command where that reading
+  /// is not on the commanded way.
   Decision Decide(const SupervisedCycle& cycle);
 
   /// Returns whether the wrist did not move for the robot's lag though it was sent away all the
@@ -56,6 +58,8 @@ class Supervisor {
   };
   static constexpr std::size_t kSize = 512;
 
+  bool Lags(const SupervisedCycle& cycle) const;
+  std::optional<Eigen::Vector3d> StopAt(const SupervisedCycle& cycle) const;
   void Keep(const SupervisedCycle& cycle, const Eigen::Vector3d& p_RW);
   Eigen::Vector3d Limit(const SupervisedCycle& cycle, Supervision& supervision);
   void Judge(const SupervisedCycle& cycle, Decision& decision);
@@ -69,6 +73,7 @@ class Supervisor {
   TimeNs wrong_since_ns_ = 0;                      // since when it may point wrong; 0: it does not
   TimeNs held_since_ns_ = 0, clear_since_ns_ = 0;  // 0: not held, not clear
   Stop held_by_ = Stop::kNone;
+  int late_cycles_ = 0;  // in a row
   bool fault_ = false, moving_ = false;
 };
 

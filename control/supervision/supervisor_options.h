@@ -26,21 +26,32 @@ struct RateLimits {
   double max_acceleration_m_s2 = 0.0;
 };
 
+/// One standard deviation each of what counts as within specification: the tolerances of
+/// docs/effects.md, as they reach a sensor.
+struct SensorTolerances {
+  double stiffness = 0.02;    ///< part of the bending stiffness
+  double tip_m = 0.0003;      ///< hand-eye, the collar's place on the tip, 3 ms at 30 mm/s
+  double em_m = 0.00025;      ///< its place on the shaft, the field, 3 ms at 30 mm/s
+  double wrist_m = 0.0001;    ///< backlash, and what the arm yields
+  double turn_rad = 0.0015;   ///< of every direction: a curvature of 0.003 1/m over half a metre
+  double moment_Nm = 0.0015;  ///< of a gage: the same curvature, and a minute of warming up
+};
+
 struct SupervisorOptions {
   SupervisionKind kind = SupervisionKind::kNone;
   RateLimits rates;
   double rate_hz = 30.0;  ///< of the cycles
   /// Of one test in one cycle: one in ten hours of 30 Hz over the ten tests of a cycle.
   double false_alarm = 1e-7;
-  /// One standard deviation of the bending stiffness within specification, as a part of it: the
-  /// tolerance of docs/effects.md.
-  double stiffness_tolerance = 0.02;
+  SensorTolerances tolerances;
   double resume_after_s = 0.2;  ///< a hold ends when its cause has been gone for so long
   double fault_after_s = 2.0;   ///< a hold that lasts so long becomes a fault
   double stale_s = 0.12;        ///< a stream without a new sample for so long is gone
+  int max_late_cycles = 3;      ///< in a row, each half a cycle late at least
   double follow_lag_s = 0.25;   ///< the robot is where it was commanded to be so long ago at least
   double max_motion_angle_rad = 0.25 * std::numbers::pi;  ///< never 90 degrees or more
   double max_tip_force_N = 0.0;                           ///< 0: no limit
+  double max_tip_deviation_m = 0.0;                       ///< of the tip from its way; 0: no limit
   double fixed_jump_m = 0.005;                            ///< of kFixedThresholds
 };
 

@@ -220,7 +220,7 @@ ControllerInputs Cycle::Wish(const CycleInputs& inputs, bool moves, bool new_tip
                              UsesTipMeasurement(session_.task.controller.kind) && !new_tip;
   if (session_.goal) {
     GoToGoal(inputs, dt_s);
-  } else if (!p_goal_ || !waits_for_tip) {
+  } else if (!p_goal_ || !(waits_for_tip || wrist_waits_)) {
     p_goal_ = path_->Advance(p_RE_known_);
   }
   Limited goal{*p_goal_, false};
@@ -272,9 +272,11 @@ void Cycle::StartPath() {
 }
 
 void Cycle::Command(const ControllerCommand& command, double dt_s, CycleOutputs& outputs) {
+  wrist_waits_ = command.supervision.waits;
   const Eigen::Vector3d& p_RW = command.measurements.p_RW;
   if (command.supervision.reaction >= Reaction::kHold) {
     outputs.hold = HoldBy(command.supervision.stop);
+    if (moving_ && command.p_RW_command.allFinite()) p_held_ = command.p_RW_command;
     return;
   }
   if (Acts(command.status)) {

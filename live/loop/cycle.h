@@ -83,6 +83,7 @@ class Cycle {
   Eigen::Vector3d p_last_ = Eigen::Vector3d::Zero();  // commanded
   Eigen::Vector3d v_last_m_s_ = Eigen::Vector3d::Zero();
   bool moving_ = false;                    // p_last_ is a set-point of motion
+  bool wrist_waits_ = false;               // in the last cycle, by the supervisor
   std::optional<Eigen::Vector3d> p_held_;  // the wrist as measured when the hold began
   TimeNs asked_ns_ = 0;                    // when the robot was last told to change its state
   bool asked_home_ = false;

@@ -14,6 +14,8 @@ constexpr double kTissue_s = 0.1;          // and that long in one direction
 constexpr double kBentMore = 1.2;          // of the straight shaft's motion
 constexpr double kGaps = 4.0;              // a stream that misses three samples in a row is gone
 constexpr double kLearn = 0.1;
+constexpr double kAge_s = 0.005;   // of a sample may change so much beside what was seen
+constexpr int kAges = 5;           // until the usual one is known
 constexpr int kRepeats = 2;        // after the first
 constexpr double kMoved_m = 1e-4;  // least motion that a sensor must show
 
@@ -34,6 +36,30 @@ bool SampleScreen::IsStale(const Past& past, TimeNs now_ns) const {
   return past.arrived_ns == 0 || Seconds(now_ns - past.arrived_ns) > limit_s;
 }
 
+bool SampleScreen::TipIsOverdue(TimeNs t_ns) const {
+  const double usual_s = Seconds(tip_past_.gap_ns) + 1.0 / options_.rate_hz;
+  return tip_past_.arrived_ns == 0 || Seconds(t_ns - tip_past_.arrived_ns) > usual_s + kAge_s;
+}
+
+/// Whether a sample on its arrival is older or younger than those before, by more than the cycle in
+/// which it had to wait. Clocks that leap, or stand still for a while, show so.
+bool SampleScreen::IsOfAnotherAge(Past& past, double age_s) const {
+  const double change_s = std::abs(age_s - past.age_s);
+  const double limit_s = 1.0 / options_.rate_hz + kAge_s + kDeviations * past.age_changes_s;
+  if (past.ages >= kAges && change_s > limit_s) return true;
+  ++past.ages;
+  const double part = std::max(kLearn, 1.0 / past.ages);
+  past.age_s += part * (age_s - past.age_s);
+  past.age_changes_s += part * (change_s - past.age_changes_s);
+  return false;
+}
+
+void SampleScreen::Forget() {
+  tip_.known = em_.known = false;
+  for (Past* past : {&wrist_, &tip_past_, &em0_past_, &em1_past_, &strain_past_, &load_past_})
+    past->ages = 0;
+}
+
 /// What is wrong with a stream in this cycle; kNone where it can be used.
 Stop SampleScreen::Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& figures, bool finite,
                         const std::optional<Eigen::Vector3d>& p_RW, double p_RW_sd_m) const {
@@ -41,6 +67,7 @@ Stop SampleScreen::Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& f
   if (past.arrived_ns != 0 && t_ns < past.t_ns) return Stop::kBadTime;
   if (Seconds(t_ns - now_ns) > kFuture_s) return Stop::kBadTime;
   if (past.arrived_ns == 0 || t_ns > past.t_ns) {
+    if (IsOfAnotherAge(past, Seconds(now_ns - t_ns))) return Stop::kBadTime;
     const TimeNs gap_ns = t_ns - past.t_ns;
     if (past.arrived_ns != 0) {
       past.gap_ns += past.gap_ns == 0

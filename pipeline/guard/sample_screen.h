@@ -43,21 +43,25 @@ class SampleScreen {
 
   /// Returns whether there is no tip, or no new one for too long.
   bool TipIsStale(TimeNs t_ns) const { return IsStale(tip_past_, t_ns); }
+  /// Returns whether the next tip should have come by now.
+  bool TipIsOverdue(TimeNs t_ns) const;
 
   /// Takes the places of `readings` as believed from now on.
   void BelieveTip(const SensorReadings& readings, const LateSamples& late);
   void BelieveEm(const SensorReadings& readings, const LateSamples& late);
 
   /// Takes what is measured next as believed: a person says that it is right.
-  void Forget() { tip_.known = em_.known = false; }
+  void Forget();
 
  private:
   using Figures = Eigen::Matrix<double, 6, 1>;
   /// The samples of a stream.
   struct Past {
-    TimeNs t_ns = 0, arrived_ns = 0;  // of the newest; of the cycle that had it first
-    TimeNs gap_ns = 0;                // between two, typically
-    int repeats = 0;                  // of the same figures at new times
+    TimeNs t_ns = 0, arrived_ns = 0;          // of the newest; of the cycle that had it first
+    TimeNs gap_ns = 0;                        // between two, typically
+    int repeats = 0;                          // of the same figures at new times
+    int ages = 0;                             // samples whose age is known
+    double age_s = 0.0, age_changes_s = 0.0;  // on arrival: typically, and how much it varies
     Figures figures = Figures::Zero();
     Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();  // the wrist at the first of them
   };
@@ -71,6 +75,7 @@ class SampleScreen {
   Stop Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& figures, bool finite,
             const std::optional<Eigen::Vector3d>& p_RW, double p_RW_sd_m) const;
   bool IsStale(const Past& past, TimeNs now_ns) const;
+  bool IsOfAnotherAge(Past& past, double age_s) const;
   bool Jumps(const Place& last, const Place& now, double distance_from_tip_m,
              double p_RW_sd_m) const;
   Eigen::Vector3d Straight(const Eigen::Vector3d& p_RW, double distance_from_tip_m) const;

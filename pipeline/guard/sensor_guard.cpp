@@ -48,15 +48,15 @@ void SensorGuard::ScreenTip(TimeNs t_ns, const LateSamples& late, SensorReadings
   if (screen_.EmJumps(readings, late)) jumped_ |= Bit(VotedSensor::kEm);
 }
 
-void SensorGuard::Vote(TimeNs t_ns, const ShaftChange& change, Measurements& z,
-                       Supervision& found) {
+std::optional<VotedShaft> SensorGuard::Vote(TimeNs t_ns, const ShaftChange& change, Measurements& z,
+                                            Supervision& found) {
   if (options_.kind == SupervisionKind::kFixedThresholds) {
-    if (!z.tip || z.tip->status == TipStatus::kLost || !z.em) return;
+    if (!z.tip || z.tip->status == TipStatus::kLost || !z.em) return {};
     const auto by_em = MeasuredTip({.em = z.em}, true);
     if ((z.tip->p_RE - *by_em).norm() > options_.fixed_jump_m) Hold(Stop::kTipDisagrees, found);
-    return;
+    return {};
   }
-  if (options_.kind != SupervisionKind::kFull) return;
+  if (options_.kind != SupervisionKind::kFull) return {};
   const std::uint8_t tip = Bit(VotedSensor::kTip);
   const bool alone = (SensorsOf(z) & ~tip) == 0;
   if (alone && (jumped_ & tip) != 0) {
@@ -64,9 +64,9 @@ void SensorGuard::Vote(TimeNs t_ns, const ShaftChange& change, Measurements& z,
     Drop(VotedSensor::kTip, z);
     found.voted_out |= tip;
     Hold(Stop::kTipJump, found);
-    return;
+    return {};
   }
-  vote_.Vote(t_ns, jumped_, change, z, found);
+  return vote_.Vote(t_ns, jumped_, change, z, found);
 }
 
 void SensorGuard::Believe(const LateSamples& late, const SensorReadings& readings,

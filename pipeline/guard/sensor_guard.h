@@ -24,13 +24,16 @@ class SensorGuard {
   void ScreenTip(TimeNs t_ns, const LateSamples& late, SensorReadings& readings,
                  Supervision& found);
 
-  /// Votes on the sensors of the moment `t_ns`, and takes out of `z` what may not be used.
-  void Vote(TimeNs t_ns, const ShaftChange& change, Measurements& z, Supervision& found);
+  /// Votes on the sensors of the moment `t_ns`, and takes out of `z` what may not be used. Returns
+  /// tip and load as those that are left say them; empty where they do not.
+  std::optional<VotedShaft> Vote(TimeNs t_ns, const ShaftChange& change, Measurements& z,
+                                 Supervision& found);
 
   /// Believes the places of `readings`, as ScreenTip left them, whose sensors are not out.
   void Believe(const LateSamples& late, const SensorReadings& readings, const Supervision& found);
 
   bool TipIsStale(TimeNs t_ns) const { return screen_.TipIsStale(t_ns); }
+  bool TipIsOverdue(TimeNs t_ns) const { return screen_.TipIsOverdue(t_ns); }
 
   /// Takes the next places as they come: a person says that they are right.
   void Forget() { screen_.Forget(); }

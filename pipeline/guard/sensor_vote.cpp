@@ -9,8 +9,8 @@
 namespace flextip {
 namespace {
 
-constexpr double kClearly = 30.0;      // of chi-squared: odds of 3e6 to 1
-constexpr double kMovedPort_m = 0.03;  // a port that has moved is looked for within some of these
+constexpr double kClearly = 20.0;  // of chi-squared: odds of 2e4 to 1
+constexpr double kLoose_m = 0.03;  // a wrist or port elsewhere is looked for within some of these
 
 double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 
@@ -20,22 +20,6 @@ EstimatorOptions OptionsOf(EstimatorOptions options, double port_prior_m) {
   options.estimate_tissue = false;
   options.port_prior_m = port_prior_m;
   return options;
-}
-
-/// Moments and forces are compared with a bending by the stiffness that the data state, which is
-/// wrong by its tolerance. Places and directions are compared with each other: the fitted load
-/// takes a wrong stiffness up.
-Measurements WithTolerance(const Measurements& z, double part) {
-  Measurements wide = z;
-  if (wide.strain) {
-    const double moment_Nm = z.strain->moments_Nm.cwiseAbs().maxCoeff();
-    wide.strain->moment_noise_Nm = std::hypot(z.strain->moment_noise_Nm, part * moment_Nm);
-  }
-  if (wide.load) {
-    const double force_N = z.load->f_tip_N.norm();
-    wide.load->force_noise_N = std::hypot(z.load->force_noise_N, part * force_N);
-  }
-  return wide;
 }
 
 std::uint8_t Bit(int sensor) { return static_cast<std::uint8_t>(1U << sensor); }
@@ -82,20 +66,24 @@ void Drop(VotedSensor sensor, Measurements& z) {
 SensorVote::SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options)
     : options_(options),
       limits_(options.false_alarm),
+      tolerated_(options.tolerances),
       all_(OptionsOf(estimator, estimator.port_prior_m)),
       without_one_(OptionsOf(estimator, estimator.port_prior_m)),
-      loose_port_(OptionsOf(estimator, kMovedPort_m)) {}
+      loose_(OptionsOf(estimator, kLoose_m)) {}
 
 SensorVote::Ballot SensorVote::Ask(ShaftEstimator& estimator, const Measurements& z,
                                    const ShaftChange& change) const {
-  const ShaftEstimate estimate =
-      estimator.Update(WithTolerance(z, options_.stiffness_tolerance), change);
+  const ShaftEstimate estimate = estimator.Update(tolerated_.Widened(z), change);
   const bool fitted =
       estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
   Ballot ballot;
   ballot.limit = limits_.Of(estimate.measurements);
   ballot.chi2 = estimate.chi2;
   ballot.agrees = fitted && estimate.chi2 <= ballot.limit;
+  if (ballot.agrees && estimate.status == EstimateStatus::kOk)
+    ballot.shaft = VotedShaft{{estimate.p_RE, estimate.p_RE_covariance_m2},
+                              estimate.model.f_tip_N,
+                              estimate.covariance.bottomRightCorner<3, 3>()};
   return ballot;
 }
 
@@ -138,10 +126,21 @@ int SensorVote::Choose(TimeNs t_ns, std::uint8_t jumped,
   return second - least > kClearly ? best : -1;
 }
 
-bool SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& change, Measurements& z,
-                      Supervision& found) {
+/// Whether a wrist that is not where it says explains all sensors, and no worse than leaving one of
+/// them out does. A port elsewhere is no wrist elsewhere: the port's name goes first.
+bool SensorVote::WristExplains(const Measurements& z, const ShaftChange& change,
+                               double chi2_without) {
+  Measurements loose = z;
+  loose.wrist_position_noise_m = kLoose_m;
+  const Ballot ballot = Ask(without_one_, loose, change);
+  return ballot.agrees && ballot.chi2 < chi2_without + kClearly;
+}
+
+std::optional<VotedShaft> SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped,
+                                           const ShaftChange& change, Measurements& z,
+                                           Supervision& found) {
   const std::uint8_t candidates = SensorsOf(z);
-  if (candidates == 0) return true;
+  if (candidates == 0) return {};
   Ballot all = Ask(all_, z, change);
   if (!all.agrees) {
     // A fit from the last load may have ended beside the least squares.
@@ -151,13 +150,14 @@ bool SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& chang
   found.chi2 = all.chi2;
   found.chi2_limit = all.limit;
   if (all.agrees) {
+    if (all.shaft) tolerated_.Learn(t_ns, z, all.shaft->tip.p);
     for (int i = 0; i < kVotedSensors; ++i) {
       const TimeNs out_ns = out_ns_[static_cast<std::size_t>(i)];
       if (out_ns == 0 || Seconds(t_ns - out_ns) > options_.resume_after_s) continue;
       Drop(static_cast<VotedSensor>(i), z);
       found.voted_out |= Bit(i);
     }
-    return true;
+    return all.shaft;
   }
   std::array<Ballot, kVotedSensors> without;
   for (int i = 0; i < kVotedSensors; ++i) {
@@ -171,20 +171,28 @@ bool SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& chang
     ballot = Ask(without_one_, rest, change);
   }
   const int out = Choose(t_ns, jumped, without, candidates);
+  const double chi2_without = out >= 0 ? without[static_cast<std::size_t>(out)].chi2
+                                       : std::numeric_limits<double>::infinity();
+  if (WristExplains(z, change, chi2_without)) {
+    if (found.reaction >= Reaction::kHold) return {};
+    found.stop = Stop::kWristNotFollowing;
+    found.reaction = Reaction::kHold;
+    return {};
+  }
   if (out >= 0) {
     Drop(static_cast<VotedSensor>(out), z);
     found.voted_out |= Bit(out);
     out_ns_[static_cast<std::size_t>(out)] = t_ns;
-    return false;
+    return without[static_cast<std::size_t>(out)].shaft;
   }
-  if (found.reaction >= Reaction::kHold) return false;
+  if (found.reaction >= Reaction::kHold) return {};
   found.reaction = Reaction::kHold;
   if (out == -1) {
     found.stop = Stop::kTipDisagrees;
   } else {
-    found.stop = Ask(loose_port_, z, change).agrees ? Stop::kPortMoved : Stop::kModelDisagrees;
+    found.stop = Ask(loose_, z, change).agrees ? Stop::kPortMoved : Stop::kModelDisagrees;
   }
-  return false;
+  return {};
 }
 
 }  // namespace flextip

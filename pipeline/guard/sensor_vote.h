@@ -1,19 +1,30 @@
 // All sensors of an instant held against the instrument and each other; the wrong one is found.
 #pragma once
 
+#include <Eigen/Dense>
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "control/supervision/chi_squared.h"
+#include "control/supervision/path_watch.h"
 #include "control/supervision/stops.h"
 #include "control/supervision/supervisor_options.h"
 #include "core/time_series.h"
 #include "estimation/shaft_estimator.h"
+#include "pipeline/guard/sensor_tolerances.h"
 
 namespace flextip {
 
+/// What the sensors that agree say together, with the tolerances in its covariances.
+struct VotedShaft {
+  PlaceKnown tip;
+  Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d force_covariance_N2 = Eigen::Matrix3d::Zero();
+};
+
 /// Chi-squared of all sensors together, with all covariances, and, where it is above its limit, of
-/// all but one. Allocates nothing; one fit a call, fifteen at most where sensors disagree.
+/// all but one. Allocates nothing; one fit a call, sixteen at most where sensors disagree.
 class SensorVote {
  public:
   SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options);
@@ -22,23 +33,27 @@ class SensorVote {
   /// than `resume_after_s` ago. Where several sensors alone would explain it, the one that was out
   /// before is taken, then the one that jumped (`jumped`: bits as Supervision::voted_out), then the
   /// one that explains it far better. `found` gets the bits, chi-squared and, where no sensor can
-  /// be named, a stop with a hold. Returns whether all sensors agree.
-  bool Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& change, Measurements& z,
-            Supervision& found);
+  /// be named, a stop with a hold: where a wrist or a port elsewhere would explain all, that one's.
+  /// Returns tip and load; empty where the sensors do not tell them.
+  std::optional<VotedShaft> Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& change,
+                                 Measurements& z, Supervision& found);
 
  private:
   /// The agreement of all sensors but one.
   struct Ballot {
     bool agrees = false;
     double chi2 = 0.0, limit = 0.0;
+    std::optional<VotedShaft> shaft;
   };
   Ballot Ask(ShaftEstimator& estimator, const Measurements& z, const ShaftChange& change) const;
+  bool WristExplains(const Measurements& z, const ShaftChange& change, double chi2_without);
   int Choose(TimeNs t_ns, std::uint8_t jumped, const std::array<Ballot, kVotedSensors>& without,
              std::uint8_t candidates) const;
 
   SupervisorOptions options_;
   ChiSquaredLimits limits_;
-  ShaftEstimator all_, without_one_, loose_port_;
+  ToleratedSensors tolerated_;
+  ShaftEstimator all_, without_one_, loose_;
   std::array<TimeNs, kVotedSensors> out_ns_{};  // when it was voted out last; 0: never
 };
 

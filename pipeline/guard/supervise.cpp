@@ -1,4 +1,5 @@
 // The stages of a control cycle in which the supervisor acts.
+#include <algorithm>
 #include <cmath>
 
 #include "control/supervision/least_norm.h"
@@ -14,20 +15,32 @@ constexpr double kTakeOver_m = 0.0005;
 constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is taken up
 
 constexpr double kForceDeviations = 3.0;
+constexpr double kLeastShaft = 0.01;  // of its length, on either side of the port
+constexpr double kStepDeviations = 3.0;
+constexpr double kLeastStep_m = 0.0005;  // whatever the noise: a quarter of what counts as astray
 
 /// Whether the tip force is above `limit_N` (0: none), wherever it is within its deviations. Along
 /// the shaft it is often not known.
-bool PressesTooHard(const ShaftEstimate& estimate, double limit_N) {
-  if (limit_N <= 0.0 || estimate.status != EstimateStatus::kOk) return false;
-  return LeastNorm(estimate.model.f_tip_N, estimate.covariance.bottomRightCorner<3, 3>(),
-                   kForceDeviations) > limit_N;
+bool PressesTooHard(const std::optional<VotedShaft>& shaft, double limit_N) {
+  return limit_N > 0.0 && shaft &&
+         LeastNorm(shaft->f_tip_N, shaft->force_covariance_N2, kForceDeviations) > limit_N;
+}
+
+/// Whether there is too little shaft before or beyond the port for a lever. The controller keeps a
+/// wrist within twice that of the port as it knows it.
+bool LacksShaft(const ShaftEstimate& estimate) {
+  if (estimate.status != EstimateStatus::kOk && estimate.status != EstimateStatus::kUnobservable)
+    return false;
+  const double part = estimate.s_port_m / estimate.model.instrument.length_m;
+  return part < kLeastShaft || part > 1.0 - kLeastShaft;
 }
 
 }  // namespace
 
 /// Takes out the sensor that disagrees with the others.
-void InstrumentController::Vote(TimeNs t_ns, Measurements& z, Supervision& found) {
-  guard_.Vote(t_ns, model_ ? model_->Shaft() : ShaftChange(), z, found);
+std::optional<VotedShaft> InstrumentController::Vote(TimeNs t_ns, Measurements& z,
+                                                     Supervision& found) {
+  return guard_.Vote(t_ns, model_ ? model_->Shaft() : ShaftChange(), z, found);
 }
 
 /// The tip for the controller. Where its own sensor is out or gone, rod-track goes on with what the
@@ -51,6 +64,35 @@ void InstrumentController::Fuse(ControllerCommand& command) {
   p_RE_offset_ *= std::exp(-1.0 / (options_.supervision.rate_hz * kTakeOver_s));
   *command.p_RE_measured += p_RE_offset_;
   p_RE_last_ = command.p_RE_measured;
+}
+
+/// Whether the tip may move by more than the limit beside what this step wants. A step that is
+/// within the tip's noise wants nothing.
+bool InstrumentController::MayPointWrong(ControllerCommand& command) {
+  const Eigen::Vector3d& p_RW = command.measurements.p_RW;
+  command.supervision.worst_angle_rad =
+      motion_guard_.Update(command.J_tip_wrist, command.estimate, p_RW);
+  const Eigen::Vector3d wanted = command.goal.p_RE_desired - command.p_RE_used;
+  const double sd_m =
+      MaxSd(by_all_ ? by_all_->tip.covariance_m2 : command.estimate.p_RE_covariance_m2);
+  if (wanted.norm() < std::min(kStepDeviations * sd_m, kLeastStep_m)) return false;
+  return motion_guard_.StepAngle(wanted, command.p_RW_command - p_RW) >
+         options_.supervision.max_motion_angle_rad;
+}
+
+/// Whether a controller that calculates its tip has lost a sensor, and does not know the tip well
+/// without it.
+bool InstrumentController::LosesItsLoad(const ControllerCommand& command) const {
+  if (UsesTipMeasurement(options_.control.kind) || command.supervision.voted_out == 0) return false;
+  const ShaftEstimate& estimate = command.estimate;
+  return estimate.status != EstimateStatus::kOk || MaxSd(estimate.p_RE_covariance_m2) > kTakeOver_m;
+}
+
+/// How the wrist moved the tip since the last call, by the exact rod.
+Eigen::Vector3d InstrumentController::WayOfTip(const Eigen::Vector3d& p_RW) {
+  const Eigen::Vector3d way = p_RW - p_RW_watched_.value_or(p_RW);
+  p_RW_watched_ = p_RW;
+  return motion_guard_.Jacobian().value_or(Eigen::Matrix3d::Zero()) * way;
 }
 
 /// The last word over the command.
@@ -80,17 +122,27 @@ void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerC
     const bool is_out = IsOut(found, VotedSensor::kTip) || IsOut(found, VotedSensor::kEm);
     hold(no_tip && guard_.TipIsStale(inputs.t_ns), Stop::kStaleTip);
     hold(no_tip && is_out, Stop::kTipDisagrees);
-    hold(PressesTooHard(command.estimate, options.max_tip_force_N), Stop::kForce);
-    if (acts && !command.J_tip_wrist.isZero(0.0)) {
-      found.worst_angle_rad =
-          motion_guard_.Update(command.J_tip_wrist, command.estimate, command.measurements.p_RW);
-      cycle.may_point_wrong = found.worst_angle_rad > options.max_motion_angle_rad;
+    hold(LosesItsLoad(command), Stop::kSourceLost);
+    hold(PressesTooHard(by_all_, options.max_tip_force_N), Stop::kForce);
+    hold(LacksShaft(command.estimate), Stop::kPortDepth);
+    const bool hidden = tip_is_hidden_ || (no_tip && guard_.TipIsOverdue(inputs.t_ns));
+    cycle.tip_is_hidden =
+        hidden && !by_others_ && UsesTipMeasurement(options_.control.kind) && inputs.p_RE_desired;
+    if (by_all_ && inputs.p_RE_desired) {
+      hold(path_watch_.IsAstray(inputs.t_ns, by_all_->tip, WayOfTip(command.measurements.p_RW),
+                                command.goal.p_RE_desired),
+           Stop::kTipAstray);
     }
+    if (acts && !command.J_tip_wrist.isZero(0.0)) cycle.may_point_wrong = MayPointWrong(command);
   }
   cycle.found = found;
   const Supervisor::Decision decision = supervisor_.Decide(cycle);
   if (decision.resumed) guard_.Forget();
   found = decision.supervision;
+  const bool held = found.reaction >= Reaction::kHold;
+  const bool by_path = held && found.stop == Stop::kTipAstray;
+  if ((held && !by_path) || decision.resumed) path_watch_.ComeBack(inputs.t_ns);
+  if (by_path) path_watch_.TryOnce(inputs.t_ns);
   if (decision.p_RW_command) command.p_RW_command = *decision.p_RW_command;
 }
 

@@ -156,7 +156,7 @@ class Loop {
     const std::optional<Sample<WristMeasurement>> wrist = inputs.sensors.wrist;
     sensor_faults_.Disturb(t_ns_, inputs.sensors);
     TakeOffLatencies(setup_, inputs);
-    if (!IsHeld()) p_RE_goal_ = path_->Advance(p_RE_known_);
+    if (!supervision_.waits) p_RE_goal_ = path_->Advance(p_RE_known_);
     inputs.p_RE_desired = p_RE_goal_;
     inputs.d_RE_desired = path_->Direction();
     inputs.resume = Resumes();
@@ -170,8 +170,6 @@ class Loop {
     Command(command, wrist, inputs.sensors.wrist);
     Note(command, inputs.resume);
   }
-
-  bool IsHeld() const { return supervision_.reaction >= Reaction::kHold; }
 
   /// Whether a person says so in this cycle.
   bool Resumes() {

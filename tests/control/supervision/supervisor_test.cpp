@@ -49,10 +49,11 @@ TEST(Supervisor, LetsAQuietCommandThrough) {
   EXPECT_EQ(*decision.p_RW_command, wish);
 }
 
-TEST(Supervisor, HoldsAtTheLastCommandAndGoesOnByItself) {
+TEST(Supervisor, HoldsOnePlaceAndGoesOnByItself) {
   Supervisor supervisor(Full());
   const double dt_s = 1.0 / 30.0;
   int held = 0;
+  std::optional<Eigen::Vector3d> place;
   for (int i = 0; i < 60; ++i) {
     const Eigen::Vector3d noisy = kWrist + Eigen::Vector3d(0, i % 2 ? 1e-5 : -1e-5, 0);
     SupervisedCycle cycle = Cycle(i * dt_s, noisy, noisy + Eigen::Vector3d(1e-5, 0, 0));
@@ -61,11 +62,51 @@ TEST(Supervisor, HoldsAtTheLastCommandAndGoesOnByItself) {
     if (decision.supervision.reaction != Reaction::kHold) continue;
     ++held;
     EXPECT_EQ(decision.supervision.stop, Stop::kTipJump);
-    // The command of the ninth cycle, not a reading of this one.
-    EXPECT_EQ(*decision.p_RW_command, kWrist + Eigen::Vector3d(1e-5, 1e-5, 0));
+    if (place) EXPECT_EQ(*decision.p_RW_command, *place);
+    place = decision.p_RW_command;
   }
   // Five cycles of cause, and 0.2 s without.
   EXPECT_EQ(held, 5 + 6);
+}
+
+/// The command of a hold, where the robot went along x and its reading is `reading` then.
+Eigen::Vector3d HeldAt(const Eigen::Vector3d& reading) {
+  Supervisor supervisor(Full());
+  constexpr double kLag_m = 0.002;
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector3d wish = kWrist + Eigen::Vector3d(0.02 * i / 30.0, 0, 0);
+    supervisor.Decide(Cycle(i / 30.0, wish - Eigen::Vector3d(kLag_m, 0, 0), wish));
+  }
+  SupervisedCycle cycle = Cycle(1.0, reading, reading);
+  cycle.found = Found(Stop::kForce, Reaction::kHold);
+  return *supervisor.Decide(cycle).p_RW_command;
+}
+
+TEST(Supervisor, AHoldStopsARobotOnItsWayAtOnce) {
+  const Eigen::Vector3d reading = kWrist + Eigen::Vector3d(0.0175, 0.0001, 0);
+  EXPECT_LT((HeldAt(reading) - (kWrist + Eigen::Vector3d(0.0175, 0, 0))).norm(), 1e-9);
+}
+
+TEST(Supervisor, AHoldDoesNotFollowAReadingBesideTheWay) {
+  const Eigen::Vector3d last = kWrist + Eigen::Vector3d(0.02 * 29.0 / 30.0, 0, 0);
+  EXPECT_EQ(HeldAt(kWrist + Eigen::Vector3d(0.0175, 0.01, 0)), last);
+  EXPECT_EQ(HeldAt(Eigen::Vector3d::Constant(std::nan(""))), last);
+}
+
+TEST(Supervisor, CyclesThatAreLateInARowHold) {
+  Supervisor supervisor(Full());
+  double t_s = 0.0;
+  int held = 0, late = 0;
+  for (int i = 0; i < 60; ++i) {
+    const bool is_late = i == 10 || (i >= 30 && i < 34);
+    t_s += is_late ? 0.06 : 1.0 / 30.0;
+    late = is_late ? late + 1 : 0;
+    const auto decision = supervisor.Decide(Cycle(t_s, kWrist, kWrist));
+    if (late >= 3) EXPECT_EQ(decision.supervision.stop, Stop::kDeadline) << i;
+    held += decision.supervision.reaction == Reaction::kHold;
+    if (i < 32) EXPECT_EQ(held, 0) << i;
+  }
+  EXPECT_GT(held, 0);
 }
 
 TEST(Supervisor, AHoldThatLastsBecomesAFaultUntilSomebodyResumes) {

@@ -1,0 +1,113 @@
+#include "control/supervision/path_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/linear_algebra/segment.h"
+
+namespace flextip {
+namespace {
+
+constexpr TimeNs kWay_ns = 1'000'000'000;      // of wishes: a robot may lag so far behind
+constexpr TimeNs kStep_ns = 34'000'000;        // between those that are kept
+constexpr TimeNs kAhead_ns = 250'000'000;      // of the way before the wish
+constexpr TimeNs kSpan_ns = 120'000'000;       // some cycles, and less than a robot's lag
+constexpr TimeNs kComesBack_ns = 500'000'000;  // two lags of a robot
+constexpr TimeNs kTryAfter_ns = 1'000'000'000;
+constexpr double kCertain = 2.0;            // deviations of the tip
+constexpr double kModel = 0.3;              // of a motion may be otherwise than the model says
+constexpr double kOtherMotion_m_s = 0.003;  // tissue, breath
+constexpr TimeNs kGone_ns = 300'000'000;    // without a tip, and the filter begins again
+constexpr double kSurprise = 25.0;          // of chi-squared
+
+}  // namespace
+
+void PathWatch::Note(TimeNs t_ns, const Eigen::Vector3d& p_wish) {
+  const bool is_due = count_ == 0 || t_ns - wishes_[(next_ + kSize - 1) % kSize].t_ns >= kStep_ns;
+  if (!is_due) return;
+  wishes_[next_] = {t_ns, p_wish};
+  next_ = (next_ + 1) % kSize;
+  count_ = std::min(count_ + 1, kSize);
+}
+
+/// The place nearest to the tip.
+Eigen::Vector3d PathWatch::NearestOnWay(TimeNs t_ns, const Eigen::Vector3d& p_wish) const {
+  Eigen::Vector3d ahead = p_wish;
+  if (count_ > 0) {
+    // The way goes on: a tip that is ahead is not beside it.
+    const Wish& newest = wishes_[(next_ + kSize - 1) % kSize];
+    const double part = static_cast<double>(kAhead_ns) /
+                        static_cast<double>(std::max<TimeNs>(t_ns - newest.t_ns, kStep_ns));
+    ahead += part * (p_wish - newest.p);
+  }
+  Eigen::Vector3d nearest = NearestOnSegment(p_wish, ahead, tip_.p), later = p_wish;
+  for (std::size_t i = 1; i <= count_; ++i) {
+    const Wish& wish = wishes_[(next_ + kSize - i) % kSize];
+    if (t_ns - wish.t_ns > kWay_ns) break;
+    const Eigen::Vector3d place = NearestOnSegment(wish.p, later, tip_.p);
+    if ((tip_.p - place).norm() < (tip_.p - nearest).norm()) nearest = place;
+    later = wish.p;
+  }
+  return nearest;
+}
+
+/// The tip by its motion and by what is seen. A surprise is believed at once: it is no noise.
+void PathWatch::Follow(TimeNs t_ns, const PlaceKnown& seen, const Eigen::Vector3d& dp_RE) {
+  const bool known = tip_ns_ != 0 && t_ns - tip_ns_ < kGone_ns && dp_RE.allFinite();
+  const double dt_s = 1e-9 * static_cast<double>(t_ns - tip_ns_);
+  tip_ns_ = t_ns;
+  if (!known) {
+    tip_ = seen;
+    return;
+  }
+  const double doubt_m = kModel * dp_RE.norm() + kOtherMotion_m_s * dt_s;
+  tip_.p += dp_RE;
+  tip_.covariance_m2.diagonal().array() += doubt_m * doubt_m;
+  const Eigen::Vector3d innovation = seen.p - tip_.p;
+  const Eigen::Matrix3d weight = (tip_.covariance_m2 + seen.covariance_m2).inverse();
+  if (!(innovation.dot(weight * innovation) < kSurprise)) {
+    tip_ = seen;
+    return;
+  }
+  const Eigen::Matrix3d gain = tip_.covariance_m2 * weight;
+  tip_.p += gain * innovation;
+  const Eigen::Matrix3d left = tip_.covariance_m2 - gain * tip_.covariance_m2;
+  tip_.covariance_m2 = 0.5 * (left + left.transpose());
+}
+
+bool PathWatch::IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector3d& dp_RE,
+                         const Eigen::Vector3d& p_wish) {
+  if (max_deviation_m_ <= 0.0 || !tip.p.allFinite() || !tip.covariance_m2.allFinite() ||
+      !p_wish.allFinite())
+    return false;
+  Follow(t_ns, tip, dp_RE);
+  const Eigen::Vector3d beside = tip_.p - NearestOnWay(t_ns, p_wish);
+  Note(t_ns, p_wish);
+  deviation_m_ = beside.norm();
+  const double sd_m = std::sqrt(std::max(0.0, beside.dot(tip_.covariance_m2 * beside))) /
+                      std::max(deviation_m_, 1e-9);
+  if (span_ns_ == 0) nearest_m_.fill(deviation_m_);
+  if (t_ns - span_ns_ > kSpan_ns) {
+    nearest_m_ = {deviation_m_, nearest_m_[0], nearest_m_[1]};
+    span_ns_ = t_ns;
+  }
+  nearest_m_[0] = std::min(nearest_m_[0], deviation_m_);
+  if (deviation_m_ - kCertain * std::hypot(sd_m, tolerance_m_) <= max_deviation_m_) {
+    astray_ns_ = 0;
+    tried_ = false;
+    return false;
+  }
+  const bool comes_back = from_ns_ != 0 && t_ns - from_ns_ < kComesBack_ns;
+  const bool astray = comes_back ? deviation_m_ > from_m_ + kCertain * sd_m
+                                 : deviation_m_ > nearest_m_[2] - kCertain * sd_m;
+  if (astray && astray_ns_ == 0) astray_ns_ = t_ns;
+  return astray;
+}
+
+void PathWatch::TryOnce(TimeNs t_ns) {
+  if (tried_ || astray_ns_ == 0 || t_ns - astray_ns_ < kTryAfter_ns) return;
+  tried_ = true;
+  ComeBack(t_ns);
+}
+
+}  // namespace flextip

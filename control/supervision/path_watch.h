@@ -1,0 +1,68 @@
+// Whether the tip keeps to the way that it was asked to go.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <cstddef>
+
+#include "core/time_series.h"
+
+namespace flextip {
+
+/// A place with its covariance (m, m^2). In R.
+struct PlaceKnown {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
+};
+
+/// Knows the wishes of the last second, where the tip is (a Kalman filter over what is seen of it
+/// and how the wrist moves it), and how near it lately was to the way through the wishes. Fixed
+/// size, allocates nothing. All in R (m).
+class PathWatch {
+ public:
+  /// Takes how far the tip may be beside its way (0: as far as it likes), and the standard
+  /// deviation of what its sensors are off all the while.
+  PathWatch(double max_deviation_m, double tolerance_m)
+      : max_deviation_m_(max_deviation_m), tolerance_m_(tolerance_m) {}
+
+  /// Returns whether the tip, seen as `tip`, is for certain (two deviations) farther than it may be
+  /// from the way through the wishes of the last second, up to `p_wish`, and gets no nearer to it.
+  /// `dp_RE`: how the wrist moved the tip since the last call, by the model.
+  bool IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector3d& dp_RE,
+                const Eigen::Vector3d& p_wish);
+
+  /// Lets the tip come back from where it is now: for half a second it need only get no farther.
+  void ComeBack(TimeNs t_ns) {
+    from_ns_ = t_ns;
+    from_m_ = deviation_m_;
+  }
+  /// Does so once, a second after the tip was found astray: what led it astray may be over.
+  void TryOnce(TimeNs t_ns);
+
+ private:
+  static constexpr std::size_t kSize = 32;  // a wish each thirtieth of a second
+  struct Wish {
+    TimeNs t_ns = 0;
+    Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  };
+
+  void Follow(TimeNs t_ns, const PlaceKnown& seen, const Eigen::Vector3d& dp_RE);
+  void Note(TimeNs t_ns, const Eigen::Vector3d& p_wish);
+  Eigen::Vector3d NearestOnWay(TimeNs t_ns, const Eigen::Vector3d& p_wish) const;
+
+  double max_deviation_m_, tolerance_m_;
+  std::array<Wish, kSize> wishes_;  // a ring, the newest before next_
+  std::size_t next_ = 0, count_ = 0;
+  PlaceKnown tip_;
+  TimeNs tip_ns_ = 0;  // 0: never seen
+  double deviation_m_ = 0.0;
+  TimeNs from_ns_ = 0;    // of ComeBack
+  TimeNs astray_ns_ = 0;  // since when; 0: it is not
+  bool tried_ = false;
+  double from_m_ = 0.0;
+  // The nearest in this span of time, in the one before, and in the one before that.
+  TimeNs span_ns_ = 0;
+  std::array<double, 3> nearest_m_{};
+};
+
+}  // namespace flextip

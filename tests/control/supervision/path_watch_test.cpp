@@ -1,0 +1,77 @@
+// The tip beside its way, on motions counted by hand.
+#include "control/supervision/path_watch.h"
+
+#include <gtest/gtest.h>
+
+namespace flextip {
+namespace {
+
+const Eigen::Matrix3d kCovariance_m2 = 1e-10 * Eigen::Matrix3d::Identity();  // 0.01 mm
+constexpr TimeNs kCycle_ns = 33'000'000;
+
+/// A wish that goes along x at 15 mm/s, and a tip beside it.
+struct Walk {
+  PathWatch watch{0.0018, 0.0};
+  TimeNs t_ns = 1'000'000'000;
+  double x_m = 0.0;
+  Eigen::Vector3d p_last = Eigen::Vector3d::Zero();
+
+  bool Next(double beside_m, double behind_m = 0.0, bool goes = true) {
+    t_ns += kCycle_ns;
+    if (goes) x_m += 0.015 * 0.033;
+    const Eigen::Vector3d p(x_m - behind_m, beside_m, 0.0), way = p - p_last;
+    p_last = p;
+    return watch.IsAstray(t_ns, {p, kCovariance_m2}, way, {x_m, 0.0, 0.0});
+  }
+};
+
+TEST(PathWatch, ATipThatLeavesItsWayIsFoundAtTheLimit) {
+  Walk walk;
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(walk.Next(0.0002));
+  for (int i = 0; i < 40; ++i) {
+    const double beside_m = 0.0002 + 0.0001 * i;
+    // Within the filter's two deviations of the limit either is right.
+    if (std::abs(beside_m - 0.0018) < 0.0002) continue;
+    EXPECT_EQ(walk.Next(beside_m), beside_m > 0.0018) << i;
+  }
+}
+
+TEST(PathWatch, LaggingBehindIsNotLeaving) {
+  Walk walk;
+  for (int i = 0; i < 60; ++i) EXPECT_FALSE(walk.Next(0.0, std::min(walk.x_m, 0.006)));
+}
+
+TEST(PathWatch, ATipThatComesNearerMayGoOn) {
+  Walk walk;
+  EXPECT_TRUE(walk.Next(0.01, 0.0, false));
+  int found = 0;
+  for (int i = 0; i < 40; ++i) found += walk.Next(0.01 - 0.0002 * i, 0.0, false);
+  EXPECT_LE(found, 8);  // until a quarter of a second is known
+  EXPECT_TRUE(walk.Next(0.0065, 0.0, false));
+}
+
+TEST(PathWatch, AWishThatJumpsIsAWayToGo) {
+  Walk walk;
+  for (int i = 0; i < 10; ++i) walk.Next(0.0);
+  // The tip is still at the old wish, which is a part of the way.
+  walk.t_ns += kCycle_ns;
+  EXPECT_FALSE(walk.watch.IsAstray(walk.t_ns, {{walk.x_m, 0, 0}, kCovariance_m2}, {0, 0, 0},
+                                   {walk.x_m, 0.01, 0}));
+}
+
+TEST(PathWatch, AfterAHoldTheTipComesBackFromWhereItIs) {
+  Walk walk;
+  EXPECT_TRUE(walk.Next(0.005, 0.0, false));
+  walk.watch.ComeBack(walk.t_ns);
+  EXPECT_FALSE(walk.Next(0.005, 0.0, false));
+  EXPECT_FALSE(walk.Next(0.0048, 0.0, false));
+  EXPECT_TRUE(walk.Next(0.0053, 0.0, false));
+}
+
+TEST(PathWatch, WithoutALimitNothingIsFound) {
+  PathWatch watch(0.0, 0.0);
+  EXPECT_FALSE(watch.IsAstray(1, {{1, 0, 0}, kCovariance_m2}, {0, 0, 0}, {0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace flextip
