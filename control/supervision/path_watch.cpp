@@ -14,8 +14,13 @@ constexpr TimeNs kAhead_ns = 250'000'000;      // of the way before the wish
 constexpr TimeNs kSpan_ns = 120'000'000;       // some cycles, and less than a robot's lag
 constexpr TimeNs kComesBack_ns = 500'000'000;  // two lags of a robot
 constexpr TimeNs kTryAfter_ns = 1'000'000'000;
-constexpr double kCertain = 2.0;            // deviations of the tip
-constexpr double kModel = 0.3;              // of a motion may be otherwise than the model says
+constexpr TimeNs kOtherwise_ns = 400'000'000;  // for a tip that moves otherwise
+constexpr TimeNs kStepSpan_ns = 16'000'000;    // between steps that are kept
+constexpr double kTimes = 2.0;                 // what it may be astray
+constexpr double kNoise = 5.0;                 // deviations of a motion that is seen
+constexpr double kOtherPart = 0.7;  // of a motion that the wrist makes: tissue that is just touched
+constexpr double kCertain = 2.0;    // deviations of the tip
+constexpr double kModel = 0.3;      // of a motion may be otherwise than the model says
 constexpr double kOtherMotion_m_s = 0.003;  // tissue, breath
 constexpr TimeNs kGone_ns = 300'000'000;    // without a tip, and the filter begins again
 constexpr double kSurprise = 25.0;          // of chi-squared
@@ -53,6 +58,14 @@ Eigen::Vector3d PathWatch::NearestOnWay(TimeNs t_ns, const Eigen::Vector3d& p_wi
 
 /// The tip by its motion and by what is seen. A surprise is believed at once: it is no noise.
 void PathWatch::Follow(TimeNs t_ns, const PlaceKnown& seen, const Eigen::Vector3d& dp_RE) {
+  const Step& last = steps_[(next_step_ + kSize - 1) % kSize];
+  newest_ = {t_ns, seen,
+             newest_.led + (dp_RE.allFinite() ? dp_RE : Eigen::Vector3d::Zero().eval())};
+  if (steps_kept_ == 0 || t_ns - last.t_ns >= kStepSpan_ns) {
+    steps_[next_step_] = newest_;
+    next_step_ = (next_step_ + 1) % kSize;
+    steps_kept_ = std::min(steps_kept_ + 1, kSize);
+  }
   const bool known = tip_ns_ != 0 && t_ns - tip_ns_ < kGone_ns && dp_RE.allFinite();
   const double dt_s = 1e-9 * static_cast<double>(t_ns - tip_ns_);
   tip_ns_ = t_ns;
@@ -102,6 +115,22 @@ bool PathWatch::IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector
                                  : deviation_m_ > nearest_m_[2] - kCertain * sd_m;
   if (astray && astray_ns_ == 0) astray_ns_ = t_ns;
   return astray;
+}
+
+bool PathWatch::MovesOtherwise(TimeNs t_ns) const {
+  if (max_deviation_m_ <= 0.0) return false;
+  for (std::size_t i = 1; i <= steps_kept_; ++i) {
+    const Step& then = steps_[(next_step_ + kSize - i) % kSize];
+    if (t_ns - then.t_ns > kOtherwise_ns) return false;
+    const Eigen::Vector3d led = newest_.led - then.led;
+    const Eigen::Vector3d beside = newest_.seen.p - then.seen.p - led;
+    const double beside_m = beside.norm();
+    if (beside_m <= kTimes * max_deviation_m_) continue;
+    const Eigen::Matrix3d C = newest_.seen.covariance_m2 + then.seen.covariance_m2;
+    const double sd_m = std::sqrt(std::max(0.0, beside.dot(C * beside))) / beside_m;
+    if (beside_m > kNoise * sd_m + kOtherPart * led.norm()) return true;
+  }
+  return false;
 }
 
 void PathWatch::TryOnce(TimeNs t_ns) {

@@ -31,6 +31,11 @@ class PathWatch {
   bool IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector3d& dp_RE,
                 const Eigen::Vector3d& p_wish);
 
+  /// Returns whether the tip that IsAstray was given last moved otherwise than the wrist moved it,
+  /// in the last 0.4 s: by more than noise, more than half of the way, and more than it may be
+  /// astray. A caught tip does, and one that is thrown.
+  bool MovesOtherwise(TimeNs t_ns) const;
+
   /// Lets the tip come back from where it is now: for half a second it need only get no farther.
   void ComeBack(TimeNs t_ns) {
     from_ns_ = t_ns;
@@ -46,6 +51,13 @@ class PathWatch {
     Eigen::Vector3d p = Eigen::Vector3d::Zero();
   };
 
+  /// The tip as it was seen, and where the wrist's motion alone has led it.
+  struct Step {
+    TimeNs t_ns = 0;
+    PlaceKnown seen;
+    Eigen::Vector3d led = Eigen::Vector3d::Zero();
+  };
+
   void Follow(TimeNs t_ns, const PlaceKnown& seen, const Eigen::Vector3d& dp_RE);
   void Note(TimeNs t_ns, const Eigen::Vector3d& p_wish);
   Eigen::Vector3d NearestOnWay(TimeNs t_ns, const Eigen::Vector3d& p_wish) const;
@@ -53,6 +65,9 @@ class PathWatch {
   double max_deviation_m_, tolerance_m_;
   std::array<Wish, kSize> wishes_;  // a ring, the newest before next_
   std::size_t next_ = 0, count_ = 0;
+  std::array<Step, kSize> steps_;  // a ring, the newest before next_step_
+  Step newest_;
+  std::size_t next_step_ = 0, steps_kept_ = 0;
   PlaceKnown tip_;
   TimeNs tip_ns_ = 0;  // 0: never seen
   double deviation_m_ = 0.0;

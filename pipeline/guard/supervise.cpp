@@ -132,6 +132,7 @@ void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerC
       hold(path_watch_.IsAstray(inputs.t_ns, by_all_->tip, WayOfTip(command.measurements.p_RW),
                                 command.goal.p_RE_desired),
            Stop::kTipAstray);
+      hold(path_watch_.MovesOtherwise(inputs.t_ns), Stop::kModelDisagrees);
     }
     if (acts && !command.J_tip_wrist.isZero(0.0)) cycle.may_point_wrong = MayPointWrong(command);
   }

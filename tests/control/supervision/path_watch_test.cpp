@@ -68,6 +68,30 @@ TEST(PathWatch, AfterAHoldTheTipComesBackFromWhereItIs) {
   EXPECT_TRUE(walk.Next(0.0053, 0.0, false));
 }
 
+TEST(PathWatch, ATipThatDoesNotFollowTheWristIsFound) {
+  for (const double part : {1.0, 0.5, 0.1}) {
+    PathWatch watch(0.0018, 0.0);
+    bool found = false;
+    for (int i = 0; i < 20; ++i) {
+      const TimeNs t_ns = 1'000'000'000 + i * kCycle_ns;
+      const Eigen::Vector3d led(0.001, 0.0, 0.0), p = part * i * led;
+      watch.IsAstray(t_ns, {p, kCovariance_m2}, led, p);
+      found |= watch.MovesOtherwise(t_ns);
+    }
+    EXPECT_EQ(found, part < 0.4) << part;
+  }
+}
+
+TEST(PathWatch, ATipThatIsThrownMovesOtherwise) {
+  PathWatch watch(0.0018, 0.0);
+  for (int i = 0; i < 20; ++i) {
+    const TimeNs t_ns = 1'000'000'000 + i * kCycle_ns;
+    const Eigen::Vector3d p(0.0, i < 10 ? 0.0 : 0.004, 0.0);
+    watch.IsAstray(t_ns, {p, kCovariance_m2}, {0.0, 0.0, 0.0}, p);
+    EXPECT_EQ(watch.MovesOtherwise(t_ns), i >= 10) << i;  // for 0.4 s
+  }
+}
+
 TEST(PathWatch, WithoutALimitNothingIsFound) {
   PathWatch watch(0.0, 0.0);
   EXPECT_FALSE(watch.IsAstray(1, {{1, 0, 0}, kCovariance_m2}, {0, 0, 0}, {0, 0, 0}));
