@@ -41,6 +41,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   control/fixtures.h
   control/motion_error.h
   control/supervision/chi_squared.h
+  control/supervision/jerk_filter.h
   control/supervision/motion_guard.h
   control/supervision/path_watch.h
   control/supervision/rate_limits.h

@@ -108,6 +108,9 @@ void TaskReader::ReadSupervisor(const YamlMap& map) {
   rates.max_speed_m_s = section.PositiveOr("max_speed_m_s", rates.max_speed_m_s);
   rates.max_acceleration_m_s2 =
       section.PositiveOr("max_acceleration_m_s2", rates.max_acceleration_m_s2);
+  rates.max_jerk_m_s3 = section.PositiveOr("max_jerk_m_s3", rates.max_jerk_m_s3);
+  if (rates.max_jerk_m_s3 > 0.0 && rates.max_acceleration_m_s2 <= 0.0)
+    throw section.Error("max_jerk_m_s3", "expected max_acceleration_m_s2 beside it");
   options.resume_after_s = section.PositiveOr("resume_after_s", options.resume_after_s);
   options.fault_after_s = section.PositiveOr("fault_after_s", options.fault_after_s);
   options.stale_s = section.PositiveOr("stale_s", options.stale_s);

@@ -16,6 +16,7 @@ double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 constexpr double kLate = 1.5;  // of a cycle's time
 // Of three components at once, each normal, less than one in 1e7 is this many deviations long.
 constexpr double kDeviations = 6.0;
+constexpr double kSmoothed_m = 1e-5;  // by less the limit of jerk does not count as acting
 constexpr double kSettle_m = 0.0005;  // a servo may stay so far from its set-point
 
 /// How far a reading may be beside the commanded way.
@@ -85,14 +86,22 @@ Eigen::Vector3d Supervisor::Limit(const SupervisedCycle& cycle, Supervision& sup
   if (rates.max_step_m > 0.0 && cycle.p_RW)
     took(LimitStep(*cycle.p_RW, p, rates.max_step_m), Stop::kStep);
   const double dt_s = t_last_ns_ > 0 ? Seconds(cycle.t_ns - t_last_ns_) : 1.0 / options_.rate_hz;
-  const Eigen::Vector3d from = p_last_.value_or(cycle.p_RW.value_or(p));
+  Eigen::Vector3d from = p_last_.value_or(cycle.p_RW.value_or(p));
+  if (jerk_.Limits()) {
+    if (!p_limited_) jerk_.Reset(from);
+    from = p_limited_.value_or(from);
+  }
   if (rates.max_speed_m_s > 0.0) took(LimitSpeed(from, p, dt_s, rates.max_speed_m_s), Stop::kSpeed);
   if (rates.max_acceleration_m_s2 > 0.0) {
     took(LimitAcceleration(from, v_last_m_s_, p, dt_s, rates.max_acceleration_m_s2),
          Stop::kAcceleration);
   }
   v_last_m_s_ = (p - from) / dt_s;
-  return p;
+  if (!jerk_.Limits()) return p;
+  p_limited_ = p;
+  const Eigen::Vector3d smooth = jerk_.Next(p);
+  took({smooth, (smooth - p).norm() > kSmoothed_m}, Stop::kJerk);
+  return smooth;
 }
 
 /// Hold and fault: entered at once, left when the cause has been gone for long enough, or by a
@@ -225,6 +234,7 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
     }
   }
   moving_ = moves;
+  if (!moves) p_limited_.reset();
   if (decision.p_RW_command) Keep(cycle, *decision.p_RW_command);
   t_last_ns_ = cycle.t_ns;
   return decision;

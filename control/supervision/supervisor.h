@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "control/supervision/jerk_filter.h"
 #include "control/supervision/stops.h"
 #include "control/supervision/supervisor_options.h"
 #include "core/time_series.h"
@@ -27,7 +28,8 @@ struct SupervisedCycle {
 /// Decides over each command, and remembers. Allocates nothing.
 class Supervisor {
  public:
-  explicit Supervisor(const SupervisorOptions& options) : options_(options) {}
+  explicit Supervisor(const SupervisorOptions& options)
+      : options_(options), jerk_(options.rates, options.rate_hz) {}
 
   struct Decision {
     std::optional<Eigen::Vector3d> p_RW_command;  ///< empty before the wrist was ever measured
@@ -65,7 +67,9 @@ class Supervisor {
   void Judge(const SupervisedCycle& cycle, Decision& decision);
 
   SupervisorOptions options_;
-  std::array<Sent, kSize> sent_;  // a ring, the newest before next_
+  JerkFilter jerk_;
+  std::optional<Eigen::Vector3d> p_limited_;  // before the limit of jerk, while it moves
+  std::array<Sent, kSize> sent_;              // a ring, the newest before next_
   std::size_t next_ = 0, count_ = 0;
   std::optional<Eigen::Vector3d> p_last_, p_held_;
   Eigen::Vector3d v_last_m_s_ = Eigen::Vector3d::Zero();

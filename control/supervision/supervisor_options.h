@@ -24,6 +24,7 @@ struct RateLimits {
   double max_step_m = 0.0;  ///< from the measured wrist
   double max_speed_m_s = 0.0;
   double max_acceleration_m_s2 = 0.0;
+  double max_jerk_m_s3 = 0.0;  ///< needs a limit of acceleration
 };
 
 /// One standard deviation each of what counts as within specification: the tolerances of

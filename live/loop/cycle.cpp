@@ -54,7 +54,12 @@ bool Acts(ControlStatus status) {
 }  // namespace
 
 Cycle::Cycle(const Session& session, bool wait)
-    : session_(session), wait_(wait), controller_(OptionsOf(session), ModelOf(session)) {}
+    : session_(session),
+      wait_(wait),
+      controller_(OptionsOf(session), ModelOf(session)),
+      jerk_({.max_acceleration_m_s2 = session.limits.max_acceleration_m_s2,
+             .max_jerk_m_s3 = session.limits.max_jerk_m_s3},
+            session.rate_hz) {}
 
 /// The doubt in a clock grows with the time since it was found. The gain is found anew where it has
 /// grown by a tenth.
@@ -299,7 +304,8 @@ void Cycle::Command(const ControllerCommand& command, double dt_s, CycleOutputs&
   outputs.step_limited = step.limited;
   outputs.speed_limited = speed.limited;
   outputs.acceleration_limited = kept.limited;
-  outputs.p_RW_command = kept.p;
+  if (!moving_) jerk_.Reset(p_from);
+  outputs.p_RW_command = jerk_.Next(kept.p);
   v_last_m_s_ = (kept.p - p_from) / dt_s;
   p_last_ = kept.p;
   moving_ = true;

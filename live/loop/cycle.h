@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "control/supervision/jerk_filter.h"
 #include "control/tip_path.h"
 #include "core/robot/crtk.h"
 #include "live/loop/holds.h"
@@ -82,6 +83,7 @@ class Cycle {
   std::optional<Eigen::Vector3d> p_target_;           // of the controller, not yet limited
   Eigen::Vector3d p_last_ = Eigen::Vector3d::Zero();  // commanded
   Eigen::Vector3d v_last_m_s_ = Eigen::Vector3d::Zero();
+  JerkFilter jerk_;
   bool moving_ = false;                    // p_last_ is a set-point of motion
   bool wrist_waits_ = false;               // in the last cycle, by the supervisor
   std::optional<Eigen::Vector3d> p_held_;  // the wrist as measured when the hold began

@@ -66,6 +66,7 @@ struct LimitSetup {
   double max_step_m = 0.0;                ///< of a command from the measured wrist
   double max_speed_m_s = 0.0;             ///< of the commanded wrist
   double max_acceleration_m_s2 = 0.0;     ///< of the commanded wrist
+  double max_jerk_m_s3 = 0.0;             ///< of the commanded wrist; 0: no limit
   std::optional<WorkspaceBox> workspace;  ///< of the tip's goal
   double resume_after_s = 0.1;            ///< a hold ends so long after its cause
 };

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "control/supervision/jerk_filter.h"
 #include "core/error.h"
 #include "estimation/shaft_estimator.h"
 #include "live/session/address.h"
@@ -126,6 +127,17 @@ class SessionReader {
     limits.max_step_m = NumberIn(map, "max_step_m", kStep);
     limits.max_speed_m_s = NumberIn(map, "max_speed_m_s", kSpeed);
     limits.max_acceleration_m_s2 = NumberIn(map, "max_acceleration_m_s2", kAcceleration);
+    if (map.Has("max_jerk_m_s3")) {
+      const double least_m_s3 =
+          JerkFilter::Least_m_s3(limits.max_acceleration_m_s2, file_.session.rate_hz);
+      limits.max_jerk_m_s3 = map.Number("max_jerk_m_s3");
+      if (!(limits.max_jerk_m_s3 >= least_m_s3)) {
+        throw map.Error("max_jerk_m_s3",
+                        fmt::format("found {}, expected at least {:.3g} at this rate and "
+                                    "acceleration",
+                                    limits.max_jerk_m_s3, least_m_s3));
+      }
+    }
     limits.resume_after_s = NumberInOr(map, "resume_after_s", kTime, limits.resume_after_s);
     if (map.Has("workspace")) {
       const YamlMap box = file_.Section(map, "workspace");

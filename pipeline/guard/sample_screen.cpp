@@ -62,11 +62,12 @@ void SampleScreen::Forget() {
 
 /// What is wrong with a stream in this cycle; kNone where it can be used.
 Stop SampleScreen::Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& figures, bool finite,
-                        const std::optional<Eigen::Vector3d>& p_RW, double p_RW_sd_m) const {
+                        const std::optional<Eigen::Vector3d>& p_RW, double p_RW_sd_m) {
   if (!finite) return Stop::kNotFinite;
   if (past.arrived_ns != 0 && t_ns < past.t_ns) return Stop::kBadTime;
   if (Seconds(t_ns - now_ns) > kFuture_s) return Stop::kBadTime;
   if (past.arrived_ns == 0 || t_ns > past.t_ns) {
+    has_news_ = true;
     if (IsOfAnotherAge(past, Seconds(now_ns - t_ns))) return Stop::kBadTime;
     const TimeNs gap_ns = t_ns - past.t_ns;
     if (past.arrived_ns != 0) {
@@ -90,6 +91,7 @@ Stop SampleScreen::Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& f
 
 void SampleScreen::Screen(TimeNs t_ns, const std::optional<Eigen::Vector3d>& p_RW_sent,
                           SensorReadings& readings, Supervision& found) {
+  has_news_ = false;
   std::optional<Eigen::Vector3d> p_RW;
   double p_RW_sd_m = 0.0;
   if (readings.wrist) {

@@ -41,6 +41,9 @@ class SampleScreen {
   /// Returns whether the tip is farther from its last believed place than `distance_m`.
   bool TipIsFarther(double distance_m, const SensorReadings& readings) const;
 
+  /// Returns whether any sample is new since the last call of Screen.
+  bool HasNews() const { return has_news_; }
+
   /// Returns whether there is no tip, or no new one for too long.
   bool TipIsStale(TimeNs t_ns) const { return IsStale(tip_past_, t_ns); }
   /// Returns whether the next tip should have come by now.
@@ -73,7 +76,7 @@ class SampleScreen {
   };
 
   Stop Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& figures, bool finite,
-            const std::optional<Eigen::Vector3d>& p_RW, double p_RW_sd_m) const;
+            const std::optional<Eigen::Vector3d>& p_RW, double p_RW_sd_m);
   bool IsStale(const Past& past, TimeNs now_ns) const;
   bool IsOfAnotherAge(Past& past, double age_s) const;
   bool Jumps(const Place& last, const Place& now, double distance_from_tip_m,
@@ -85,6 +88,7 @@ class SampleScreen {
   SupervisorOptions options_;
   Past wrist_, tip_past_, em0_past_, em1_past_, strain_past_, load_past_;
   Place tip_, em_;
+  bool has_news_ = false;
 };
 
 }  // namespace flextip

@@ -66,7 +66,22 @@ std::optional<VotedShaft> SensorGuard::Vote(TimeNs t_ns, const ShaftChange& chan
     Hold(Stop::kTipJump, found);
     return {};
   }
-  return vote_.Vote(t_ns, jumped_, change, z, found);
+  const std::uint8_t voters = SensorsOf(z);
+  if (screen_.HasNews() || voters != voters_) {
+    voted_ = {};
+    voters_ = voters;
+    Measurements rest = z;
+    shaft_ = vote_.Vote(t_ns, jumped_, change, rest, voted_);
+  }
+  for (int i = 0; i < kVotedSensors; ++i) {
+    const auto sensor = static_cast<VotedSensor>(i);
+    if (IsOut(voted_, sensor)) Drop(sensor, z);
+  }
+  found.voted_out |= voted_.voted_out;
+  found.chi2 = voted_.chi2;
+  found.chi2_limit = voted_.chi2_limit;
+  if (voted_.reaction >= Reaction::kHold) Hold(voted_.stop, found);
+  return shaft_;
 }
 
 void SensorGuard::Believe(const LateSamples& late, const SensorReadings& readings,

@@ -42,6 +42,10 @@ class SensorGuard {
   SupervisorOptions options_;
   SampleScreen screen_;
   SensorVote vote_;
+  // The last vote: it stands until there is a new sample.
+  Supervision voted_;
+  std::optional<VotedShaft> shaft_;
+  std::uint8_t voters_ = 0;  // the sensors it was of, as bits
   std::uint8_t jumped_ = 0;  // in this cycle, bits as Supervision::voted_out
 };
 

@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "live/recorder/recorder.h"
 #include "live/recorder/replay.h"
@@ -140,6 +143,34 @@ TEST_F(Running, KeepsItsRateLimits) {
     p = last.p_RW_command;
     v = v_now;
   }
+}
+
+std::string WithJerk() {
+  std::string text = SessionText();
+  const std::string limit = "max_acceleration_m_s2: 1.0";
+  return text.replace(text.find(limit), limit.size(), limit + ", max_jerk_m_s3: 20");
+}
+
+struct RunningSmoothly : Running {
+  RunningSmoothly() : Running(WithJerk()) {}
+};
+
+TEST_F(RunningSmoothly, KeepsItsLimitOfJerk) {
+  RunUntilMoving();
+  std::vector<Eigen::Vector3d> p{last.p_RW_command};
+  for (int i = 0; i < 100; ++i) {
+    Step();
+    ASSERT_EQ(last.hold, Hold::kNone);
+    p.push_back(last.p_RW_command);
+  }
+  double largest_m_s3 = 0.0;
+  for (std::size_t i = 3; i < p.size(); ++i) {
+    const Eigen::Vector3d third = p[i] - 3.0 * p[i - 1] + 3.0 * p[i - 2] - p[i - 3];
+    largest_m_s3 = std::max(largest_m_s3, third.norm() / 1e-6);  // cycles of 10 ms
+  }
+  EXPECT_LE(largest_m_s3, 20.0 * (1 + 1e-6));
+  EXPECT_GT(largest_m_s3, 1.0);
+  EXPECT_GT((p.back() - p.front()).norm(), 0.001);
 }
 
 TEST_F(Running, TimeThatStandsIsAHold) {

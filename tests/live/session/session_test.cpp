@@ -50,6 +50,12 @@ TEST(Session, NumbersInAnotherUnitAreRefusedWithTheirLine) {
               HasSubstr("found 50"));
 }
 
+TEST(Session, AJerkThatCannotBeKeptIsRefused) {
+  const std::string limit = "max_acceleration_m_s2: 1.0";
+  EXPECT_EQ(Complaint(limit, limit + ", max_jerk_m_s3: 10"), "");
+  EXPECT_THAT(Complaint(limit, limit + ", max_jerk_m_s3: 3"), HasSubstr("at least 3.12"));
+}
+
 /// The session with the strain gages by another protocol.
 std::string StrainBy(const std::string& address) {
   return Complaint("openigtlink: {port: 18944, device: strain0}", address);
