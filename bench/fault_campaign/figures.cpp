@@ -86,7 +86,7 @@ std::vector<FaultRecord> Worst(const std::vector<FaultRecord>& records, std::siz
   }
   std::vector<FaultRecord> worst;
   for (const FaultRecord& r : records)
-    if (r.kind == strictest && r.hazard != "none") worst.push_back(r);
+    if (r.kind == strictest && !r.coarse && r.hazard != "none") worst.push_back(r);
   std::stable_sort(worst.begin(), worst.end(), [](const FaultRecord& a, const FaultRecord& b) {
     return a.hazard_deviation_m - a.healthy_deviation_m >
            b.hazard_deviation_m - b.healthy_deviation_m;

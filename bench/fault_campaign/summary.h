@@ -39,7 +39,7 @@ struct KindFigures {
 std::vector<KindFigures> FiguresOf(const std::vector<FaultRecord>& records);
 
 /// Returns the `count` runs with a hazard that went farthest, of the strictest kind of supervision
-/// there is.
+/// there is. Coarse runs go far by themselves and are left out.
 std::vector<FaultRecord> Worst(const std::vector<FaultRecord>& records, std::size_t count);
 
 /// Joins the cases, kind by kind.
