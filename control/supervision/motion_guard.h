@@ -24,6 +24,12 @@ class MotionGuard {
   double Update(const Eigen::Matrix3d& J_hat, const ShaftEstimate& estimate,
                 const Eigen::Vector3d& p_RW);
 
+  void VisitState(StateText& state) {
+    state(rod_);
+    state(seen_rad_);
+    state(axis_);
+  }
+
  private:
   static constexpr int kAxes = 9;
   double AngleAt(const Eigen::Matrix3d& J_hat, const ShaftEstimate& estimate,

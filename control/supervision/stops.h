@@ -41,6 +41,7 @@ enum class Reaction : std::uint8_t {
   kHold,   ///< the wrist stays, the cycle watches and goes on by itself
   kFault   ///< the wrist stays until a person resumes
 };
+inline constexpr int kReactions = static_cast<int>(Reaction::kFault) + 1;
 const char* Name(Reaction reaction);
 
 /// The sensors that are held against each other, as bits of Supervision::voted_out.

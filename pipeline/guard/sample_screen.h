@@ -51,6 +51,13 @@ class SampleScreen {
   /// Takes what is measured next as believed: a person says that it is right.
   void Forget() { tip_.known = em_.known = false; }
 
+  void VisitState(StateText& state) {
+    for (Past* past : {&wrist_, &tip_past_, &em0_past_, &em1_past_, &strain_past_, &load_past_})
+      state(*past);
+    state(tip_);
+    state(em_);
+  }
+
  private:
   using Figures = Eigen::Matrix<double, 6, 1>;
   /// The samples of a stream.
@@ -60,12 +67,25 @@ class SampleScreen {
     int repeats = 0;                  // of the same figures at new times
     Figures figures = Figures::Zero();
     Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();  // the wrist at the first of them
+    void VisitState(StateText& state) {
+      for (TimeNs* time : {&t_ns, &arrived_ns, &gap_ns}) state(*time);
+      state(repeats);
+      state(figures);
+      state(p_RW);
+    }
   };
   struct Place {
     bool known = false;
     Eigen::Vector3d p = Eigen::Vector3d::Zero(), p_RW = Eigen::Vector3d::Zero();
     TimeNs t_ns = 0;
     double sd_m = 0.0;
+    void VisitState(StateText& state) {
+      state(known);
+      state(p);
+      state(p_RW);
+      state(t_ns);
+      state(sd_m);
+    }
   };
 
   Stop Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& figures, bool finite,

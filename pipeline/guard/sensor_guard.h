@@ -35,6 +35,12 @@ class SensorGuard {
   /// Takes the next places as they come: a person says that they are right.
   void Forget() { screen_.Forget(); }
 
+  void VisitState(StateText& state) {
+    state(screen_);
+    state(vote_);
+    state(jumped_);
+  }
+
  private:
   SupervisorOptions options_;
   SampleScreen screen_;

@@ -26,6 +26,13 @@ class SensorVote {
   bool Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& change, Measurements& z,
             Supervision& found);
 
+  void VisitState(StateText& state) {
+    state(all_);
+    state(without_one_);
+    state(loose_port_);
+    state(out_ns_);
+  }
+
  private:
   /// The agreement of all sensors but one.
   struct Ballot {
