@@ -28,6 +28,7 @@
 #include "report/pages.h"
 #include "simulation/closed_loop/excerpt.h"
 #include "simulation/closed_loop/given_streams.h"
+#include "simulation/closed_loop/loop_table.h"
 #include "simulation/closed_loop/scenario_run.h"
 #include "simulation/sensors/sensors.h"
 #include "task/path_time.h"

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "diagnosis/model/extended_model.h"
 #include "simulation/closed_loop/closed_loop.h"
+#include "simulation/closed_loop/loop_table.h"
 #include "simulation/closed_loop/scenario_run.h"
 
 namespace flextip::simulation {

@@ -14,6 +14,7 @@
 #include "recording/recording_writer.h"
 #include "recording/text/text.h"
 #include "simulation/closed_loop/given_streams.h"
+#include "simulation/closed_loop/loop_table.h"
 #include "simulation/closed_loop/scenario_run.h"
 
 namespace flextip::simulation {
