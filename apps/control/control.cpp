@@ -50,8 +50,15 @@ std::unique_ptr<live::Page> OpenPage(const ControlCommandOptions& options,
 }
 
 /// The run is over and recorded: what goes wrong with its excerpts is a warning.
-StopsOfRun CutStops(OutputFolder& output) {
+StopsOfRun CutStops(OutputFolder& output, bool quiet) {
   try {
+    ReadLog log;
+    const std::size_t found = live::FindStops(output.folder(), log).size();
+    if (found > 0 && !quiet) {
+      // Minutes of a long run take some seconds.
+      fmt::print("{} {}: cutting out the last seconds\n", found, found == 1 ? "stop" : "stops");
+      std::fflush(stdout);
+    }
     return live::WriteExcerpts(output.folder(), output.folder());
   } catch (const std::exception& error) {
     output.Warn(fmt::format("no excerpts of stops: {}", error.what()));
@@ -89,7 +96,7 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
   if (recorder.Dropped() > 0)
     output.Warn(fmt::format("{} samples and cycles were not recorded: the disk was too slow",
                             recorder.Dropped()));
-  const StopsOfRun stops = loop.only_timing ? StopsOfRun() : CutStops(output);
+  const StopsOfRun stops = loop.only_timing ? StopsOfRun() : CutStops(output, quiet);
   nlohmann::ordered_json summary = ReportJson(session, report, loop.only_timing);
   AddStopsJson(stops, summary);
   output.WriteSummary(summary);

@@ -157,7 +157,7 @@ TEST(Picture, HasColumns) {
   WritePicture(folder / "four.png", {left, right, right, left}, 2);
   const cv::Mat one = cv::imread((folder / "one.png").string());
   const cv::Mat four = cv::imread((folder / "four.png").string());
-  EXPECT_EQ(four.size(), 2 * one.size());
+  EXPECT_EQ(four.size(), cv::Size(2 * one.cols, 2 * one.rows));
   const cv::Rect cell(0, 0, one.cols, one.rows);
   EXPECT_EQ(BoxOf(four(cell), 255, 0, 0), BoxOf(one, 255, 0, 0));
   EXPECT_EQ(BoxOf(four(cell + cv::Point(one.cols, one.rows)), 255, 0, 0), BoxOf(one, 255, 0, 0));
