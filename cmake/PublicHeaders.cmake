@@ -83,6 +83,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   estimation/instrument_model.h
   estimation/measurements.h
   estimation/rod_fit.h
+  estimation/saved_state.h
   estimation/shaft_change.h
   estimation/shaft_estimator.h
   estimation/shaft_model.h

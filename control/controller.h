@@ -78,6 +78,8 @@ class HeldWrist {
     return p_RW_;
   }
 
+  void VisitState(StateText& state) { state(p_RW_); }
+
  private:
   Eigen::Vector3d p_RW_ = Eigen::Vector3d::Zero();
 };
@@ -92,6 +94,11 @@ class TipController {
 
   const ControllerOptions& Options() const { return options_; }
   void SetGain(double gain) { options_.gain = gain; }
+
+  void VisitState(StateText& state) {
+    state(wrist_);
+    state(rod_);
+  }
 
  private:
   ControllerOptions options_;

@@ -80,6 +80,11 @@ class DirectionController {
 
   DirectionOutput Step(const DirectionInput& input);
 
+  void VisitState(StateText& state) {
+    state(wrist_);
+    state(rod_);
+  }
+
  private:
   Eigen::Vector3d Weighted(const Eigen::Vector3d& dp, const Eigen::Vector3d& dd,
                            DirectionOutput& output) const;

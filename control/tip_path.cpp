@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/linear_algebra/segment.h"
 #include "core/rotation.h"
 
@@ -27,6 +28,14 @@ Eigen::Vector3d TipPath::Along(std::size_t leg, double travelled_m) const {
   const double length = LegLength(leg);
   if (travelled_m >= length) return points_[leg + 1];
   return points_[leg] + travelled_m / length * (points_[leg + 1] - points_[leg]);
+}
+
+void TipPath::VisitState(StateText& state) {
+  state(leg_);
+  state(travelled_m_);
+  state(updates_);
+  state(done_);
+  if (leg_ + 1 >= points_.size()) throw InputError("saved state: a leg that the path has not");
 }
 
 Eigen::Vector3d TipPath::Advance(const Eigen::Vector3d& p_RE_known) {

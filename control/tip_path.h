@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/pose.h"
+#include "core/state_text.h"
 
 namespace flextip {
 
@@ -46,6 +47,9 @@ class TipPath {
   double Deviation(const Eigen::Vector3d& p) const;
   /// Returns the largest number of updates that the path takes.
   int MaxUpdates() const;
+
+  /// Visits the place on the path. The path itself must be the same one.
+  void VisitState(StateText& state);
 
  private:
   Eigen::Vector3d AdvanceContinuous();

@@ -5,11 +5,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "core/error.h"
@@ -36,9 +38,20 @@ class StateText {
     Number(number);
     value = number != 0;
   }
+  template <typename T>
+  requires std::is_enum_v<T> || std::is_unsigned_v<T>
+  void operator()(T& value) {
+    auto number = static_cast<std::int64_t>(value);
+    (*this)(number);
+    value = static_cast<T>(number);
+  }
   template <int kRows, int kColumns>
   void operator()(Eigen::Matrix<double, kRows, kColumns>& matrix) {
     for (double& value : matrix.reshaped()) (*this)(value);
+  }
+  template <typename T, std::size_t kSize>
+  void operator()(std::array<T, kSize>& values) {
+    for (T& value : values) (*this)(value);
   }
   void operator()(Pose& pose) {
     (*this)(pose.R);
@@ -47,6 +60,10 @@ class StateText {
   template <typename T>
   requires requires(T& object, StateText& state) { object.VisitState(state); }
   void operator()(T& object) { object.VisitState(*this); }
+  /// A type without such a function may have a free one, `VisitState(T&, StateText&)`.
+  template <typename T>
+  requires requires(T& object, StateText& state) { VisitState(object, state); }
+  void operator()(T& object) { VisitState(object, *this); }
   template <typename T>
   void operator()(std::optional<T>& value) {
     if (IsThere(value.has_value())) {

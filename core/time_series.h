@@ -19,6 +19,13 @@ struct Sample {
   bool operator==(const Sample&) const = default;
 };
 
+/// Visits a sample as a part of a saved state (state_text.h).
+template <class T, class State>
+void VisitState(Sample<T>& sample, State& state) {
+  state(sample.t_ns);
+  state(sample.value);
+}
+
 /// How much later than it was taken a sample is stamped, or arrives.
 struct Latency {
   double value_s = 0.0, sd_s = 0.0;

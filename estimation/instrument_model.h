@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 
+#include "core/state_text.h"
 #include "core/time_series.h"
 #include "estimation/measurements.h"
 #include "estimation/shaft_change.h"
@@ -25,6 +26,8 @@ class InstrumentModel {
   /// Returns the standard deviation (m) of the instrument's length: how far along the shaft the tip
   /// may be from where the estimate has it.
   virtual double LengthSd() const { return 0.0; }
+  /// Visits what it remembers.
+  virtual void VisitState(StateText& state) = 0;
 
  protected:
   InstrumentModel() = default;

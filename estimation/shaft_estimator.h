@@ -80,6 +80,14 @@ class ShaftEstimator {
   /// Forgets the past: warm start, tissue and the shift of SetPort.
   void Reset();
 
+  void VisitState(StateText& state) {
+    state(solver_);
+    state(last_force_N_);
+    state(port_shift_m_);
+    state(port_whitening_);
+    state(tissue_);
+  }
+
  private:
   bool FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   bool Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);

@@ -55,6 +55,11 @@ class ShaftRod {
 
   void Reset();
 
+  void VisitState(StateText& state) {
+    state(plain_);
+    state(effects_);
+  }
+
  private:
   ShaftRodState SolvePlain(const RodProblem& problem, std::span<const RodStation> stations);
   ShaftRodState SolveEffects(const EffectRodProblem& problem, std::span<const RodStation> stations);

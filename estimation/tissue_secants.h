@@ -4,6 +4,8 @@
 
 #include <Eigen/Dense>
 
+#include "core/state_text.h"
+
 namespace flextip {
 
 /// Least squares of df = K dp, K symmetric, over secants at least 2 mm long, the old ones fading,
@@ -18,6 +20,16 @@ class TissueSecants {
   /// Returns df/dp (N/m), negative semidefinite: tissue only pushes back. Zero before the first
   /// secant and where the tip has travelled little.
   const Eigen::Matrix3d& Stiffness() const { return stiffness_N_m_; }
+
+  void VisitState(StateText& state) {
+    state(has_reference_);
+    state(p_reference_);
+    state(f_reference_N_);
+    state(reference_covariance_N2_);
+    state(information_);
+    state(weighted_);
+    state(stiffness_N_m_);
+  }
 
  private:
   using Vector6d = Eigen::Matrix<double, 6, 1>;  // xx, yy, zz, yz, xz, xy

@@ -50,6 +50,13 @@ class WindowEstimator {
   /// Forgets the past.
   void Reset();
 
+  void VisitState(StateText& state) {
+    state(latest_);
+    state(port_);
+    state(status_);
+    state(updates_);
+  }
+
  private:
   void Add(const Measurements& measurements, const ShaftChange& change,
            const ShaftEstimate& estimate);

@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/error.h"
 #include "core/linear_algebra.h"
+#include "estimation/saved_state.h"
 
 namespace flextip {
 namespace {
@@ -34,6 +36,25 @@ void WindowPort::Reset() {
   size_ = 0;
   shift_m_.setZero();
   covariance_m2_ = PriorCovariance(prior_m_);
+}
+
+void WindowPort::VisitState(StateText& state) {
+  state(size_);
+  if (size_ < 0 || size_ > capacity_) throw InputError("saved state: no size of a window");
+  for (int i = 0; i < size_; ++i) {
+    WindowSample& sample = samples_[static_cast<std::size_t>(i)];
+    state(sample.measurements);
+    flextip::VisitState(sample.shaft, state);
+    state(sample.prior.mean);
+    state(sample.prior.sd);
+    state(sample.prior.port_whitening);
+    state(sample.own);
+    state(sample.solver);
+    state(sample.number);
+  }
+  state(shift_m_);
+  state(covariance_m2_);
+  state(cost_);
 }
 
 void WindowPort::Remove(int index) {

@@ -43,6 +43,7 @@ class WindowPort {
   int Size() const { return size_; }
   double Chi2() const { return cost_; }
   void Reset();
+  void VisitState(StateText& state);
 
  private:
   /// A sample's share, linearised.

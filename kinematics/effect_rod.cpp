@@ -16,6 +16,33 @@ constexpr int kMaxNewton = 20;
 constexpr double kMaxTurn = 0.4;      // of the wrist tangent in one Newton step (rad)
 constexpr double kMinStretch = 1e-6;  // shortest stretch on either side of the port, of the length
 
+}  // namespace
+
+void VisitState(RodEffects& effects, StateText& state) {
+  state(effects.y_wrist);
+  state(effects.curvature_1_m);
+  state(effects.port_compliance_m_N);
+  state(effects.wrist_compliance_m_N);
+  state(effects.port_couple_Nm);
+  state(effects.port_friction);
+  state(effects.q_inside_N_m);
+}
+
+void EffectRodSolver::VisitState(StateText& state) {
+  state(warm_);
+  if (!warm_) return;
+  state(x_.t_wrist);
+  state(x_.torsion);
+  state(x_.s_port);
+  state(x_.r);
+  state(y_);
+  state(z_);
+  state(inputs_);
+  state(dx_);
+}
+
+namespace {
+
 using UnknownsByInputs = Eigen::Matrix<double, kUnknowns, rod_input::kCount>;
 
 bool IsPlausible(const EffectRodProblem& problem, std::span<const RodStation> stations) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <span>
 
+#include "core/state_text.h"
 #include "kinematics/rod.h"
 
 namespace flextip {
@@ -30,6 +31,8 @@ struct RodEffects {
   double port_friction = 0.0;
   Eigen::Vector3d q_inside_N_m = Eigen::Vector3d::Zero();  ///< on the part beyond the port
 };
+
+void VisitState(RodEffects& effects, StateText& state);
 
 struct EffectRodProblem {
   RodProblem rod;
@@ -111,6 +114,9 @@ class EffectRodSolver {
   EffectRodState Solve(const EffectRodProblem& problem, std::span<const RodStation> stations = {});
 
   void Reset() { warm_ = false; }
+
+  /// Visits what the next solve starts from.
+  void VisitState(StateText& state);
 
  private:
   // The last equilibrium and how it follows its inputs: a warm start for the next.

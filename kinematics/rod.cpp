@@ -40,6 +40,16 @@ Eigen::Matrix3d RodState::J_tip_wrist(const Eigen::Matrix3d& stiffness) const {
   return (Eigen::Matrix3d::Identity() - C * stiffness).inverse() * tip.dp.leftCols<3>();
 }
 
+void VisitState(RodProblem& problem, StateText& state) {
+  state(problem.length_m);
+  state(problem.bending_stiffness_Nm2);
+  state(problem.p_wrist);
+  state(problem.p_port);
+  state(problem.f_tip);
+  state(problem.q_weight);
+  state(problem.stiffness_taper);
+}
+
 RodSolver::Unknowns RodSolver::StraightGuess(const Scaled& scaled) {
   const double d = scaled.span.norm();
   const Eigen::Vector3d t = scaled.span / d;
@@ -79,6 +89,20 @@ RodState RodSolver::Solve(const RodProblem& problem) {
   Keep(problem, x, e);
   FillState(e, state);
   return state;
+}
+
+void RodSolver::VisitState(StateText& state) {
+  state(warm_);
+  state(predicted_);
+  state(missed_);
+  if (!warm_) return;
+  flextip::VisitState(problem_, state);
+  state(x_.t_tip);
+  state(x_.y_tip);
+  state(x_.sigma_port);
+  state(x_.r);
+  state(inverse_);
+  state(dx_);
 }
 
 int RodSolver::SolveWarm(const RodProblem& problem, const Scaled& scaled, Unknowns& x,

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <cstdint>
 
+#include "core/state_text.h"
 #include "kinematics/rod/point.h"
 
 namespace flextip {
@@ -23,6 +24,8 @@ struct RodProblem {
   /// RodSolver takes 0 only.
   double stiffness_taper = 0.0;
 };
+
+void VisitState(RodProblem& problem, StateText& state);
 
 enum class RodStatus : std::uint8_t {
   kOk,
@@ -79,6 +82,9 @@ class RodSolver {
 
   /// Forgets the last equilibrium: the next solve starts from the straight shaft.
   void Reset() { warm_ = false; }
+
+  /// Visits what the next solve starts from. Section() needs a solve first.
+  void VisitState(StateText& state);
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "control/delay_gain.h"
+#include "core/check.h"
 #include "core/error.h"
 #include "pipeline/tip_fusion.h"
 
@@ -88,6 +89,35 @@ void InstrumentController::SetTimeDeviations(double tip_sd_s, double em0_sd_s) {
   late_.SetTimeDeviations(tip_sd_s, em0_sd_s);
   place_.SetGain(GainOf(options_.control.gain, options_));
   if (direction_) direction_->SetGain(GainOf(options_.direction->gain, options_));
+}
+
+void InstrumentController::VisitState(StateText& state) {
+  FLEXTIP_CHECK(!tracker_, "a controller that is given tips");
+  state(options_.late.tip_time_sd_s);
+  state(options_.late.em0_time_sd_s);
+  if (state.Reading()) SetTimeDeviations(options_.late.tip_time_sd_s, options_.late.em0_time_sd_s);
+  if (model_) state(*model_);
+  state(estimator_);
+  state(place_);
+  if (direction_) state(*direction_);
+  state(tip_t_ns_);
+  state(tip_is_hidden_);
+  state(path_watch_);
+  state(by_all_);
+  state(p_RW_watched_);
+  state(guard_);
+  state(motion_guard_);
+  state(supervisor_);
+  state(by_others_);
+  state(p_RE_last_);
+  state(p_RE_offset_);
+  state(between_);
+  state(without_tip_);
+  state(late_);
+  state(carries_);
+  state(tip_is_carried_);
+  state(shaft_);
+  state(f_tip_N_);
 }
 
 ControllerCommand InstrumentController::Step(const ControllerInputs& inputs) {

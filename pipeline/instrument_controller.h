@@ -87,6 +87,10 @@ class InstrumentController {
   /// Takes the command that really went out in the last cycle, where the caller limited it further.
   void NoteSent(const Eigen::Vector3d& p_RW) { supervisor_.NoteSent(p_RW); }
 
+  /// Visits what the next step starts from, bit for bit: a controller of the same options goes on
+  /// where the other was. Not for one with a tracker.
+  void VisitState(StateText& state);
+
   /// Returns the tracker's result for the last pictures; empty before the first.
   const std::optional<TipTrack>& Track() const { return track_; }
   /// Returns the gain that the controllers have, with the delay's part taken off.

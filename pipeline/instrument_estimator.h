@@ -24,6 +24,12 @@ class InstrumentEstimator {
   /// Returns the window's estimate of the last update; null without a window and before the first.
   const WindowEstimate* Window() const { return window_estimate_ ? &*window_estimate_ : nullptr; }
 
+  /// Visits what the next update starts from; the last one's result is not kept.
+  void VisitState(StateText& state) {
+    state(single_);
+    if (window_) state(*window_);
+  }
+
  private:
   ShaftEstimator single_;
   std::optional<WindowEstimator> window_;

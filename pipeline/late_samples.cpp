@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/wrist_step.h"
+#include "core/error.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 
@@ -28,6 +29,23 @@ Place PlaceOn(const ShaftRodState& rod, double distance_from_tip_m) {
 }
 
 }  // namespace
+
+void LateSamples::VisitState(StateText& state) {
+  state(options_.tip_time_sd_s);
+  state(options_.em0_time_sd_s);
+  state(history_);
+  state(by_sensors_count_);
+  const std::size_t size = by_sensors_.size();
+  if (by_sensors_count_ > size) throw InputError("saved state: more tips than are kept");
+  if (state.Reading()) next_ = by_sensors_count_ % size;
+  for (std::size_t i = by_sensors_count_; i > 0; --i) state(by_sensors_[(next_ + size - i) % size]);
+  state(tip_);
+  state(tip_first_ns_);
+  state(tip_rods_);
+  state(em0_rods_);
+  state(load_);
+  state(drift_variance_N2_s_);
+}
 
 void LateSamples::Note(const SensorReadings& readings) { history_.Add(readings); }
 

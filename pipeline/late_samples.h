@@ -66,6 +66,8 @@ class LateSamples {
   /// Returns whether the tip now is one that was carried on.
   bool Carry(const ShaftModel& model, SensorReadings& readings);
 
+  void VisitState(StateText& state);
+
  private:
   /// The motion of one place of the shaft since a time.
   struct Motion {
@@ -79,11 +81,20 @@ class LateSamples {
   };
   struct Rods {
     ShaftRod then, now;
+    void VisitState(StateText& state) {
+      state(then);
+      state(now);
+    }
   };
   struct TipBySensors {
     TimeNs t_ns = 0;
     Eigen::Vector3d p_RE = Eigen::Vector3d::Zero();
     Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
+    void VisitState(StateText& state) {
+      state(t_ns);
+      state(p_RE);
+      state(covariance_m2);
+    }
   };
 
   std::optional<Motion> MotionByRod(TimeNs t_ns, double time_sd_s,

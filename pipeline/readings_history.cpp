@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
+
 namespace flextip {
 namespace {
 
@@ -33,6 +35,14 @@ LoadMeasurement Between(LoadMeasurement a, const LoadMeasurement& b, double u) {
 }
 
 }  // namespace
+
+void ReadingsHistory::VisitState(StateText& state) {
+  state(count_);
+  if (count_ > kSize) throw InputError("saved state: more readings than are kept");
+  // The oldest comes first, wherever the ring began.
+  if (state.Reading()) first_ = 0;
+  for (std::size_t i = 0; i < count_; ++i) state(ring_[(first_ + i) % kSize]);
+}
 
 void ReadingsHistory::Add(const SensorReadings& readings) {
   if (!readings.wrist) return;

@@ -31,6 +31,8 @@ class ReadingsHistory {
   /// Returns the wrist's velocity (m/s, in R) about `t_ns`, over 40 ms; zero where it is not known.
   Eigen::Vector3d WristVelocityAt(TimeNs t_ns) const;
 
+  void VisitState(StateText& state);
+
  private:
   static constexpr std::size_t kSize = 256;
   /// Returns the i-th readings, the oldest first.

@@ -89,6 +89,27 @@ void AddClocks(const Recording& r, TimeNs t_ns, SensorReadings& readings) {
 
 }  // namespace
 
+void VisitState(WristMeasurement& wrist, StateText& state) {
+  state(wrist.p_RW);
+  state(wrist.R_RW);
+  state(wrist.position_noise_m);
+  state(wrist.orientation_noise_rad);
+}
+
+void VisitState(TipMeasurement& tip, StateText& state) {
+  state(tip.tip);
+  state(tip.direction_noise_rad);
+}
+
+void VisitState(SensorReadings& readings, StateText& state) {
+  state(readings.wrist);
+  state(readings.tip);
+  state(readings.em0);
+  state(readings.em1);
+  state(readings.strain);
+  state(readings.load);
+}
+
 WristMeasurement Measured(const WristStream& stream, const WristSample& sample) {
   WristMeasurement wrist{sample.p_RW, {}, stream.position_noise_m, stream.orientation_noise_rad};
   if (sample.q_RW) wrist.R_RW = sample.q_RW->toRotationMatrix();

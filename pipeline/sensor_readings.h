@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/time_series.h"
-#include "estimation/measurements.h"
+#include "estimation/saved_state.h"
 #include "recording/recording.h"
 
 namespace flextip {
@@ -34,6 +34,10 @@ struct SensorReadings {
   std::optional<Sample<StrainMeasurement>> strain;
   std::optional<Sample<LoadMeasurement>> load;
 };
+
+void VisitState(WristMeasurement& wrist, StateText& state);
+void VisitState(TipMeasurement& tip, StateText& state);
+void VisitState(SensorReadings& readings, StateText& state);
 
 /// Returns a stream's sample with the stream's noise.
 WristMeasurement Measured(const WristStream& stream, const WristSample& sample);

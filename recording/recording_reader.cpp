@@ -10,9 +10,9 @@
 namespace flextip {
 namespace {
 
-const std::set<std::string> kKnownFolders = {"wrist0",  "command0", "em0",    "em1",
-                                             "strain0", "load0",    "cam0",   "cam1",
-                                             "tags0",   "vision0",  "truth0", "session0"};
+const std::set<std::string> kKnownFolders = {"wrist0", "command0", "em0",   "em1",   "strain0",
+                                             "load0",  "cam0",     "cam1",  "tags0", "vision0",
+                                             "truth0", "session0", "loop0", "stops"};
 
 void WarnOfUnknownFolders(const std::filesystem::path& folder, ReadLog& log) {
   std::set<std::string> unknown;

@@ -57,6 +57,7 @@ Json TraceJson(const FigureTrace& trace) {
   if (!trace.colors.empty()) json["colors"] = trace.colors;
   if (!trace.color.empty()) json["color"] = trace.color;
   if (!trace.symbol.empty()) json["symbol"] = trace.symbol;
+  if (trace.width > 0.0) json["width"] = trace.width;
   if (trace.dashed) json["dashed"] = true;
   if (trace.arrow) json["arrow"] = true;
   return json;
@@ -89,6 +90,7 @@ Json FigureJson(const Figure& figure) {
   for (const auto& trace : figure.traces) json["traces"].push_back(TraceJson(trace));
   if (!figure.z_label.empty()) json["z_label"] = figure.z_label;
   if (figure.lying_bars) json["lying_bars"] = true;
+  if (!figure.y_names.empty()) json["y_names"] = figure.y_names;
   for (const auto& band : figure.bands) {
     json["bands"].push_back({{"from", band.from}, {"to", band.to}, {"color", band.color}});
   }

@@ -24,6 +24,7 @@ struct FigureTrace {
   std::string color = {};                ///< as in CSS; empty: the page chooses
   std::vector<std::string> colors = {};  ///< the bars' colours, in place of `color`
   std::string symbol = {};               ///< the points' symbol, named by Plotly ("circle-open")
+  double width = 0.0;                    ///< of a line, in px; 0: the page's
   bool dashed = false;
   bool arrow = false;  ///< the line's last point has a head
 };
@@ -56,6 +57,7 @@ struct Figure {
   std::vector<FigureField> fields = {};  ///< none or one
   std::vector<FigureTrace> traces = {};  ///< on top of the field; all in space, or none
   std::vector<FigureBand> bands = {};
+  std::vector<std::string> y_names = {};  ///< of the rows 0, 1, 2 ... in place of y's numbers
 
   bool InSpace() const { return !traces.empty() && !traces.front().z.empty(); }
 };

@@ -21,8 +21,11 @@ void WriteSimulateReport(const std::filesystem::path& folder);
 void WriteTrackReport(const std::filesystem::path& folder);
 /// Every column of state0/data.csv over time.
 void WriteEstimateReport(const std::filesystem::path& folder);
-/// The tip and its goal from session0/cycles.csv; the times of the cycles from figures.json.
+/// What stopped it, from the excerpts in FOLDER/stops; the tip and its goal from
+/// session0/cycles.csv; the times of the cycles from figures.json.
 void WriteControlReport(const std::filesystem::path& folder);
+/// A stop's sentence and picture, from the summary and stop.csv of an excerpt.
+void WriteExcerptReport(const std::filesystem::path& folder);
 /// What is wrong and what is doubtful, each with its mend; the streams.
 void WriteCheckReport(const std::filesystem::path& folder);
 /// The picture of a shape, or the table shapes.csv of a batch.

@@ -54,7 +54,9 @@ bool IsTable(const Json& value) {
 /// Findings are the result of a check; elsewhere they have a box of their own.
 bool IsShownAsTable(const Json& summary, const std::string& key) {
   const bool in_a_box = key == "findings" && TextOf(summary, "command") != "check";
-  return key != "warnings" && key != "verdict" && !in_a_box && IsTable(summary[key]);
+  const bool has_pictures = key == "stops";
+  return key != "warnings" && key != "verdict" && !has_pictures && !in_a_box &&
+         IsTable(summary[key]);
 }
 
 std::vector<std::string> ColumnKeys(const Json& items) {
@@ -189,10 +191,12 @@ void AddSummaryTables(Report& report, const std::filesystem::path& folder) {
   }
 }
 
-Report BeginPage(const std::filesystem::path& folder, const std::string& title) {
+Report BeginPage(const std::filesystem::path& folder, const std::string& title,
+                 const std::function<void(Report&)>& after_head) {
   Report report = TitledPage(folder, title);
   const Json summary = ReadSummary(folder);
   report.AddHtml(HeadHtml(HeadOf(folder)));
+  if (after_head) after_head(report);
   AddFindings(report, folder);
   AddSummaryNumbers(report, folder);
   report.AddWarnings(WarningsNotSaid(folder));

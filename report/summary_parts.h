@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,10 @@ namespace flextip::report {
 Report TitledPage(const std::filesystem::path& folder, const std::string& title);
 
 /// Begins a page as most commands have it: the result in a sentence, numbers, warnings, and a table
-/// for each list or map of alike things (controllers, views, ...).
-Report BeginPage(const std::filesystem::path& folder, const std::string& title);
+/// for each list or map of alike things (controllers, views, ...). `after_head` adds what comes
+/// right after the sentence; empty: nothing.
+Report BeginPage(const std::filesystem::path& folder, const std::string& title,
+                 const std::function<void(Report&)>& after_head = {});
 
 /// Returns the head of a page: the summary's verdict, or the lead of a command that has none.
 Head HeadOf(const std::filesystem::path& folder);

@@ -27,6 +27,7 @@ const std::vector<CommandPage>& Pages() {
       {"simulate", WriteSimulateReport},
       {"track", WriteTrackReport, {"vision0/data.csv", "frames.csv"}},
       {"estimate", WriteEstimateReport, {"state0/data.csv"}},
+      {"excerpt", WriteExcerptReport, {"stop.csv"}},
       {"check", WriteCheckReport},
       {"control", WriteControlReport, {"session0/cycles.csv"}},
       {"shape", WriteShapeReport, {"shapes.csv"}},

@@ -10,8 +10,10 @@
 #include "apps/common/output.h"
 #include "apps/control/figures.h"
 #include "apps/control/tables.h"
+#include "apps/stops/stops.h"
 #include "core/error.h"
 #include "live/loop/control_loop.h"
+#include "live/recorder/excerpt.h"
 #include "report/figure.h"
 #include "report/pages.h"
 
@@ -47,6 +49,23 @@ std::unique_ptr<live::Page> OpenPage(const ControlCommandOptions& options,
   return page;
 }
 
+/// The run is over and recorded: what goes wrong with its excerpts is a warning.
+StopsOfRun CutStops(OutputFolder& output, bool quiet) {
+  try {
+    ReadLog log;
+    const std::size_t found = live::FindStops(output.folder(), log).size();
+    if (found > 0 && !quiet) {
+      // Minutes of a long run take some seconds.
+      fmt::print("{} {}: cutting out the last seconds\n", found, found == 1 ? "stop" : "stops");
+      std::fflush(stdout);
+    }
+    return live::WriteExcerpts(output.folder(), output.folder());
+  } catch (const std::exception& error) {
+    output.Warn(fmt::format("no excerpts of stops: {}", error.what()));
+    return {};
+  }
+}
+
 /// Ctrl-C ends the loop, not the program.
 void RunControl(const ControlCommandOptions& options, bool quiet) {
   const live::Session session = live::ReadSession(options.session);
@@ -77,8 +96,12 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
   if (recorder.Dropped() > 0)
     output.Warn(fmt::format("{} samples and cycles were not recorded: the disk was too slow",
                             recorder.Dropped()));
-  output.WriteSummary(ReportJson(session, report, loop.only_timing));
+  const StopsOfRun stops = loop.only_timing ? StopsOfRun() : CutStops(output, quiet);
+  nlohmann::ordered_json summary = ReportJson(session, report, loop.only_timing);
+  AddStopsJson(stops, summary);
+  output.WriteSummary(summary);
   report::WriteFigures(output.folder() / "figures.json", TimeFigures(report));
+  WriteExcerptPages(output.folder(), stops, {options.session});
   report::WriteControlReport(output.folder());
   output.Commit();
   if (quiet) return;
@@ -86,6 +109,7 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
     PrintTimes(report);
   } else {
     PrintRun(report);
+    PrintStops(stops, options.out);
   }
   fmt::print("{}\n", (options.out / "report.html").string());
 }

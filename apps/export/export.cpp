@@ -11,9 +11,12 @@
 #include "apps/common/commands.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
+#include "apps/stops/stops.h"
 #include "core/error.h"
 #include "exports/mcap/export_mcap.h"
 #include "exports/text_files.h"
+#include "live/recorder/excerpt.h"
+#include "live/recorder/replay.h"
 #include "report/drawing/page_figures.h"
 #include "report/drawing/picture.h"
 
@@ -86,6 +89,25 @@ void RunPictures(const ExportOptions& options, bool quiet) {
   if (!quiet) fmt::print("{} pictures in {}\n", figures.size(), output.name().string());
 }
 
+/// The stops of a recording of control, as the end of its run makes them: for one that was killed.
+void RunStops(const ExportOptions& options, bool quiet) {
+  if (!live::HasSession(options.input)) {
+    throw InputError::At(options.input.string(), 0,
+                         "has no session0/cycles.csv, expected a recording of flextip control");
+  }
+  OutputFolder output(options.out, "export stops",
+                      {.force = options.force, .inputs = {options.input}});
+  const StopsOfRun stops = live::WriteExcerpts(options.input, output.folder());
+  nlohmann::ordered_json summary = nlohmann::ordered_json::object();
+  AddStopsJson(stops, summary);
+  output.WriteSummary(summary);
+  WriteExcerptPages(output.folder(), stops, {options.input});
+  output.Commit();
+  if (quiet) return;
+  PrintStops(stops, options.out);
+  if (stops.found == 0) fmt::print("no stop was found\n");
+}
+
 /// Writes beside OUT and moves the file there when it is whole.
 void RunMcap(const ExportOptions& options, bool quiet) {
   if (fs::exists(options.out) && !options.force) {
@@ -129,7 +151,8 @@ void AddExport(CLI::App& app, AppContext& context) {
       "  flextip export mcap RECORDING -o recording.mcap     # for Foxglove and its like\n"
       "  flextip export tum RECORDING -o trajectories        # for evo\n"
       "  flextip export csv RECORDING -o tables\n"
-      "  flextip export pictures RESULT -o pictures\n");
+      "  flextip export pictures RESULT -o pictures\n"
+      "  flextip export stops RECORDING -o stops             # of a run that was killed\n");
   const auto add = [&](const char* name, const char* help, const char* footer) {
     auto* sub = command->add_subcommand(name, help);
     auto options = std::make_shared<ExportOptions>();
@@ -149,6 +172,11 @@ void AddExport(CLI::App& app, AppContext& context) {
                                 "Example:\n  flextip export tum RECORDING -o trajectories\n");
   OnRun(*tum, context,
         [options = tum_options, &context] { RunTexts(*options, "tum", context.quiet); });
+  auto [stops, stop_options] =
+      add("stops", "The last seconds before each stop of a controlled run, as recordings",
+          "Example:\n  flextip export stops RECORDING -o stops\n");
+  OnRun(*stops, context,
+        [options = stop_options, &context] { RunStops(*options, context.quiet); });
   auto [csv, csv_options] =
       add("csv", "Tables with plain headers",
           "Example:\n  flextip export csv RECORDING --unit mm --unit deg -o tables\n");

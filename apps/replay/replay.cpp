@@ -16,7 +16,7 @@
 #include "recording/text/text.h"
 #include "report/figure.h"
 #include "report/pages.h"
-#include "simulation/closed_loop/replay.h"
+#include "simulation/closed_loop/excerpt.h"
 #include "simulation/closed_loop/scenario_run.h"
 
 namespace flextip {
@@ -65,10 +65,21 @@ nlohmann::json SummaryOf(const fs::path& recording) {
   return {};
 }
 
+Replayed FromCommands(const std::vector<simulation::ReplayedCommand>& commands,
+                      const std::vector<std::string>& warnings) {
+  Replayed replayed{{}, warnings, "simulation"};
+  for (const auto& command : commands) {
+    replayed.pairs.push_back(
+        {command.t_ns, command.p_RW, command.p_RW_again, "", "", command.equal});
+  }
+  return replayed;
+}
+
 /// The scenario of a recording of simulate: where the run found it, or as given.
 Replayed OfSimulation(const ReplayOptions& options) {
   const nlohmann::json summary = SummaryOf(options.recording);
-  if (!summary.is_object() || summary.value("command", "") != "simulate") {
+  const bool has_loop = simulation::HasLoop(options.recording);
+  if (!summary.is_object() || (summary.value("command", "") != "simulate" && !has_loop)) {
     throw InputError::At(options.recording.string(), 0,
                          "is no recording of flextip control or flextip simulate");
   }
@@ -93,6 +104,9 @@ Replayed OfSimulation(const ReplayOptions& options) {
                          fmt::format("comment: found '{}', expected a controller's name",
                                      read.recording.command0->comment));
   }
+  if (has_loop) {
+    return FromCommands(simulation::ReplayLoop(scenario, *kind, options.recording), read.warnings);
+  }
   std::unique_ptr<FrameSource> frames;
   if (rendered) {
     const auto& cam0 = read.recording.cam0;
@@ -103,13 +117,8 @@ Replayed OfSimulation(const ReplayOptions& options) {
     }
     frames = OpenRecordedFrames(options.recording, "cam0", *cam0);
   }
-  Replayed replayed{{}, read.warnings, "simulation"};
-  for (const auto& command :
-       simulation::ReplayController(scenario, *kind, read.recording, frames.get())) {
-    replayed.pairs.push_back(
-        {command.t_ns, command.p_RW, command.p_RW_again, "", "", command.equal});
-  }
-  return replayed;
+  return FromCommands(simulation::ReplayController(scenario, *kind, read.recording, frames.get()),
+                      read.warnings);
 }
 
 void WriteTable(const fs::path& file, const std::vector<Pair>& pairs) {

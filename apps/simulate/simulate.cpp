@@ -18,6 +18,7 @@
 #include "apps/common/progress.h"
 #include "apps/simulate/frame_files.h"
 #include "apps/simulate/serve.h"
+#include "apps/stops/stops.h"
 #include "core/error.h"
 #include "diagnosis/model/extended_model.h"
 #include "recording/recording_writer.h"
@@ -25,6 +26,9 @@
 #include "recording/text/text.h"
 #include "recording/truth.h"
 #include "report/pages.h"
+#include "simulation/closed_loop/excerpt.h"
+#include "simulation/closed_loop/given_streams.h"
+#include "simulation/closed_loop/loop_table.h"
 #include "simulation/closed_loop/scenario_run.h"
 #include "simulation/sensors/sensors.h"
 #include "task/path_time.h"
@@ -76,7 +80,14 @@ void WriteDeviation(const fs::path& file, const simulation::LoopResult& result) 
   WriteTextFile(file, csv.text());
 }
 
-nlohmann::json Figures(const simulation::LoopSetup& setup, const simulation::LoopResult& result) {
+/// A controller's run and what stopped it.
+struct OneRun {
+  simulation::LoopResult result;
+  StopsOfRun stops;
+};
+
+nlohmann::json Figures(const simulation::LoopSetup& setup, const OneRun& run) {
+  const simulation::LoopResult& result = run.result;
   nlohmann::json figures = {{"max_deviation_m", result.max_deviation_m},
                             {"rms_deviation_m", result.rms_deviation_m},
                             {"final_error_m", result.final_error_m},
@@ -86,6 +97,7 @@ nlohmann::json Figures(const simulation::LoopSetup& setup, const simulation::Loo
                             {"steps_limited", result.steps_limited},
                             {"steps_damped", result.steps_damped},
                             {"gain", result.gain}};
+  if (run.stops.found > 0) figures["stops_found"] = run.stops.found;
   if (!setup.fixtures.list.empty()) figures["fixture_statuses"] = result.fixture_statuses;
   if (!setup.path.directions.empty())
     figures["final_direction_error_rad"] = result.final_direction_error_rad;
@@ -93,22 +105,40 @@ nlohmann::json Figures(const simulation::LoopSetup& setup, const simulation::Loo
 }
 
 /// One controller's run, written into `folder` as a recording; of rendered frames those that
-/// `keep_frames` asks for.
-simulation::LoopResult RunOne(const simulation::Scenario& scenario, ControllerKind kind,
-                              const simulation::Laparoscope* laparoscope, bool keep_frames,
-                              const fs::path& folder,
-                              const std::function<void(int, int)>& progress) {
+/// `keep_frames` asks for. A supervised one, or one with faults, has every cycle's inputs beside.
+OneRun RunOne(const simulation::Scenario& scenario, ControllerKind kind,
+              const simulation::Laparoscope* laparoscope, bool keep_frames, const fs::path& folder,
+              const std::vector<fs::path>& inputs, const std::function<void(int, int)>& progress) {
   fs::create_directories(folder);
+  const simulation::LoopSetup& loop = scenario.loop;
+  const bool supervised = loop.supervision.kind != SupervisionKind::kNone;
+  const bool keeps_cycles = supervised || !loop.faults.empty();
+  simulation::LoopTableWriter cycles;
+  simulation::GivenStreams given(loop);
+  simulation::Scenario noted = scenario;
+  if (keeps_cycles) {
+    noted.loop.note_cycle = [&](const simulation::LoopCycle& cycle) {
+      cycles.Add(cycle);
+      given.Add(cycle);
+    };
+  }
   std::optional<FrameFiles> frames;
   if (laparoscope != nullptr) frames.emplace(folder, keep_frames);
-  simulation::LoopResult result = simulation::RunController(
-      scenario, kind, laparoscope,
+  OneRun run;
+  simulation::LoopResult& result = run.result;
+  result = simulation::RunController(
+      noted, kind, laparoscope,
       [&frames](TimeNs t_ns, const Image& image) { frames->Add(t_ns, image); }, progress);
   if (frames) frames->Finish(result.recording);
+  given.PutInto(result.recording);
   WriteRecording(folder, result.recording);
   WriteTruth(folder, result.truth);
   WriteDeviation(folder / "deviation.csv", result);
-  return result;
+  if (!keeps_cycles) return run;
+  WriteTextFile(folder / "loop0" / "cycles.csv", cycles.Text());
+  if (supervised) run.stops = simulation::WriteExcerpts(scenario, kind, folder, folder);
+  WriteExcerptPages(folder, run.stops, inputs);
+  return run;
 }
 
 /// Throws InputError where --frames-of names a controller that does not run.
@@ -174,7 +204,7 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
   std::optional<simulation::Laparoscope> laparoscope;
   if (options.render) laparoscope.emplace(simulation::LaparoscopeOf(scenario));
   const std::size_t runs = scenario.controllers.size();
-  std::vector<simulation::LoopResult> results(runs);
+  std::vector<OneRun> results(runs);
   {
     SharedProgress progress(runs, quiet);
     tbb::parallel_for(std::size_t(0), runs, [&](std::size_t i) {
@@ -182,15 +212,16 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
       const fs::path folder = runs == 1 ? output.folder() : output.folder() / Name(kind);
       results[i] =
           RunOne(scenario, kind, laparoscope ? &*laparoscope : nullptr, KeepsFrames(options, kind),
-                 folder, [&](int done, int total) { progress.Update(i, done, total); });
+                 folder, inputs, [&](int done, int total) { progress.Update(i, done, total); });
     });
   }
   nlohmann::json controllers;
   for (std::size_t i = 0; i < runs; ++i)
     controllers[Name(scenario.controllers[i])] = Figures(scenario.loop, results[i]);
-  nlohmann::json summary = {{"scenario", options.scenario.filename().string()},
-                            {"rendered", options.render},
-                            {"controllers", controllers}};
+  nlohmann::ordered_json summary = {{"scenario", options.scenario.filename().string()},
+                                    {"rendered", options.render},
+                                    {"controllers", controllers}};
+  if (runs == 1) AddStopsJson(results[0].stops, summary);
   if (!options.model.empty()) summary["model"] = options.model.filename().string();
   output.WriteSummary(summary);
   report::WriteSimulateReport(output.folder());
@@ -199,7 +230,12 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
   fmt::print("{:<20} {:>12} {:>12}\n", "deviation (mm)", "max", "rms");
   for (std::size_t i = 0; i < runs; ++i) {
     fmt::print("{:<20} {:>12.3f} {:>12.3f}\n", Name(scenario.controllers[i]),
-               1e3 * results[i].max_deviation_m, 1e3 * results[i].rms_deviation_m);
+               1e3 * results[i].result.max_deviation_m, 1e3 * results[i].result.rms_deviation_m);
+  }
+  for (std::size_t i = 0; i < runs; ++i) {
+    const char* kind = Name(scenario.controllers[i]);
+    if (runs > 1 && results[i].stops.found > 0) fmt::print("{}:\n", kind);
+    PrintStops(results[i].stops, runs == 1 ? options.out : options.out / kind);
   }
   PrintNextOf(output.folder());
   fmt::print("report: {}\n", (options.out / "report.html").string());

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "control/supervision/supervisor_options.h"
+#include "core/state_text.h"
 
 namespace flextip {
 
@@ -31,6 +32,12 @@ class JerkFilter {
 
   /// Returns the command for one within the limit of acceleration.
   Eigen::Vector3d Next(const Eigen::Vector3d& p_RW);
+
+  void VisitState(StateText& state) {
+    state(next_);
+    state(last_);
+    next_ %= length_;
+  }
 
  private:
   std::size_t length_ = 1, next_ = 0;

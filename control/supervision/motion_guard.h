@@ -34,12 +34,23 @@ class MotionGuard {
   /// returned, since that is for the worst motion. pi where a rod has buckled; zero before Update.
   double StepAngle(const Eigen::Vector3d& dp_RE_wanted, const Eigen::Vector3d& dp_RW) const;
 
+  void VisitState(StateText& state) {
+    state(rod_);
+    state(ends_);
+    state(seen_rad_);
+    state(axis_);
+  }
+
  private:
   static constexpr int kAxes = 9;
   /// The exact Jacobian at one end of an axis.
   struct End {
     enum class State : std::uint8_t { kUnknown, kBuckled, kFound } state = State::kUnknown;
     Eigen::Matrix3d J = Eigen::Matrix3d::Zero();
+    void VisitState(StateText& s) {
+      s(state);
+      s(J);
+    }
   };
   void LookAt(const ShaftEstimate& estimate, const Eigen::Vector3d& p_RW,
               const Eigen::Matrix<double, 9, 1>& shift, End& end);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/linear_algebra/segment.h"
 
 namespace flextip {
@@ -137,6 +138,21 @@ void PathWatch::TryOnce(TimeNs t_ns) {
   if (tried_ || astray_ns_ == 0 || t_ns - astray_ns_ < kTryAfter_ns) return;
   tried_ = true;
   ComeBack(t_ns);
+}
+
+void PathWatch::VisitState(StateText& state) {
+  for (std::size_t* place : {&next_, &count_, &next_step_, &steps_kept_}) state(*place);
+  if (next_ >= kSize || count_ > kSize || next_step_ >= kSize || steps_kept_ > kSize)
+    throw InputError("saved state: no place in a ring");
+  for (std::size_t i = 1; i <= count_; ++i) state(wishes_[(next_ + kSize - i) % kSize]);
+  for (std::size_t i = 1; i <= steps_kept_; ++i) state(steps_[(next_step_ + kSize - i) % kSize]);
+  state(newest_);
+  state(tip_);
+  for (TimeNs* time : {&tip_ns_, &from_ns_, &astray_ns_, &span_ns_}) state(*time);
+  state(tried_);
+  state(deviation_m_);
+  state(from_m_);
+  state(nearest_m_);
 }
 
 }  // namespace flextip

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 
+#include "core/state_text.h"
 #include "core/time_series.h"
 
 namespace flextip {
@@ -13,6 +14,11 @@ namespace flextip {
 struct PlaceKnown {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
+
+  void VisitState(StateText& state) {
+    state(p);
+    state(covariance_m2);
+  }
 };
 
 /// Knows the wishes of the last second, where the tip is (a Kalman filter over what is seen of it
@@ -44,11 +50,19 @@ class PathWatch {
   /// Does so once, a second after the tip was found astray: what led it astray may be over.
   void TryOnce(TimeNs t_ns);
 
+  /// Throws InputError where the text holds no place in a ring.
+  void VisitState(StateText& state);
+
  private:
   static constexpr std::size_t kSize = 32;  // a wish each thirtieth of a second
   struct Wish {
     TimeNs t_ns = 0;
     Eigen::Vector3d p = Eigen::Vector3d::Zero();
+
+    void VisitState(StateText& state) {
+      state(t_ns);
+      state(p);
+    }
   };
 
   /// The tip as it was seen, and where the wrist's motion alone has led it.
@@ -56,6 +70,12 @@ class PathWatch {
     TimeNs t_ns = 0;
     PlaceKnown seen;
     Eigen::Vector3d led = Eigen::Vector3d::Zero();
+
+    void VisitState(StateText& state) {
+      state(t_ns);
+      state(seen);
+      state(led);
+    }
   };
 
   void Follow(TimeNs t_ns, const PlaceKnown& seen, const Eigen::Vector3d& dp_RE);

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "core/state_text.h"
+
 namespace flextip {
 
 /// What the supervisor found. Recordings have the numbers: new names go to the end.
@@ -42,6 +44,7 @@ enum class Reaction : std::uint8_t {
   kHold,   ///< the wrist stays, the cycle watches and goes on by itself
   kFault   ///< the wrist stays until a person resumes
 };
+inline constexpr int kReactions = static_cast<int>(Reaction::kFault) + 1;
 const char* Name(Reaction reaction);
 
 /// The sensors that are held against each other, as bits of Supervision::voted_out.
@@ -59,6 +62,14 @@ struct Supervision {
   double worst_angle_rad = 0.0;  ///< the largest seen lately; 0: not known
   /// The wrist stays, in a hold or for this cycle alone: the goal should wait for it.
   bool waits = false;
+
+  void VisitState(StateText& state) {
+    state(stop);
+    state(reaction);
+    state(voted_out);
+    for (double* value : {&chi2, &chi2_limit, &worst_angle_rad}) state(*value);
+    state(waits);
+  }
 };
 
 inline bool IsOut(const Supervision& supervision, VotedSensor sensor) {

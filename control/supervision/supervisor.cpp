@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "control/supervision/rate_limits.h"
+#include "core/error.h"
 #include "core/linear_algebra/segment.h"
 
 namespace flextip {
@@ -38,6 +39,26 @@ void Supervisor::NoteSent(const Eigen::Vector3d& p_RW) {
   sent_[(next_ + kSize - 1) % kSize].p_RW = p_RW;
   p_last_ = p_RW;
   if (p_held_) p_held_ = p_RW;
+}
+
+void Supervisor::VisitState(StateText& state) {
+  state(next_);
+  state(count_);
+  if (next_ >= kSize || count_ > kSize) throw InputError("saved state: no place in a ring");
+  for (std::size_t i = 1; i <= count_; ++i) state(sent_[(next_ + kSize - i) % kSize]);
+  state(p_last_);
+  state(p_held_);
+  state(v_last_m_s_);
+  state(t_last_ns_);
+  state(wrong_since_ns_);
+  state(held_since_ns_);
+  state(clear_since_ns_);
+  state(held_by_);
+  state(fault_);
+  state(moving_);
+  state(late_cycles_);
+  state(jerk_);
+  state(p_limited_);
 }
 
 bool Supervisor::IsAstray(const SupervisedCycle& cycle) const {

@@ -9,6 +9,7 @@
 #include "control/supervision/jerk_filter.h"
 #include "control/supervision/stops.h"
 #include "control/supervision/supervisor_options.h"
+#include "core/state_text.h"
 #include "core/time_series.h"
 
 namespace flextip {
@@ -52,11 +53,18 @@ class Supervisor {
   /// Returns the command sent last; empty before the first.
   const std::optional<Eigen::Vector3d>& LastCommand() const { return p_last_; }
 
+  void VisitState(StateText& state);
+
  private:
   struct Sent {
     TimeNs t_ns = 0;
     Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();         // commanded
     Eigen::Vector3d p_RW_before = Eigen::Vector3d::Zero();  // as measured in that cycle
+    void VisitState(StateText& state) {
+      state(t_ns);
+      state(p_RW);
+      state(p_RW_before);
+    }
   };
   static constexpr std::size_t kSize = 512;
 

@@ -9,6 +9,7 @@
 #include "core/rotation.h"
 #include "diagnosis/model/extended_effect.h"
 #include "diagnosis/model/geometry.h"
+#include "estimation/saved_state.h"
 
 namespace flextip::diagnosis {
 
@@ -239,6 +240,18 @@ Measurements ExtendedInstrument::Correct(const Measurements& measured) const {
   for (Eigen::Index k = 0; k < spread_.cols(); ++k)
     AddToNoise(CorrectBy(inputs_ + spread_.col(k), measured), corrected, spread_(kLength, k), z);
   return z;
+}
+
+void ExtendedInstrument::VisitState(StateText& state) {
+  for (Acting& acting : acting_) state(acting.memory);
+  state(inputs_);
+  for (double& value : spread_.reshaped()) state(value);
+  state(shaft_);
+  state(friction_);
+  state(solver_);
+  state(s_port_free_m_);
+  state(ds_port_dfriction_m_);
+  state(R_RE_);
 }
 
 double ExtendedInstrument::LengthSd() const {

@@ -27,6 +27,7 @@ class ExtendedInstrument : public InstrumentModel {
   const ShaftChange& Shaft() const override { return shaft_; }
   Measurements Correct(const Measurements& measured) const override;
   double LengthSd() const override;
+  void VisitState(StateText& state) override;
 
   /// Returns the inputs at this instant, delays among them.
   const SampleInputs& Inputs() const { return inputs_; }

@@ -13,6 +13,14 @@ namespace {
 
 constexpr double kAskAgain_s = 0.2;  // a robot that did not change its state
 
+double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
+
+bool Acts(ControlStatus status) {
+  return status == ControlStatus::kOk || status == ControlStatus::kStraightInstead;
+}
+
+}  // namespace
+
 InstrumentControllerOptions OptionsOf(const Session& session) {
   InstrumentControllerOptions options;
   const Recording& base = session.base;
@@ -44,14 +52,6 @@ std::unique_ptr<InstrumentModel> ModelOf(const Session& session) {
   if (!session.model) return nullptr;
   return std::make_unique<diagnosis::ExtendedInstrument>(*session.model, session.base);
 }
-
-double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
-
-bool Acts(ControlStatus status) {
-  return status == ControlStatus::kOk || status == ControlStatus::kStraightInstead;
-}
-
-}  // namespace
 
 Cycle::Cycle(const Session& session, bool wait)
     : session_(session),
@@ -117,6 +117,7 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
   command_ = controller_.Step(wish);
   const ControllerCommand& command = command_;
   outputs.status = command.status;
+  outputs.supervision = command.supervision;
   if (wish.p_RE_desired && Acts(command.status)) p_RE_known_ = command.p_RE_used;
   if (clear && phase_ == Phase::kAveraging) {
     outputs.hold = Hold::kStarting;
@@ -183,7 +184,7 @@ std::optional<CrtkCommand> Cycle::Ending(const CycleInputs& inputs) {
   return CrtkCommand::kPause;
 }
 
-SensorReadings Cycle::Readings(const StreamInputs& streams) {
+SensorReadings Cycle::Readings(const StreamInputs& streams) const {
   const Recording& base = session_.base;
   SensorReadings readings;
   if (streams.wrist && base.wrist0) {
@@ -262,12 +263,16 @@ void Cycle::Average(const CycleInputs& inputs, const ControllerCommand& command,
 }
 
 void Cycle::StartPath() {
+  p_RE_known_ = sum_p_ / averaged_;
+  phase_ = Phase::kMoving;
+  if (!session_.goal) MakePath();
+}
+
+/// Makes the path from the averaged tip.
+void Cycle::MakePath() {
   Pose T_RE;
   T_RE.p = sum_p_ / averaged_;
-  p_RE_known_ = T_RE.p;
   T_RE.R = RotationWithoutTwist(Eigen::Vector3d::UnitX(), sum_d_.normalized());
-  phase_ = Phase::kMoving;
-  if (session_.goal) return;
   PathSetup setup = session_.task.path;
   if (session_.path->frame == PathFrame::kRobot) {
     if (session_.path->p_start) T_RE.p = *session_.path->p_start;

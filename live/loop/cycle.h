@@ -30,7 +30,12 @@ struct CycleOutputs {
   bool workspace_limited = false, fixture_limited = false;
   std::optional<CrtkCommand> state_command;  ///< to send to the robot
   bool done = false;                         ///< the path was run to its end
+  std::optional<Supervision> supervision;    ///< the supervisor's findings; empty: no step was made
 };
+
+/// Returns what the controller of a session is made of, and its found model; null for none.
+InstrumentControllerOptions OptionsOf(const Session& session);
+std::unique_ptr<InstrumentModel> ModelOf(const Session& session);
 
 class Cycle {
  public:
@@ -47,17 +52,23 @@ class Cycle {
   /// The path that the tip follows; null before it starts.
   const TipPath* Path() const { return path_ ? &*path_ : nullptr; }
 
+  /// Visits what the next step starts from, bit for bit: a cycle of the same session goes on where
+  /// the other was. Throws InputError where the text is of another session.
+  void VisitState(StateText& state);
+  /// Returns the newest samples as the controller is given them.
+  SensorReadings Readings(const StreamInputs& streams) const;
+
  private:
   enum class Phase : std::uint8_t { kWaiting, kAveraging, kMoving, kDone };
 
   void KnowTimes(TimeNs t_ns);
-  SensorReadings Readings(const StreamInputs& streams);
   std::optional<CrtkCommand> StartUp(const CycleInputs& inputs);
   std::optional<CrtkCommand> Ending(const CycleInputs& inputs);
   bool PersonResumed(const CycleInputs& inputs);
   void Fault(const CycleInputs& inputs, CycleOutputs& outputs);
   void Average(const CycleInputs& inputs, const ControllerCommand& command, bool new_tip);
   void StartPath();
+  void MakePath();
   ControllerInputs Wish(const CycleInputs& inputs, bool moves, bool new_tip, double dt_s,
                         CycleOutputs& outputs);
   void GoToGoal(const CycleInputs& inputs, double dt_s);

@@ -54,6 +54,11 @@ const char* Name(Hold hold) {
   return names[static_cast<std::size_t>(hold)];
 }
 
+const char* PeerName(int held_by) {
+  if (held_by == kRobotPeer) return "robot";
+  return held_by == kGoalPeer ? "goal" : Name(static_cast<StreamName>(held_by));
+}
+
 Hold HoldBy(Stop stop) {
   switch (stop) {
     case Stop::kNotFinite:

@@ -42,6 +42,8 @@ inline constexpr int kHolds = static_cast<int>(Hold::kMotionAngle) + 1;
 
 /// Returns the name as in recordings and summaries: "stale_wrist".
 const char* Name(Hold hold);
+/// Returns what CycleOutputs::held_by names: "strain0", "robot", "goal".
+const char* PeerName(int held_by);
 /// Returns the hold that a stop of the supervisor is.
 Hold HoldBy(Stop stop);
 

@@ -164,7 +164,18 @@ void VisitStream(Io& io, const std::string& name, std::optional<Arrived<T>>& now
   if (is_new) now = sample;
 }
 
+template <class Io>
+void VisitSupervision(Io& io, Supervision& found) {
+  VisitEnum(io, "found stop", found.stop);
+  VisitEnum(io, "found reaction", found.reaction);
+  VisitEnum(io, "found out", found.voted_out);
+  io.Number("found chi2", found.chi2);
+  io.Number("found chi2_limit", found.chi2_limit);
+  io.Number("found angle [rad]", found.worst_angle_rad);
+}
+
 inline constexpr const char* kLaterStream = "asked";
+inline constexpr const char* kLaterFindings = "found";
 
 template <class Io>
 void VisitRecord(Io& io, CycleRecord& record, const CycleRecord& before) {
@@ -203,6 +214,8 @@ void VisitRecord(Io& io, CycleRecord& record, const CycleRecord& before) {
   outputs.t_ns = record.inputs.t_ns;
   // Older recordings lack what follows.
   VisitStream(io, kLaterStream, streams.goal, last.goal);
+  VisitOptional(io, outputs.supervision, Supervision(),
+                [&](Supervision& found) { VisitSupervision(io, found); });
 }
 
 }  // namespace flextip::live::fields

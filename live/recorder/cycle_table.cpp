@@ -1,5 +1,7 @@
 #include "live/recorder/cycle_table.h"
 
+#include <fmt/format.h>
+
 #include "live/recorder/cycle_fields.h"
 
 namespace flextip::live {
@@ -16,7 +18,8 @@ std::vector<std::string> ColumnNames() {
 CsvOptions MayLackLater() {
   CsvOptions options;
   for (const std::string& name : ColumnNames())
-    if (name.starts_with(fields::kLaterStream)) options.may_lack.push_back(name);
+    if (name.starts_with(fields::kLaterStream) || name.starts_with(fields::kLaterFindings))
+      options.may_lack.push_back(name);
   return options;
 }
 
@@ -43,6 +46,18 @@ std::string CycleTableWriter::TakeText() { return table_->csv.TakeText(); }
 struct CycleTableReader::Table {
   Table(const std::filesystem::path& file, ReadLog& log)
       : csv(file, ColumnNames(), log, MayLackLater()) {}
+  /// Numbers that stand for names must be ones.
+  void Check(const CycleOutputs& outputs) const {
+    const auto check = [this](const char* column, int found, int count) {
+      if (found >= 0 && found < count) return;
+      throw csv.Error(fmt::format("{}: found {}, expected 0 to {}", column, found, count - 1));
+    };
+    check("hold", static_cast<int>(outputs.hold), kHolds);
+    check("held_by", outputs.held_by + 1, kGoalPeer + 2);
+    if (!outputs.supervision) return;
+    check("found stop", static_cast<int>(outputs.supervision->stop), kStops);
+    check("found reaction", static_cast<int>(outputs.supervision->reaction), kReactions);
+  }
   CsvReader csv;
   CycleRecord before;
 };
@@ -56,6 +71,7 @@ std::optional<CycleRecord> CycleTableReader::Next() {
   CycleRecord record;
   fields::Reading reading{table_->csv};
   fields::VisitRecord(reading, record, table_->before);
+  table_->Check(record.outputs);
   table_->before = record;
   return record;
 }

@@ -134,9 +134,7 @@ void Recorder::NoteChanges(const CycleRecord& record) {
   const auto& state = record.inputs.streams.state;
   std::string now = fmt::format("hold: {}", Name(outputs.hold));
   if (outputs.hold == Hold::kSourceLost && outputs.held_by >= 0) {
-    now += fmt::format(" {}", outputs.held_by == kRobotPeer  ? "robot"
-                              : outputs.held_by == kGoalPeer ? "goal"
-                                                             : Name(StreamName(outputs.held_by)));
+    now += fmt::format(" {}", PeerName(outputs.held_by));
   }
   now += fmt::format("; robot: {}", state ? Text(state->value) : "not known");
   if (outputs.state_command)

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 #include "live/recorder/cycle_table.h"
+#include "recording/text/text.h"
 #include "recording/text/yaml_map.h"
 
 namespace flextip::live {
@@ -20,6 +22,23 @@ bool SameBits(const std::optional<Eigen::Vector3d>& a, const std::optional<Eigen
   return a.has_value() == b.has_value() && (!a || SameBits(*a, *b));
 }
 
+/// A table has no word for numbers that are not finite.
+bool SameBits(double a, double b) {
+  if (!std::isfinite(a) && !std::isfinite(b)) return true;
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+/// Older recordings have no findings.
+bool SameFindings(const std::optional<Supervision>& was, const std::optional<Supervision>& now) {
+  if (!was) return true;
+  return now && was->stop == now->stop && was->reaction == now->reaction &&
+         was->voted_out == now->voted_out && SameBits(was->chi2, now->chi2) &&
+         SameBits(was->chi2_limit, now->chi2_limit) &&
+         SameBits(was->worst_angle_rad, now->worst_angle_rad);
+}
+
+}  // namespace
+
 bool SameOutputs(const CycleOutputs& a, const CycleOutputs& b) {
   return a.hold == b.hold && a.held_by == b.held_by && a.has_command == b.has_command &&
          a.status == b.status && SameBits(a.p_RW_command, b.p_RW_command) &&
@@ -27,10 +46,9 @@ bool SameOutputs(const CycleOutputs& a, const CycleOutputs& b) {
          a.step_limited == b.step_limited && a.speed_limited == b.speed_limited &&
          a.acceleration_limited == b.acceleration_limited &&
          a.workspace_limited == b.workspace_limited && a.fixture_limited == b.fixture_limited &&
-         a.state_command == b.state_command && a.done == b.done;
+         a.state_command == b.state_command && a.done == b.done &&
+         SameFindings(a.supervision, b.supervision);
 }
-
-}  // namespace
 
 bool HasSession(const std::filesystem::path& recording) {
   return std::filesystem::exists(recording / "session0" / "cycles.csv");
@@ -41,11 +59,28 @@ Session RecordedSession(const std::filesystem::path& recording) {
   return ReadSession(folder / "session.yaml", YamlMap::Load(folder / "run.yaml").Text("folder"));
 }
 
+std::unique_ptr<Cycle> CycleAtBegin(const std::filesystem::path& recording,
+                                    const Session& session) {
+  const std::filesystem::path folder = recording / "session0", file = folder / "state.txt";
+  auto cycle =
+      std::make_unique<Cycle>(session, YamlMap::Load(folder / "run.yaml").Integer("wait") != 0);
+  if (!std::filesystem::exists(file)) return cycle;
+  StateText state{ReadTextFile(file)};
+  try {
+    cycle->VisitState(state);
+    state.Finish();
+  } catch (const InputError& error) {
+    throw InputError::At(file.string(), 0, error.what());
+  }
+  return cycle;
+}
+
 ReplayedSession ReplaySession(const std::filesystem::path& recording, const Session& session) {
   const std::filesystem::path folder = recording / "session0";
   ReadLog log;
   CycleTableReader table(folder / "cycles.csv", log);
-  Cycle cycle(session, YamlMap::Load(folder / "run.yaml").Integer("wait") != 0);
+  const auto made = CycleAtBegin(recording, session);
+  Cycle& cycle = *made;
   ReplayedSession replayed;
   while (const auto record = table.Next()) {
     const CycleOutputs& was = record->outputs;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,14 @@ bool HasSession(const std::filesystem::path& recording);
 
 /// Returns the session that was recorded. Throws InputError.
 Session RecordedSession(const std::filesystem::path& recording);
+
+/// Returns the cycle as it was before the recording's first row: a new one, and in an excerpt with
+/// the state that the run had there. Throws InputError where the state is damaged or of another
+/// kind of session.
+std::unique_ptr<Cycle> CycleAtBegin(const std::filesystem::path& recording, const Session& session);
+
+/// Returns whether every output is the same, bit for bit.
+bool SameOutputs(const CycleOutputs& a, const CycleOutputs& b);
 
 /// Runs the recorded inputs through the cycle of `session`, which is the recorded one or another.
 /// Throws InputError with file and line.

@@ -56,6 +56,14 @@ class SampleScreen {
   /// Takes what is measured next as believed: a person says that it is right.
   void Forget();
 
+  void VisitState(StateText& state) {
+    for (Past* past : {&wrist_, &tip_past_, &em0_past_, &em1_past_, &strain_past_, &load_past_})
+      state(*past);
+    state(tip_);
+    state(em_);
+    state(has_news_);
+  }
+
  private:
   using Figures = Eigen::Matrix<double, 6, 1>;
   /// The samples of a stream.
@@ -67,12 +75,28 @@ class SampleScreen {
     double age_s = 0.0, age_changes_s = 0.0;  // on arrival: typically, and how much it varies
     Figures figures = Figures::Zero();
     Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();  // the wrist at the first of them
+    void VisitState(StateText& state) {
+      for (TimeNs* time : {&t_ns, &arrived_ns, &gap_ns}) state(*time);
+      state(repeats);
+      state(ages);
+      state(age_s);
+      state(age_changes_s);
+      state(figures);
+      state(p_RW);
+    }
   };
   struct Place {
     bool known = false;
     Eigen::Vector3d p = Eigen::Vector3d::Zero(), p_RW = Eigen::Vector3d::Zero();
     TimeNs t_ns = 0;
     double sd_m = 0.0;
+    void VisitState(StateText& state) {
+      state(known);
+      state(p);
+      state(p_RW);
+      state(t_ns);
+      state(sd_m);
+    }
   };
 
   Stop Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& figures, bool finite,

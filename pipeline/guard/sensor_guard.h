@@ -38,6 +38,15 @@ class SensorGuard {
   /// Takes the next places as they come: a person says that they are right.
   void Forget() { screen_.Forget(); }
 
+  void VisitState(StateText& state) {
+    state(screen_);
+    state(vote_);
+    state(jumped_);
+    state(voted_);
+    state(shaft_);
+    state(voters_);
+  }
+
  private:
   SupervisorOptions options_;
   SampleScreen screen_;

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include "control/supervision/supervisor_options.h"
+#include "core/state_text.h"
 #include "core/time_series.h"
 #include "estimation/measurements.h"
 
@@ -22,12 +23,22 @@ class ToleratedSensors {
   /// Takes the tip (R, m) of sensors that agree in `z`, as they came, at the time `t_ns`.
   void Learn(TimeNs t_ns, const Measurements& z, const Eigen::Vector3d& p_RE);
 
+  void VisitState(StateText& state) {
+    state(tip_);
+    state(em_);
+    state(learnt_ns_);
+  }
+
  private:
   /// An offset of a sensor in R (m), never beyond three deviations.
   struct Offset {
     Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
     double tolerance_m = 0.0, variance_m2 = 0.0;
     double Doubt_m() const;
+    void VisitState(StateText& state) {
+      state(mean_m);
+      state(variance_m2);
+    }
     void Learn(const Eigen::Vector3d& seen_m, double noise_m, double dt_s);
   };
 

@@ -21,6 +21,12 @@ struct VotedShaft {
   PlaceKnown tip;
   Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
   Eigen::Matrix3d force_covariance_N2 = Eigen::Matrix3d::Zero();
+
+  void VisitState(StateText& state) {
+    state(tip);
+    state(f_tip_N);
+    state(force_covariance_N2);
+  }
 };
 
 /// Chi-squared of all sensors together, with all covariances, and, where it is above its limit, of
@@ -37,6 +43,14 @@ class SensorVote {
   /// Returns tip and load; empty where the sensors do not tell them.
   std::optional<VotedShaft> Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& change,
                                  Measurements& z, Supervision& found);
+
+  void VisitState(StateText& state) {
+    state(all_);
+    state(without_one_);
+    state(loose_);
+    state(tolerated_);
+    state(out_ns_);
+  }
 
  private:
   /// The agreement of all sensors but one.

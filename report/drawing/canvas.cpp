@@ -124,6 +124,8 @@ void Canvas::Text(const std::string& text, Place at, const TextStyle& style) {
   cairo_restore(context_.get());
 }
 
+void Canvas::Shift(double x_px, double y_px) { cairo_translate(context_.get(), x_px, y_px); }
+
 void Canvas::Clip(Place corner, double width, double height) {
   cairo_save(context_.get());
   cairo_rectangle(context_.get(), corner.x, corner.y, width, height);

@@ -46,6 +46,8 @@ class Canvas {
   void Text(const std::string& text, Place at, const TextStyle& style = {});
   /// Returns the width of `text` in px.
   double Width(const std::string& text, const TextStyle& style = {});
+  /// Moves the origin of all places from now on.
+  void Shift(double x_px, double y_px);
   /// Limits drawing to a rectangle until Unclip.
   void Clip(Place corner, double width, double height);
   void Unclip();

@@ -45,6 +45,7 @@ FigureTrace TraceOf(const Json& json) {
                     .color = json.value("color", ""),
                     .colors = TextsOf(json, "colors"),
                     .symbol = json.value("symbol", ""),
+                    .width = json.value("width", 0.0),
                     .dashed = json.value("dashed", false),
                     .arrow = json.value("arrow", false)};
   const Json x = json.value("x", Json::array());
@@ -87,6 +88,7 @@ Figure FigureOf(const Json& json) {
                 .y_down = json.value("y_down", false),
                 .equal_axes = json.value("equal_axes", false),
                 .lying_bars = json.value("lying_bars", false)};
+  figure.y_names = TextsOf(json, "y_names");
   for (const Json& field : json.value("fields", Json::array())) {
     figure.fields.push_back(FieldOf(field));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "report/drawing/plot.h"
 #include "report/drawing/space.h"
@@ -70,6 +71,8 @@ void FitAxes(const Figure& figure, PlotArea& area) {
     area.x = Axis(-0.5, static_cast<double>(labels->size()) - 0.5);
   }
   area.y_down = figure.y_down;
+  if (!figure.y_names.empty())
+    area.y = Axis(-0.6, static_cast<double>(figure.y_names.size()) - 0.4);
   if (figure.lying_bars) {
     area.y = Axis(std::min(0.0, y.low), y.high > 0.0 ? 1.1 * y.high : 1.0);
     std::swap(area.x, area.y);
@@ -104,9 +107,12 @@ void DrawAxes(const Figure& figure, const PlotArea& area, Canvas& canvas) {
     if (!below) canvas.Line({{x, area.top}, {x, bottom}}, kGrid, 1.0);
     canvas.Text(tick.text, {x, bottom + 8.0}, {.size = 12.0, .align_x = 0.5, .align_y = 0.0});
   }
-  for (const Tick& tick : beside ? names : area.y.Ticks(6)) {
+  std::vector<Tick> rows;
+  for (std::size_t i = 0; i < figure.y_names.size(); ++i)
+    rows.push_back({static_cast<double>(i), figure.y_names[i]});
+  for (const Tick& tick : beside ? names : !rows.empty() ? rows : area.y.Ticks(6)) {
     const double y = area.At(area.x.Low(), tick.value).y;
-    if (!beside) canvas.Line({{area.left, y}, {right, y}}, kGrid, 1.0);
+    if (!beside && rows.empty()) canvas.Line({{area.left, y}, {right, y}}, kGrid, 1.0);
     canvas.Text(tick.text, {area.left - 7.0, y}, {.size = 12.0, .align_x = 1.0, .align_y = 0.5});
   }
   canvas.Line({{area.left, area.top}, {area.left, bottom}, {right, bottom}}, kFrame, 1.0);
@@ -197,6 +203,11 @@ PlotArea AreaOf(const Figure& figure) {
     area.width -= names + 50.0;
     area.height = 20.0 + kBarRow_px * static_cast<double>(bars);
   }
+  if (!figure.y_names.empty()) {
+    area.left += 40.0;
+    area.width -= 40.0;
+    area.height = 20.0 + kBarRow_px * static_cast<double>(figure.y_names.size());
+  }
   if (figure.equal_axes) EqualiseAxes(area);
   return area;
 }
@@ -234,14 +245,25 @@ void Draw(const Figure& figure, double offset, Canvas& canvas) {
 
 }  // namespace
 
-void WritePicture(const std::filesystem::path& file, const std::vector<Figure>& figures) {
-  double height = 0.0;
-  for (const auto& figure : figures) height += HeightOf(AreaOf(figure));
-  Canvas canvas(file, kWidth_px, std::max(height, 1.0));
+void WritePicture(const std::filesystem::path& file, const std::vector<Figure>& figures,
+                  std::size_t columns) {
+  std::vector<double> rows;  // their heights
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    if (i % columns == 0) rows.push_back(0.0);
+    rows.back() = std::max(rows.back(), HeightOf(AreaOf(figures[i])));
+  }
+  const double height = std::accumulate(rows.begin(), rows.end(), 0.0);
+  const std::size_t across = std::clamp<std::size_t>(figures.size(), 1, columns);
+  Canvas canvas(file, kWidth_px * static_cast<double>(across), std::max(height, 1.0));
   double offset = 0.0;
-  for (const auto& figure : figures) {
-    Draw(figure, offset, canvas);
-    offset += HeightOf(AreaOf(figure));
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    Draw(figures[i], offset, canvas);
+    if ((i + 1) % columns != 0) {
+      canvas.Shift(kWidth_px, 0.0);
+      continue;
+    }
+    canvas.Shift(-kWidth_px * static_cast<double>(columns - 1), 0.0);
+    offset += rows[i / columns];
   }
   canvas.Finish();
 }

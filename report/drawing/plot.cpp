@@ -17,18 +17,18 @@ constexpr std::array kColors{"#0072b2", "#d55e00", "#009e73", "#b0578d",
 bool Drawable(const Place& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
 
 /// Draws the stretches between gaps.
-void DrawCurve(const std::vector<Place>& places, const std::string& color, bool dashed,
-               Canvas& canvas) {
+void DrawCurve(const std::vector<Place>& places, const std::string& color, double width,
+               bool dashed, Canvas& canvas) {
   std::vector<Place> stretch;
   for (const Place& p : places) {
     if (Drawable(p)) {
       stretch.push_back(p);
       continue;
     }
-    canvas.Line(stretch, color, 2.0, dashed);
+    canvas.Line(stretch, color, width, dashed);
     stretch.clear();
   }
-  canvas.Line(stretch, color, 2.0, dashed);
+  canvas.Line(stretch, color, width, dashed);
 }
 
 void DrawArrowHead(const Place& from, const Place& to, const std::string& color, Canvas& canvas) {
@@ -131,7 +131,7 @@ void DrawTrace(const FigureTrace& trace, const std::string& color, const PlotAre
         kInk, 1.2);
   }
   if (trace.kind == FigureTrace::Kind::kLine) {
-    DrawCurve(places, color, trace.dashed, canvas);
+    DrawCurve(places, color, trace.width > 0.0 ? trace.width : 2.0, trace.dashed, canvas);
     if (trace.arrow && places.size() > 1) {
       DrawArrowHead(places[places.size() - 2], places.back(), color, canvas);
     }

@@ -32,7 +32,7 @@
     const out = { name: t.name, showlegend: t.name !== "", x: t.x, y: t.y };
     if (t.kind === "bars") Object.assign(out, { type: "bar", marker: { color: t.colors || color }, textposition: "outside", cliponaxis: false });
     else Object.assign(out, { type: "scatter", mode: t.kind === "points" ? "markers" : "lines", connectgaps: false,
-      line: { color: color, width: 2, dash: t.dashed ? "dash" : "solid" },
+      line: { color: color, width: t.width || 2, dash: t.dashed ? "dash" : "solid" },
       marker: { color: color, size: t.y.length > 200 ? 4 : 8, symbol: t.symbol || "circle", line: { color: color, width: t.y.length > 200 ? 1 : 2 } } });
     if (t.kind === "bars" && lying) Object.assign(out, { orientation: "h", x: t.y, y: t.x });
     if (t.texts) out.text = t.texts;
@@ -93,6 +93,8 @@
     const constrain = isLongAndFlat(figure) ? "range" : "domain";
     if (figure.equal_axes) Object.assign(out.yaxis, { scaleanchor: "x", constrain }), out.xaxis.constrain = constrain;
     if (figure.y_down || figure.lying_bars) out.yaxis.autorange = "reversed";
+    if (figure.y_names) Object.assign(out.yaxis, { tickvals: figure.y_names.map((n, i) => i), ticktext: figure.y_names, showgrid: false, zeroline: false,
+      autorange: false, range: [figure.y_names.length - 0.4, -0.6] });
     if (figure.lying_bars) out.margin.r = 60;  // for the longest bar's text
     if (figure.lying_bars) Object.assign(out.yaxis, { type: "category", showgrid: false }), out.xaxis.rangemode = "tozero";
     return out;
@@ -121,6 +123,7 @@
     const figure = JSON.parse(element.querySelector("script").textContent);
     const traces = figure.fields.flatMap(field).concat(figure.traces.map((t, i) => trace(t, i, figure.lying_bars)));
     if (figure.lying_bars) element.style.height = lyingHeight(figure) + "px";
+    if (figure.y_names) element.style.height = 130 + 38 * figure.y_names.length + "px";
     if (isLongAndFlat(figure)) element.style.height = Math.min(element.clientHeight, flatHeight(figure, element.clientWidth)) + "px";
     Plotly.newPlot(element, traces, layout(figure), { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"] });
   });

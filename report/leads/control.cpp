@@ -6,6 +6,7 @@
 
 #include "report/leads/numbers.h"
 #include "report/result_files.h"
+#include "report/stops/stops.h"
 
 namespace flextip::report::leads {
 namespace {
@@ -64,9 +65,14 @@ Head ControlLead(const std::filesystem::path& folder) {
                                  Number(summary, "duration_s"))
                    : fmt::format("The run ended after {:.3g} s, before the path was done.",
                                  Number(summary, "duration_s"));
+  if (const auto stops = StopsIn(folder); !stops.empty()) {
+    head.grade = kBeware;
+    head.more = head.says;
+    head.says = StopSays(stops.front());
+  }
   if (!done)
     beware("the table of holds below says for how many cycles the robot was held, and why");
-  head.more = TimesText(summary);
+  head.more += (head.more.empty() ? "" : " ") + TimesText(summary);
   head.next = "let a diagnosis say what the simulation gets wrong of this run";
   head.command = "flextip diagnose RESULT -o RESULT-cause";
   return head;

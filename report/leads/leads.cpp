@@ -47,6 +47,14 @@ void SayUse(const std::vector<std::string>& streams, const std::string& recordin
                              track ? "tracked" : "cause");
 }
 
+Head ExcerptLead(const Json& summary) {
+  return {.grade = kBeware,
+          .says = summary.value("says", ""),
+          .next =
+              "flextip replay gives the commands of this folder again, flextip diagnose says "
+              "what the simulation gets wrong of it"};
+}
+
 Head CheckLead(const Json& summary) {
   if (!Has(summary, "wrong") || !Has(summary, "doubtful")) return {};
   const double wrong = Number(summary, "wrong"), doubtful = Number(summary, "doubtful");
@@ -236,6 +244,7 @@ std::string Filled(const std::string& command, const Json& summary) {
 Head LeadFor(const std::string& command, const Json& summary, const std::filesystem::path& folder) {
   if (command == "simulate") return SimulateLead(folder);
   if (command == "control") return ControlLead(folder);
+  if (command == "excerpt") return ExcerptLead(summary);
   if (command == "check") return CheckLead(summary);
   if (command == "shape") return ShapeLead(summary, folder);
   if (command == "detect") return DetectLead(summary);

@@ -11,6 +11,7 @@
 
 #include "report/leads/numbers.h"
 #include "report/result_files.h"
+#include "report/stops/stops.h"
 
 namespace flextip::report::leads {
 namespace {
@@ -83,6 +84,12 @@ Head SimulateLead(const std::filesystem::path& folder) {
         fmt::format("It is the best of {} controllers; the worst, {}, lets it go {} astray.",
                     runs.size(), worst, Value(other, "max_deviation_m")) +
         WhyBest(runs);
+  }
+  // Of a single run; of several each has its sentence beside its picture.
+  if (const auto stops = StopsIn(folder); !stops.empty()) {
+    lead.grade = kBeware;
+    lead.more = lead.says;
+    lead.says = StopSays(stops.front());
   }
   for (const auto& [name, each] : runs) {
     if (Failed(each) == 0.0) continue;

@@ -8,6 +8,7 @@
 #include "report/pages.h"
 #include "report/report.h"
 #include "report/result_files.h"
+#include "report/stops/stops.h"
 #include "report/summary_parts.h"
 
 namespace flextip::report {
@@ -114,8 +115,10 @@ void AddFrames(Report& report, const std::vector<Run>& runs) {
 }  // namespace
 
 void WriteSimulateReport(const fs::path& folder) {
-  Report report = BeginPage(folder, "Simulated closed loop");
   const auto runs = ReadRuns(folder);
+  Report report = BeginPage(folder, "Simulated closed loop", [&](Report& page) {
+    for (const auto& run : runs) AddStops(page, run.folder, run.name);
+  });
   if (!runs.empty()) report.AddHeading("Which controller keeps the tip where it is wanted");
   AddDeviations(report, runs);
   AddPaths(report, runs);

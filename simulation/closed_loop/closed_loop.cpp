@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "pipeline/instrument_controller.h"
+#include "simulation/closed_loop/loop_table.h"
 #include "simulation/faults/plant_faults.h"
 #include "simulation/faults/robot_faults.h"
 #include "simulation/faults/sensor_faults.h"
@@ -169,6 +170,23 @@ class Loop {
     if (command.status != ControlStatus::kNoTip) p_RE_known_ = command.p_RE_used;
     Command(command, wrist, inputs.sensors.wrist);
     Note(command, inputs.resume);
+    if (setup_.note_cycle) setup_.note_cycle(CycleOf(inputs, command));
+  }
+
+  /// The cycle without its picture: the tip that was seen in it stands for it.
+  LoopCycle CycleOf(const ControllerInputs& inputs, const ControllerCommand& command) const {
+    LoopCycle cycle;
+    cycle.t_ns = inputs.t_ns;
+    cycle.sensors = inputs.sensors;
+    if (!inputs.pictures.empty()) {
+      const TipTrack& track = *controller_.Track();
+      cycle.sensors.tip = {inputs.pictures_t_ns, {track.tip, track.direction_noise_rad}};
+    }
+    cycle.p_RE_desired = inputs.p_RE_desired;
+    cycle.d_RE_desired = inputs.d_RE_desired;
+    cycle.resume = inputs.resume;
+    TakeCommand(command, cycle);
+    return cycle;
   }
 
   /// Whether a person says so in this cycle.

@@ -30,6 +30,8 @@
 
 namespace flextip::simulation {
 
+struct LoopCycle;  // loop_table.h
+
 struct LoopSetup {
   Recording base;  ///< instrument, registered port, gravity, camera and collar; no samples
   PlantSetup plant;
@@ -58,6 +60,8 @@ struct LoopSetup {
   std::optional<double> resume_s;
   double max_s = 0.0;  ///< the run ends here, reached or not; 0: at the path's end
   std::uint64_t seed = 1;
+  /// Is given every cycle; empty: nobody.
+  std::function<void(const LoopCycle&)> note_cycle;
 };
 
 /// For rendered runs. `save` is given every frame as the camera made it.

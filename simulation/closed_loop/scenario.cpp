@@ -8,10 +8,13 @@
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/yaml_map.h"
 #include "simulation/effects/catalogue.h"
+#include "task/path_time.h"
 #include "task/task_reader.h"
 
 namespace flextip::simulation {
 namespace {
+
+constexpr double kLongestHeld_s = 5.0;  // of a supervised run, beyond its path
 
 Eigen::Vector3d VectorOr(const YamlMap& map, const std::string& key,
                          const Eigen::Vector3d& fallback) {
@@ -33,6 +36,7 @@ class ScenarioReader {
     ReadCamera();
     ReadEffects();
     ReadTask();
+    ReadFaults();
     scenario_.loop.seed = static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
     RejectUnknownKeys();
     return std::move(scenario_);
@@ -276,6 +280,29 @@ class ScenarioReader {
     loop.direction = task.direction;
     loop.direction_free_axis = task.direction_free_axis;
     loop.fixtures = std::move(task.fixtures);
+    // A loop that is held does not come to its path's end.
+    if (loop.supervision.kind != SupervisionKind::kNone)
+      loop.max_s = PathSeconds(loop.path, loop.update_rate_hz) + kLongestHeld_s;
+  }
+
+  /// faults: what goes wrong while the loop runs, which nobody is told of.
+  void ReadFaults() {
+    if (!top_.Has("faults")) return;
+    for (const YamlMap& map : top_.Maps("faults")) {
+      sections_.push_back(map);
+      const std::string kind = map.Text("kind"), of = map.Text("of");
+      const auto found = FaultKindNamed(kind);
+      const auto stream = FaultStreamNamed(of);
+      if (!found) throw map.Error("kind", fmt::format("found '{}', which is no fault", kind));
+      if (!stream || !CanHave(*stream, *found)) {
+        throw map.Error("of", fmt::format("found '{}', which cannot have the fault {}", of, kind));
+      }
+      scenario_.loop.faults.push_back({*found, *stream, map.NonNegative("start_s"),
+                                       map.NonNegativeOr("duration_s", kLongestPath_s),
+                                       map.NumberOr("size", 0.0)});
+    }
+    scenario_.loop.fault_seed =
+        static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
   }
 
   /// The controller's rate, and the latencies that it is told of.

@@ -37,6 +37,29 @@ TEST(SimulateCommand, WritesARecordingPerControllerThatEstimateReads) {
   for (const char* page : {"out", "state"}) EXPECT_TRUE(PageIsMadeAgain(folder / page));
 }
 
+/// A camera that slips under a supervisor: what the run leaves is replayed, diagnosed, and drawn.
+TEST(SimulateCommand, AStopLeavesAnExcerptForTheOtherCommands) {
+  const TestFolder folder;
+  const std::string scenario =
+      std::string(FLEXTIP_SOURCE_DIR) + "/testdata/scenarios/camera_slips.yaml";
+  const auto run = RunProgram({"simulate", scenario, "-o", (folder / "out").string()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("Held at 3.0"));
+  EXPECT_THAT(run.out, HasSubstr("the camera's tip was"));
+  const std::string excerpt = (folder / "out/stops/1_tip_disagrees").string();
+  for (const std::string& recording : {(folder / "out").string(), excerpt}) {
+    const auto again =
+        RunProgram({"replay", recording, "-o", (folder / "again").string(), "--force"});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_THAT(again.out, HasSubstr("are the same bit for bit"));
+  }
+  const auto diagnosed = RunProgram({"diagnose", excerpt, "-o", (folder / "cause").string()});
+  EXPECT_EQ(diagnosed.exit_code, 0) << diagnosed.err;
+  for (const char* page : {"out", "out/stops/1_tip_disagrees"})
+    EXPECT_TRUE(PageIsMadeAgain(folder / page));
+  EXPECT_THAT(ReadText(folder / "out/report.html"), HasSubstr("\"name\":\"stop1-strips\""));
+}
+
 /// A plant with an effect, controlled and estimated with and without knowing of it.
 TEST(SimulateCommand, AFoundModelHelpsTheControllersAndTheEstimate) {
   const TestFolder folder;

@@ -28,7 +28,7 @@ const std::map<std::string, Names>& Arrows() {
       "core",     "kinematics",   "estimation",  "control",    "vision",    "recording",
       "pipeline", "plausibility", "calibration", "simulation", kClosedLoop, "diagnosis",
       "report",   "workspace",    "targets",     "exchange",   "exports",   "batch",
-      "live",     kServe,         "task",        kFaults};
+      "live",     kServe,         "task",        kFaults,      "stops"};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
@@ -42,14 +42,15 @@ const std::map<std::string, Names>& Arrows() {
       {"exchange", {"core", "recording"}},
       {"pipeline", models},
       {"task", {"core", "control", "recording"}},
-      {"live", With(models, {"pipeline", "task", "diagnosis"})},
+      {"stops", With(models, {"pipeline"})},
+      {"live", With(models, {"pipeline", "task", "diagnosis", "stops"})},
       {kServe, {"core", "recording", "simulation", kClosedLoop, "live"}},
       {"calibration", {"core", "vision", "kinematics", "estimation", "recording"}},
       {"simulation", {"core", "recording", "vision"}},
       {kFaults, {"core", "recording", "estimation", "pipeline", "simulation"}},
       {kClosedLoop,
        {"core", "recording", "vision", "estimation", "control", "pipeline", "task", "diagnosis",
-        "simulation", kFaults}},
+        "simulation", kFaults, "stops"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
       {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording", "report"}},

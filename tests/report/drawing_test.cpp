@@ -136,6 +136,35 @@ TEST(Picture, ColoursAFieldByItsValues) {
   EXPECT_GT(least.y + least.height, picture.rows / 2);
 }
 
+/// Strips: lines as thick as asked, a row each by its name, the first on top.
+TEST(Picture, DrawsStripsOneBelowTheOther) {
+  const Folder folder;
+  Figure figure{.x_label = "time (s)", .y_down = true, .y_names = {"camera", "robot"}};
+  figure.traces.push_back({.x = {0, 1}, .y = {0, 0}, .color = "#ff0000", .width = 16.0});
+  figure.traces.push_back({.x = {0, 1}, .y = {1, 1}, .color = "#00ff00", .width = 4.0});
+  const cv::Mat picture = Drawn(folder, figure);
+  const cv::Rect thick = BoxOf(picture, 255, 0, 0), thin = BoxOf(picture, 0, 255, 0);
+  EXPECT_LT(thick.br().y, thin.y);
+  EXPECT_NEAR(static_cast<double>(thick.height) / thin.height, 4.0, 1.0);
+}
+
+TEST(Picture, HasColumns) {
+  const Folder folder;
+  Figure left, right;
+  left.traces.push_back({.x = {0, 1}, .y = {0, 1}, .color = "#ff0000"});
+  right.traces.push_back({.x = {0, 1}, .y = {0, 1}, .color = "#00ff00"});
+  WritePicture(folder / "one.png", {left});
+  WritePicture(folder / "four.png", {left, right, right, left}, 2);
+  const cv::Mat one = cv::imread((folder / "one.png").string());
+  const cv::Mat four = cv::imread((folder / "four.png").string());
+  EXPECT_EQ(four.size(), cv::Size(2 * one.cols, 2 * one.rows));
+  const cv::Rect cell(0, 0, one.cols, one.rows);
+  EXPECT_EQ(BoxOf(four(cell), 255, 0, 0), BoxOf(one, 255, 0, 0));
+  EXPECT_EQ(BoxOf(four(cell + cv::Point(one.cols, one.rows)), 255, 0, 0), BoxOf(one, 255, 0, 0));
+  EXPECT_EQ(BoxOf(four(cell + cv::Point(one.cols, 0)), 0, 255, 0), BoxOf(one, 255, 0, 0));
+  EXPECT_TRUE(BoxOf(four(cell + cv::Point(0, one.rows)), 255, 0, 0).empty());
+}
+
 TEST(Picture, IsSvgPdfOrPngByItsName) {
   const Folder folder;
   Figure figure{.title = "A path", .x_label = "x (mm)", .y_label = "y (mm)", .z_label = "z (mm)"};
