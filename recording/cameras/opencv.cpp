@@ -30,7 +30,7 @@ struct Reader {
     try {
       const QuietStderr quiet;
       opened = storage.open(file, cv::FileStorage::READ);
-    } catch (const cv::Exception&) {  // reported below
+    } catch (const std::exception&) {  // of OpenCV or the standard library; reported below
     }
     if (!opened) throw Error("cannot be read by OpenCV: it is cut off, damaged or of another kind");
   }
@@ -61,7 +61,7 @@ struct Reader {
     try {
       node >> matrix;
       matrix.convertTo(matrix, CV_64F);
-    } catch (const cv::Exception&) {
+    } catch (const std::exception&) {
       throw Error(fmt::format("{}: expected a matrix", name));
     }
     const cv::Mat flat = matrix.clone().reshape(1, 1);
@@ -163,7 +163,9 @@ CameraDescription ReadOpenCvCamera(const std::filesystem::path& file,
   const Reader in(file);
   try {
     return ReadOpened(in, choice);
-  } catch (const cv::Exception&) {
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception&) {
     throw in.Error("holds something else than a camera of OpenCV's");
   }
 }

@@ -101,5 +101,13 @@ TEST_F(CameraFormats, AMatrixOfAbsurdSizeIsRefusedBeforeItsMemoryIsAskedFor) {
   }
 }
 
+// OpenCV's parser throws more than its own exceptions.
+TEST_F(CameraFormats, ABrokenKeyIsRefused) {
+  EXPECT_THAT(Refusal("%YAML:1.0\n---\nimage\x8a_width: 640\nimage_height: 480\n"
+                      "cameraWmatrix: !!opencv-matrix\n   rows: 100000\n   cols: 100000\n"
+                      "   :dt d\n   data: [ 1. ]\n"),
+              HasSubstr("in.yaml: "));
+}
+
 }  // namespace
 }  // namespace flextip

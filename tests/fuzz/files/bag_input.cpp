@@ -36,7 +36,11 @@ exchange::ImportPlan PlanOf(const std::filesystem::path& bag) {
   plan.bending_stiffness_Nm2 = 0.304;
   plan.p_RP = Eigen::Vector3d(0.28, 0.0, 0.01);
   plan.sensors["em0"].numbers["distance_from_tip_m"] = {0.02};
-  plan.sensors["wrist0"].numbers["orientation_noise_rad"] = {0.001};
+  for (const char* stream : {"wrist0", "em0", "em1"}) {
+    plan.sensors[stream].numbers["position_noise_m"] = {0.0001};
+    plan.sensors[stream].numbers["orientation_noise_rad"] = {0.001};
+  }
+  plan.sensors["load0"].numbers["force_noise_N"] = {0.01};
   plan.bags = {bag};
   return plan;
 }
