@@ -15,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kMostOffUnit = 1e-3;  // of a quaternion, as in a recording
+
 bool IsTimed(const fs::path& file) {
   if (!fs::is_regular_file(file)) return false;
   std::ifstream in(file);
@@ -67,11 +69,12 @@ Trajectory Path(const TimedTable& table, const std::string& point) {
     const Eigen::Vector3d along = d ? Eigen::Vector3d((*(*d)[0])[i], (*(*d)[1])[i], (*(*d)[2])[i])
                                     : Eigen::Vector3d::Constant(NAN);
     if (turn.allFinite()) {
+      if (std::abs(turn.stableNorm() - 1.0) > kMostOffUnit) continue;
       pose.q = Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3]).normalized();
       path.has_turn = true;
-    } else if (along.allFinite() && along.norm() > 0.0) {
-      pose.q =
-          Eigen::Quaterniond(RotationWithoutTwist(Eigen::Vector3d::UnitX(), along.normalized()));
+    } else if (along.allFinite() && along.stableNorm() > 0.0) {
+      pose.q = Eigen::Quaterniond(
+          RotationWithoutTwist(Eigen::Vector3d::UnitX(), along.stableNormalized()));
       path.has_turn = true;
     }
     path.poses.push_back(pose);

@@ -41,7 +41,8 @@ struct Trajectory {
 };
 
 /// Returns the paths in a table: each `p_XY_x`, `_y`, `_z` with `q_XY_*` or `d_XY_*` where there
-/// are any. Rows with empty cells are left out, rows whose `status` is `lost` too.
+/// are any. Left out are rows with empty cells, rows whose `status` is `lost`, and rows whose
+/// quaternion is no rotation.
 std::vector<Trajectory> TrajectoriesIn(const TimedTable& table);
 
 }  // namespace flextip::exports

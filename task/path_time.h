@@ -5,7 +5,7 @@
 
 namespace flextip {
 
-inline constexpr double kLongestPath_s = 6 * 3600.0;
+inline constexpr double kLongestPath_s = 4500.0;
 
 /// Returns the longest time (s) that the path takes at `update_rate_hz`.
 double PathSeconds(const PathSetup& path, double update_rate_hz);

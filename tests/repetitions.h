@@ -3,10 +3,10 @@
 
 namespace flextip {
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kSanitized = true;
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;
@@ -15,9 +15,9 @@ inline constexpr bool kSanitized = false;
 inline constexpr bool kSanitized = false;
 #endif
 
-/// Returns `whole`, or a tenth of it under the address sanitizer: a tenth of the trials runs
-/// through the same code, and a trial takes ten times as long there. Bounds must follow from the
-/// number.
+/// Returns `whole`, or a tenth of it under the address or thread sanitizer: a tenth of the trials
+/// runs through the same code, and a trial takes ten times as long there. Bounds must follow from
+/// the number.
 constexpr int Repetitions(int whole) { return kSanitized ? (whole + 9) / 10 : whole; }
 
 }  // namespace flextip

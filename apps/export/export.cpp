@@ -175,8 +175,7 @@ void AddExport(CLI::App& app, AppContext& context) {
   auto [stops, stop_options] =
       add("stops", "The last seconds before each stop of a controlled run, as recordings",
           "Example:\n  flextip export stops RECORDING -o stops\n");
-  OnRun(*stops, context,
-        [options = stop_options, &context] { RunStops(*options, context.quiet); });
+  OnRun(*stops, context, [options = stop_options, &context] { RunStops(*options, context.quiet); });
   auto [csv, csv_options] =
       add("csv", "Tables with plain headers",
           "Example:\n  flextip export csv RECORDING --unit mm --unit deg -o tables\n");

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "exchange/bags/bag.h"
+#include "exchange/bags/rosbag_records.h"
 #if FLEXTIP_HAS_ROSBAG
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -18,6 +19,7 @@ namespace {
 class RosBag : public Bag {
  public:
   explicit RosBag(const std::filesystem::path& file) : file_(file.string()) {
+    CheckRosBagRecords(file);
     Guarded([&] {
       bag_.open(file_, rosbag::bagmode::Read);
       rosbag::View view(bag_);

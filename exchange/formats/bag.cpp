@@ -11,6 +11,7 @@
 #include "exchange/streams/joints.h"
 #include "exchange/streams/names.h"
 #include "exchange/streams/series.h"
+#include "exchange/values/times.h"
 
 namespace flextip::exchange {
 namespace {
@@ -40,7 +41,12 @@ struct StreamMessages {
     }
     for (std::size_t i = 0; i < messages.size(); ++i) {
       if (stamped) t_ns[i] = messages[i].header.stamp_ns;
-      t_ns[i] += plan.offset_ns.value_or(0);
+      const auto sum = WithOffset(t_ns[i], plan.offset_ns.value_or(0));
+      if (!sum)
+        throw InputError(
+            fmt::format("{}: message {}: the time {} ns is beyond what a recording holds", topic,
+                        i + 1, t_ns[i]));
+      t_ns[i] = *sum;
     }
     in_time.resize(t_ns.size());
     std::iota(in_time.begin(), in_time.end(), std::size_t{0});

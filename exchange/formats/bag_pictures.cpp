@@ -9,6 +9,7 @@
 #include "exchange/bags/pictures.h"
 #include "exchange/bags/topics.h"
 #include "exchange/formats/camera.h"
+#include "exchange/values/times.h"
 
 namespace flextip::exchange {
 namespace {
@@ -54,7 +55,11 @@ void BagPictures::TakePicture(const BagMessage& message, long number) {
     stamped_ = picture.header.stamp_ns != 0;
   }
   const TimeNs t_ns = stamped_ ? picture.header.stamp_ns : message.received_ns;
-  pictures_.push_back({t_ns + offset_ns_, number, PictureSuffix(picture)});
+  const auto sum = WithOffset(t_ns, offset_ns_);
+  if (!sum)
+    throw InputError(fmt::format("{}: message {}: the time {} ns is beyond what a recording holds",
+                                 topic_, number, t_ns));
+  pictures_.push_back({*sum, number, PictureSuffix(picture)});
 }
 
 void BagPictures::TakeInfo(const BagMessage& message) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "exchange/values/times.h"
 #include "recording/text/bounds.h"
 #include "recording/text/text.h"
 
@@ -75,7 +76,10 @@ SideCar ReadSideCar(const std::filesystem::path& file) {
   if (side_car.side_by_side == "undefined") side_car.side_by_side.clear();
   if (side_car.t_ns.empty()) throw refuse("holds no times of frames");
   for (std::size_t i = 0; i < side_car.t_ns.size(); ++i) {
-    side_car.t_ns[i] -= side_car.latency_ns;
+    const auto t_ns = WithOffset(side_car.t_ns[i], -side_car.latency_ns);
+    if (!t_ns)
+      throw refuse(fmt::format("the time of frame {} is beyond what a recording holds", i));
+    side_car.t_ns[i] = *t_ns;
     if (i > 0 && side_car.t_ns[i] <= side_car.t_ns[i - 1]) {
       throw refuse(fmt::format("the times of frames {} and {} do not increase", i - 1, i));
     }

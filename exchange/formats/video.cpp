@@ -28,13 +28,20 @@ std::string PlanKey(const std::string& camera, const char* key) {
   return fmt::format("cameras.{}.{}", camera, key);
 }
 
+TimeNs Shifted(const fs::path& file, TimeNs t_ns, const CameraPlan& plan) {
+  const auto sum = WithOffset(t_ns, plan.offset_ns.value_or(0));
+  if (sum) return *sum;
+  throw InputError::At(file.string(), 0,
+                       "the times are beyond what a recording holds, with the offset added");
+}
+
 std::vector<TimeNs> TimesFromFile(const std::string& name, CameraPlan& plan, const VideoInfo& info,
                                   ImportLog& log) {
   const bool side_car = IsSideCar(plan.times.file);
   std::vector<TimeNs> times;
   if (side_car) {
     times = ReadSideCar(plan.times.file).t_ns;
-    for (TimeNs& t_ns : times) t_ns += plan.offset_ns.value_or(0);
+    for (TimeNs& t_ns : times) t_ns = Shifted(plan.times.file, t_ns, plan);
   } else {
     plan.times.offset_ns = plan.offset_ns;
     times = ReadStreamRows(name, plan.times, log).t_ns;
@@ -75,7 +82,7 @@ TimeNs Start(const std::string& name, CameraPlan& plan, bool alone, ImportLog& l
   if (clock && clock->has_date && !clock->has_zone) {
     log.Assume(name + ".clock", "UTC: the start states no zone");
   }
-  return *t_ns + plan.offset_ns.value_or(0);
+  return Shifted(plan.video, *t_ns, plan);
 }
 
 std::vector<TimeNs> TimesByRate(const std::string& name, CameraPlan& plan, const VideoInfo& info,

@@ -107,7 +107,9 @@ class RowReader {
   TimeNs Time() const {
     const TimeNs t_ns = choice_.roles.contains("t") ? TimeIn("t", plan_.units.at("time"))
                                                     : TimeIn("t_s", "s") + TimeIn("t_ns", "ns");
-    return t_ns + plan_.offset_ns.value_or(0);
+    const auto sum = WithOffset(t_ns, plan_.offset_ns.value_or(0));
+    if (sum) return *sum;
+    throw table_.Error("the time is beyond what a recording holds, with what is added to it");
   }
 
   std::vector<double> Values() const {

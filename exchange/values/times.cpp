@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/median.h"
+#include "recording/text/bounds.h"
 #include "recording/text/text.h"
 
 namespace flextip::exchange {
@@ -168,6 +169,13 @@ std::optional<TimeNs> ParseTime(std::string_view text, const std::string& unit) 
   const auto time = ParseClock(text);
   if (!time) return {};
   return time->t_ns;
+}
+
+std::optional<TimeNs> WithOffset(TimeNs t_ns, TimeNs offset_ns) {
+  TimeNs sum = 0;
+  if (__builtin_add_overflow(t_ns, offset_ns, &sum)) return {};
+  if (!ExpectedWithin(BoundsOf("_ns"), static_cast<double>(sum)).empty()) return {};
+  return sum;
 }
 
 std::string SecondsText(TimeNs t_ns) {

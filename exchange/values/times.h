@@ -25,6 +25,9 @@ std::optional<ClockTime> ParseClock(std::string_view text);
 /// A time of a table: `unit` as above, or "clock".
 std::optional<TimeNs> ParseTime(std::string_view text, const std::string& unit);
 
+/// Returns a time with an offset added; empty where the sum is beyond what a recording holds.
+std::optional<TimeNs> WithOffset(TimeNs t_ns, TimeNs offset_ns);
+
 /// Exact, in seconds: "12.3".
 std::string SecondsText(TimeNs t_ns);
 

@@ -13,6 +13,7 @@ namespace flextip {
 namespace {
 
 using Keys = std::initializer_list<const char*>;
+constexpr int kLargestMatrix = 100;
 constexpr Keys kMatrixKeys = {"camera_matrix", "cameraMatrix", "Camera_Matrix"};
 constexpr Keys kTermKeys = {"distortion_coefficients", "distCoeffs", "dist_coeffs",
                             "Distortion_Coefficients"};
@@ -29,7 +30,7 @@ struct Reader {
     try {
       const QuietStderr quiet;
       opened = storage.open(file, cv::FileStorage::READ);
-    } catch (const cv::Exception&) {  // reported below
+    } catch (const std::exception&) {  // of OpenCV or the standard library; reported below
     }
     if (!opened) throw Error("cannot be read by OpenCV: it is cut off, damaged or of another kind");
   }
@@ -41,15 +42,26 @@ struct Reader {
     }
     return {};
   }
+  /// OpenCV asks for the memory of a matrix before it counts what is in it.
+  void RefuseLarge(const std::string& name, const cv::FileNode& node) const {
+    if (node.isMap() && !node["sizes"].empty())
+      throw Error(fmt::format("{}: expected a matrix of rows and columns", name));
+    if (!node.isMap() || !node["rows"].isInt() || !node["cols"].isInt()) return;
+    const int rows = static_cast<int>(node["rows"]), cols = static_cast<int>(node["cols"]);
+    if (rows >= 0 && rows <= kLargestMatrix && cols >= 0 && cols <= kLargestMatrix) return;
+    throw Error(fmt::format("{}: found {} rows and {} columns, expected at most {}", name, rows,
+                            cols, kLargestMatrix));
+  }
   std::vector<double> Matrix(Keys keys) const {
     const std::string name = *keys.begin();
     const auto node = Find(keys);
     if (node.empty()) throw Error(fmt::format("key \"{}\" is missing", name));
+    RefuseLarge(name, node);
     cv::Mat matrix;
     try {
       node >> matrix;
       matrix.convertTo(matrix, CV_64F);
-    } catch (const cv::Exception&) {
+    } catch (const std::exception&) {
       throw Error(fmt::format("{}: expected a matrix", name));
     }
     const cv::Mat flat = matrix.clone().reshape(1, 1);
@@ -151,7 +163,9 @@ CameraDescription ReadOpenCvCamera(const std::filesystem::path& file,
   const Reader in(file);
   try {
     return ReadOpened(in, choice);
-  } catch (const cv::Exception&) {
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception&) {
     throw in.Error("holds something else than a camera of OpenCV's");
   }
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "recording/frames/video_info.h"
 #include "recording/text/text.h"
 
 namespace flextip {
@@ -16,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostRate_hz = 1e5;  // that a video file may state
+constexpr double kMostFrames = 1e9;
 
 Image FromMat(const cv::Mat& picture) {
   Image image(picture.cols, picture.rows, picture.channels());
@@ -36,11 +37,13 @@ void CheckSize(const std::string& what, const Image& image, const CameraCalibrat
 
 /// Returns the rate that the file states; the camera's where it states none that can be.
 double RateOf(const cv::VideoCapture& video, const CameraCalibration& camera) {
-  const double own_hz = video.get(cv::CAP_PROP_FPS);
-  return own_hz > 0 && own_hz < kMostRate_hz ? own_hz : camera.rate_hz;
+  const double own_hz = PossibleRate(video.get(cv::CAP_PROP_FPS));
+  return own_hz > 0 ? own_hz : camera.rate_hz;
 }
 
 bool OpenVideo(cv::VideoCapture& video, const std::string& name) {
+  std::error_code error;
+  if (fs::is_regular_file(name, error) && !IsVideo(name)) return false;
   const QuietStderr quiet;
   try {
     // Asked for any of its readers, OpenCV complains of each that refuses the file.
@@ -84,6 +87,8 @@ class VideoFrames : public FrameSource {
     if (!OpenVideo(video_, file_)) {
       throw InputError::At(file_, 0, "the video cannot be opened");
     }
+    RefuseHugeVideo(file_, video_.get(cv::CAP_PROP_FRAME_WIDTH),
+                    video_.get(cv::CAP_PROP_FRAME_HEIGHT));
   }
 
   double OwnRate() const { return RateOf(video_, camera_); }
@@ -91,7 +96,9 @@ class VideoFrames : public FrameSource {
 
   std::size_t Count() const override {
     if (!numbers_.empty()) return numbers_.size();
-    return static_cast<std::size_t>(std::max(0.0, video_.get(cv::CAP_PROP_FRAME_COUNT)));
+    // Made of the duration that the file states, which may be anything.
+    return static_cast<std::size_t>(
+        std::min(kMostFrames, std::max(0.0, video_.get(cv::CAP_PROP_FRAME_COUNT))));
   }
   void Skip(std::size_t frames) override { next_ += frames; }
   std::optional<Frame> Next() override {

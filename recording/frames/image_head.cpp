@@ -1,5 +1,7 @@
 #include "recording/frames/image_head.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -7,6 +9,8 @@
 #include <system_error>
 
 #include "recording/frames/frames.h"
+#include "recording/frames/stated_size.h"
+#include "recording/text/bounds.h"
 
 namespace flextip {
 namespace {
@@ -28,10 +32,20 @@ std::string ReadBytes(std::ifstream& in, std::streamoff from, std::streamoff cou
   return bytes;
 }
 
-int BigEndian(std::string_view bytes) {
-  unsigned value = 0;
+std::int64_t BigEndian(std::string_view bytes) {
+  std::int64_t value = 0;
   for (const char c : bytes) value = value << 8 | static_cast<unsigned char>(c);
-  return static_cast<int>(value);
+  return value;
+}
+
+ImageHead Bounded(std::int64_t width_px, std::int64_t height_px) {
+  if (width_px < 1 || height_px < 1) return {0, 0, "is damaged"};
+  if (double(width_px) * double(height_px) > kMostPixels) {
+    return {
+        0, 0,
+        fmt::format("is {} x {}, expected at most {:g} pixels", width_px, height_px, kMostPixels)};
+  }
+  return {static_cast<int>(width_px), static_cast<int>(height_px), ""};
 }
 
 // Walks over the marker segments to the frame header (ITU-T T.81, B.2.2): its marker is one of
@@ -42,19 +56,24 @@ ImageHead JpegHead(std::ifstream& in) {
     const std::string head = ReadBytes(in, at, 9);
     if (head.size() < 9) return {0, 0, "is cut off"};
     if (head[0] != '\xff') return {0, 0, "is damaged"};
-    const int marker = BigEndian(head.substr(1, 1));
+    const std::int64_t marker = BigEndian(head.substr(1, 1));
     if (marker == 0xff) {  // a fill byte
       ++at;
       continue;
     }
     if (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc) {
-      return {BigEndian(head.substr(7, 2)), BigEndian(head.substr(5, 2)), ""};
+      return Bounded(BigEndian(head.substr(7, 2)), BigEndian(head.substr(5, 2)));
     }
     at += 2 + BigEndian(head.substr(2, 2));
   }
 }
 
 ImageHead DecodedHead(const std::filesystem::path& file) {
+  const ImageHead unknown{0, 0, "is not an image that can be read"};
+  const auto stated = ReadStatedSize(file);
+  if (!stated) return unknown;
+  const ImageHead head = Bounded(stated->width_px, stated->height_px);
+  if (!head.problem.empty()) return head;
   cv::Mat image;
   try {
     const QuietStderr quiet;
@@ -62,7 +81,7 @@ ImageHead DecodedHead(const std::filesystem::path& file) {
   } catch (const cv::Exception&) {
     image.release();
   }
-  if (image.empty()) return {0, 0, "is not an image that can be read"};
+  if (image.empty()) return unknown;
   return {image.cols, image.rows, ""};
 }
 
@@ -85,7 +104,7 @@ ImageHead ReadImageHead(const std::filesystem::path& file) {
   if (tail.find(png ? kPngEnd : kJpegEnd) == std::string::npos) return {0, 0, "is cut off"};
   if (jpeg) return JpegHead(in);
   if (!start.starts_with(kPngStart) || start.size() < 24) return {0, 0, "is damaged"};
-  return {BigEndian(start.substr(16, 4)), BigEndian(start.substr(20, 4)), ""};
+  return Bounded(BigEndian(start.substr(16, 4)), BigEndian(start.substr(20, 4)));
 }
 
 }  // namespace flextip

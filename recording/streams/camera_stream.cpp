@@ -8,6 +8,7 @@
 #include "core/median.h"
 #include "recording/cameras/yaml.h"
 #include "recording/frames/image_head.h"
+#include "recording/frames/video_info.h"
 #include "recording/streams/sensor_head.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/streams/series_file.h"
@@ -102,6 +103,9 @@ long CheckVideo(const YamlMap& yaml, const std::filesystem::path& file,
     throw yaml.Error("video", fmt::format("{} is missing", file.string()));
   }
   cv::VideoCapture video;
+  if (!IsVideo(file)) {
+    throw yaml.Error("video", fmt::format("{} is not a video that can be read", file.string()));
+  }
   try {
     // Asked for any of its readers, OpenCV prints a complaint of each that refuses the file.
     const bool ffmpeg = cv::videoio_registry::hasBackend(cv::CAP_FFMPEG);

@@ -132,8 +132,8 @@ void AddCounts(Report& report, const Json& counts, const std::string& title,
 
 void WriteControlReport(const fs::path& folder) {
   const Json summary = Json::parse(ReadBytes(folder / "summary.json"));
-  Report report = BeginPage(folder, "A controlled run",
-                            [&](Report& page) { AddStops(page, folder); });
+  Report report =
+      BeginPage(folder, "A controlled run", [&](Report& page) { AddStops(page, folder); });
   AddCounts(report, summary.value("holds", Json::object()), "Held", "why");
   AddCounts(report, summary.value("limited", Json::object()), "Limited", "by");
   AddTip(report, folder / "session0/cycles.csv");

@@ -3,11 +3,12 @@
 #include <atomic>
 #include <cstddef>
 
-// The address sanitizer brings its own malloc. g++ says it by a macro, clang by __has_feature.
-#if defined(__SANITIZE_ADDRESS__)
+// The address and thread sanitizers bring their own malloc. g++ says it by a macro, clang by
+// __has_feature.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define FLEXTIP_OTHER_MALLOC 1
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define FLEXTIP_OTHER_MALLOC 1
 #endif
 #endif

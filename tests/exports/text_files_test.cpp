@@ -107,6 +107,27 @@ TEST(PlainCsv, HasHeadersThatAreWords) {
             std::count(first.begin(), first.end(), ','));
 }
 
+// Their numbers pass as numbers; a length of 1e300 leaves nothing when it is divided by itself.
+TEST(TimedTables, RowsWithoutARotationAreLeftOut) {
+  const Folder folder;
+  std::ofstream(folder.Path() / "a.csv")
+      << "#timestamp [ns],p_RW_x [m],p_RW_y [m],p_RW_z [m],q_RW_w [],q_RW_x [],q_RW_y [],q_RW_z "
+         "[]\n"
+         "1,0,0,0,0,0,0,0\n2,0,0,0,1e300,1e300,1e300,1e300\n3,0,0,0,0.6,0.8,0,0\n";
+  std::ofstream(folder.Path() / "b.csv")
+      << "#timestamp [ns],p_RE_x [m],p_RE_y [m],p_RE_z [m],d_RE_x [],d_RE_y [],d_RE_z []\n"
+         "1,0,0,0,0,1e300,0\n";
+  const auto tables = ReadTimedTables(folder.Path());
+  ASSERT_EQ(tables.size(), 2U);
+  const auto turned = TrajectoriesIn(tables[0]).at(0).poses;
+  ASSERT_EQ(turned.size(), 1U);
+  EXPECT_EQ(turned[0].t_ns, 3);
+  EXPECT_NEAR(turned[0].q.norm(), 1.0, 1e-12);
+  const auto directed = TrajectoriesIn(tables[1]).at(0).poses;
+  ASSERT_EQ(directed.size(), 1U);
+  EXPECT_NEAR((directed[0].q * Eigen::Vector3d::UnitX()).y(), 1.0, 1e-9);
+}
+
 TEST(TimedTables, AreRefusedWhereThereAreNone) {
   const Folder folder;
   EXPECT_THROW(ReadTimedTables(folder.Path()), InputError);

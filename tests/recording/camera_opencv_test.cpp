@@ -88,5 +88,26 @@ TEST_F(CameraFormats, OpenCvItselfReadsAndWritesTheSameNumbers) {
   EXPECT_THROW(read(), InputError);
 }
 
+TEST_F(CameraFormats, AMatrixOfAbsurdSizeIsRefusedBeforeItsMemoryIsAskedFor) {
+  for (const auto& [size, says] :
+       {std::pair("rows: 30000\n   cols: 30000",
+                  "camera_matrix: found 30000 rows and 30000 columns"),
+        std::pair("rows: 3\n   cols: -3", "camera_matrix: found 3 rows and -3 columns"),
+        std::pair("sizes: [ 30000, 30000 ]", "camera_matrix: expected a matrix of rows")}) {
+    const std::string matrix =
+        fmt::format("camera_matrix: !!opencv-matrix\n   {}\n   dt: d\n   data: [ 1. ]\n", size);
+    EXPECT_THAT(Refusal("%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\n" + matrix),
+                HasSubstr(says));
+  }
+}
+
+// OpenCV's parser throws more than its own exceptions.
+TEST_F(CameraFormats, ABrokenKeyIsRefused) {
+  EXPECT_THAT(Refusal("%YAML:1.0\n---\nimage\x8a_width: 640\nimage_height: 480\n"
+                      "cameraWmatrix: !!opencv-matrix\n   rows: 100000\n   cols: 100000\n"
+                      "   :dt d\n   data: [ 1. ]\n"),
+              HasSubstr("in.yaml: "));
+}
+
 }  // namespace
 }  // namespace flextip

@@ -82,7 +82,7 @@ TEST_F(Absurd, SimulateRefusesWhatWouldNotEnd) {
   EXPECT_TRUE(Refuses({"simulate", Changed(scenario, "", "(\n  speed_m_s:) [0-9.]+", "$1 1e-9")},
                       {"direction.yaml:", "speed_m_s", "1e-9", "m/s"}));
   EXPECT_TRUE(Refuses({"simulate", Changed(scenario, "", "(\n  speed_m_s:) [0-9.]+", "$1 1e-6")},
-                      {"direction.yaml:", "speed_m_s", "takes", "21600 s"}));
+                      {"direction.yaml:", "speed_m_s", "takes", "4500 s"}));
 }
 
 TEST_F(Absurd, MapRefusesWhatNoMemoryHolds) {

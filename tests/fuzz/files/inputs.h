@@ -14,11 +14,24 @@ int CheckCsvInput(std::span<const std::uint8_t> input);
 int CheckScenarioInput(std::span<const std::uint8_t> input);
 int CheckSessionInput(std::span<const std::uint8_t> input);
 int CheckModelInput(std::span<const std::uint8_t> input);
+int CheckMapInput(std::span<const std::uint8_t> input);
+int CheckMeshInput(std::span<const std::uint8_t> input);
 int CheckCalibrationInput(std::span<const std::uint8_t> input);
 /// In every format that camera files have.
 int CheckCameraInput(std::span<const std::uint8_t> input);
 int CheckCornersInput(std::span<const std::uint8_t> input);
 /// The parts are "STREAM\n" and a table, or one mapping.
 int CheckImportInput(std::span<const std::uint8_t> input);
+/// One bag, of ROS 2 or of ROS 1; what an import makes of it reads as a recording.
+int CheckMcapInput(std::span<const std::uint8_t> input);
+int CheckRosBagInput(std::span<const std::uint8_t> input);
+int CheckImageInput(std::span<const std::uint8_t> input);
+int CheckVideoInput(std::span<const std::uint8_t> input);
+/// The times beside a video.
+int CheckSideCarInput(std::span<const std::uint8_t> input);
+/// A table of a result, and the paths over time in it.
+int CheckTableInput(std::span<const std::uint8_t> input);
+/// A result's JSON: summary, diagnosis, figure.
+int CheckResultInput(std::span<const std::uint8_t> input);
 
 }  // namespace flextip

@@ -1,8 +1,11 @@
+#include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "recording/recording_file.h"
 #include "recording/recording_reader.h"
 #include "recording/recording_writer.h"
+#include "recording/truth.h"
 #include "tests/fuzz/files/input_folder.h"
 #include "tests/fuzz/files/inputs.h"
 
@@ -13,8 +16,9 @@ constexpr std::string_view kRecording =
     "format: flextip-recording\nversion: 1\n"
     "instrument: {length_m: 0.6, outer_diameter_m: 0.00238, bending_stiffness_Nm2: 0.304}\n"
     "port: {position_m: [0.28, 0.0, 0.0]}\ngravity_m_s2: [0.0, 0.0, -9.81]\n";
-constexpr const char* kStreams[] = {"wrist0", "command0", "em0",   "em1",    "strain0",
-                                    "load0",  "cam0",     "tags0", "vision0"};
+constexpr std::string_view kStreams[] = {"wrist0",  "command0", "em0",   "em1",
+                                         "strain0", "load0",    "cam0",  "cam1",
+                                         "tags0",   "vision0",  "truth0"};
 
 void RequireInBounds(const Recording& r) {
   Require(r.instrument.length_m >= 1e-4 && r.instrument.length_m <= 1e4);
@@ -40,21 +44,20 @@ int CheckRecordingInput(std::span<const std::uint8_t> input) {
     const bool read = ReadsOrRefuses([&] { ReadRecordingFile(file, log); });
     return read ? 1 : 0;
   }
-  for (const char* stream : kStreams) {
-    std::error_code ignored;
-    if (parts[0] != std::string(stream) + "\n") {
-      std::filesystem::remove_all(folder / "rec" / stream, ignored);
-      continue;
-    }
-    folder.Write(std::string("rec/") + stream + "/sensor.yaml", parts[1]);
-    folder.Write(std::string("rec/") + stream + "/data.csv", parts[2]);
-  }
+  static std::string present;  // of the input before
+  const std::string stream(parts[0].substr(0, parts[0].find('\n')));
+  if (std::find(std::begin(kStreams), std::end(kStreams), stream) == std::end(kStreams)) return 0;
+  if (stream != present) std::filesystem::remove_all(folder / ("rec/" + present));
+  present = stream;
+  folder.Write("rec/" + stream + "/sensor.yaml", parts[1]);
+  folder.Write("rec/" + stream + "/data.csv", parts[2]);
   folder.Write("rec/recording.yaml", kRecording);
   Recording recording;
   const bool read = ReadsOrRefuses(
       [&] { recording = ReadRecording(folder / "rec", {.check_frames = false}).recording; });
   if (!read) return 0;
   RequireInBounds(recording);
+  ReadsOrRefuses([&] { ReadTruth(folder / "rec"); });
   std::filesystem::remove_all(folder / "again");
   WriteRecording(folder / "again", recording);
   const Recording again = ReadRecording(folder / "again", {.check_frames = false}).recording;

@@ -1,0 +1,19 @@
+// The size that a picture's first bytes state, so that an absurd one is refused before any memory
+// is asked for.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+namespace flextip {
+
+struct StatedSize {
+  std::int64_t width_px = 0, height_px = 0;
+};
+
+/// Reads the size that a BMP, a PGM or PPM, or a TIFF file states. Empty for other kinds, and where
+/// it states none.
+std::optional<StatedSize> ReadStatedSize(const std::filesystem::path& file);
+
+}  // namespace flextip
