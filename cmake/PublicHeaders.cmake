@@ -79,6 +79,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   diagnosis/replay/sample_input.h
   diagnosis/samples/sample_set.h
   estimation/instrument_model.h
+  estimation/instrument_watch.h
   estimation/measurements.h
   estimation/rod_fit.h
   estimation/shaft_change.h

@@ -11,6 +11,7 @@
 #include "apps/control/figures.h"
 #include "apps/control/tables.h"
 #include "core/error.h"
+#include "diagnosis/running/running_diagnosis.h"
 #include "live/loop/control_loop.h"
 #include "report/figure.h"
 #include "report/pages.h"
@@ -77,6 +78,7 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
   if (recorder.Dropped() > 0)
     output.Warn(fmt::format("{} samples and cycles were not recorded: the disk was too slow",
                             recorder.Dropped()));
+  for (const FoundCause& cause : report.causes) output.Warn(diagnosis::Text(cause));
   output.WriteSummary(ReportJson(session, report, loop.only_timing));
   report::WriteFigures(output.folder() / "figures.json", TimeFigures(report));
   report::WriteControlReport(output.folder());

@@ -20,6 +20,7 @@
 #include "apps/simulate/serve.h"
 #include "core/error.h"
 #include "diagnosis/model/extended_model.h"
+#include "diagnosis/running/running_diagnosis.h"
 #include "recording/recording_writer.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
@@ -186,6 +187,11 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
     });
   }
   nlohmann::json controllers;
+  for (std::size_t i = 0; i < runs; ++i) {
+    const FoundCause& cause = results[i].updates.back().cause;
+    if (!cause.IsThere()) continue;
+    output.Warn(fmt::format("{}: {}", Name(scenario.controllers[i]), diagnosis::Text(cause)));
+  }
   for (std::size_t i = 0; i < runs; ++i)
     controllers[Name(scenario.controllers[i])] = Figures(scenario.loop, results[i]);
   nlohmann::json summary = {{"scenario", options.scenario.filename().string()},

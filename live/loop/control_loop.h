@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "live/camera/tip_camera.h"
 #include "live/loop/cycle.h"
@@ -46,6 +47,7 @@ struct LoopReport {
   std::optional<CameraCounts> camera;  ///< where the session has one
   long bad_states = 0;
   std::string last_hold;  ///< of the last cycle
+  std::vector<FoundCause> causes;  ///< that were found, each time others were named; at most 16
 };
 
 /// Runs the session until its path is done, the time is over or the operator stops it; then pauses

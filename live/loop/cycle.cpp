@@ -7,6 +7,7 @@
 #include "control/supervision/rate_limits.h"
 #include "core/rotation.h"
 #include "diagnosis/model/extended_instrument.h"
+#include "diagnosis/running/running_diagnosis.h"
 
 namespace flextip::live {
 namespace {
@@ -45,6 +46,14 @@ std::unique_ptr<InstrumentModel> ModelOf(const Session& session) {
   return std::make_unique<diagnosis::ExtendedInstrument>(*session.model, session.base);
 }
 
+std::unique_ptr<InstrumentWatch> WatchOf(const Session& session) {
+  const WatchTask& watch = session.task.watch;
+  if (!watch.running) return nullptr;
+  return std::make_unique<diagnosis::RunningDiagnosis>(
+      session.base,
+      diagnosis::RunningOptions{watch.false_alarms_per_hour, session.port_prior_m});
+}
+
 double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 
 bool Acts(ControlStatus status) {
@@ -54,7 +63,9 @@ bool Acts(ControlStatus status) {
 }  // namespace
 
 Cycle::Cycle(const Session& session, bool wait)
-    : session_(session), wait_(wait), controller_(OptionsOf(session), ModelOf(session)) {}
+    : session_(session),
+      wait_(wait),
+      controller_(OptionsOf(session), ModelOf(session), nullptr, WatchOf(session)) {}
 
 /// The doubt in a clock grows with the time since it was found. The gain is found anew where it has
 /// grown by a tenth.
@@ -112,6 +123,7 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
   command_ = controller_.Step(wish);
   const ControllerCommand& command = command_;
   outputs.status = command.status;
+  outputs.cause = command.cause;
   if (wish.p_RE_desired && Acts(command.status)) p_RE_known_ = command.p_RE_used;
   if (clear && phase_ == Phase::kAveraging) {
     outputs.hold = Hold::kStarting;

@@ -9,6 +9,7 @@
 
 #include "control/tip_path.h"
 #include "core/robot/crtk.h"
+#include "estimation/instrument_watch.h"
 #include "live/loop/holds.h"
 #include "pipeline/instrument_controller.h"
 
@@ -29,6 +30,7 @@ struct CycleOutputs {
   bool workspace_limited = false, fixture_limited = false;
   std::optional<CrtkCommand> state_command;  ///< to send to the robot
   bool done = false;                         ///< the path was run to its end
+  FoundCause cause;                          ///< that the running diagnosis found: a warning
 };
 
 class Cycle {

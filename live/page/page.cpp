@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "diagnosis/running/running_diagnosis.h"
 #include "live/page/findings.h"
 #include "live/page/history.h"
 #include "live/page/picture_json.h"
@@ -71,6 +72,12 @@ class Page::Worker {
     if (record.inputs.streams.state) now.state = record.inputs.streams.state->value;
     if (IsOther(now, last_change_)) changes_.Push(now);
     last_change_ = now;
+    if (IsNews(record.outputs.cause, last_cause_)) {
+      last_cause_ = record.outputs.cause;
+      PageChange found = now;
+      found.cause = record.outputs.cause;
+      changes_.Push(found);
+    }
     if (record.outputs.state_command) {
       now.told = record.outputs.state_command;
       changes_.Push(now);
@@ -161,6 +168,11 @@ class Page::Worker {
     }
     for (auto& [t_ns, what] : events) history_.AddEvent({t_ns, PageEvent::Kind::kText, what, {}});
     changes_.Drain([&](const PageChange& change) {
+      if (change.cause.IsThere()) {
+        history_.AddEvent({change.t_ns, PageEvent::Kind::kText,
+                           fmt::format("warning: {}", diagnosis::Text(change.cause)), {}});
+        return;
+      }
       history_.AddEvent({change.t_ns, PageEvent::Kind::kChange, "", change});
     });
   }

@@ -165,6 +165,31 @@ void VisitStream(Io& io, const std::string& name, std::optional<Arrived<T>>& now
 }
 
 inline constexpr const char* kLaterStream = "asked";
+inline constexpr const char* kLaterCause = "cause";
+
+template <class Io>
+void VisitSized(Io& io, const std::string& name, SizedCause& sized) {
+  VisitEnum(io, name, sized.cause);
+  io.Number(name + " value", sized.value);
+  io.Number(name + " sd", sized.sd);
+}
+
+/// What the running diagnosis found; empty where nothing is.
+template <class Io>
+void VisitCause(Io& io, FoundCause& found) {
+  std::optional<FoundCause> cause;
+  if (found.IsThere()) cause = found;
+  VisitOptional(io, cause, FoundCause{}, [&](FoundCause& c) {
+    const std::string name = kLaterCause;
+    VisitSized(io, name, c.likeliest);
+    VisitSized(io, name + " or", c.other);
+    VisitFlag(io, name + " or others", c.has_more);
+    io.Number(name + " evidence", c.log_evidence);
+    io.Integer(name + " found [ns]", c.found_ns);
+    io.Integer(name + " since [ns]", c.since_ns);
+  });
+  found = cause.value_or(FoundCause{});
+}
 
 template <class Io>
 void VisitRecord(Io& io, CycleRecord& record, const CycleRecord& before) {
@@ -203,6 +228,7 @@ void VisitRecord(Io& io, CycleRecord& record, const CycleRecord& before) {
   outputs.t_ns = record.inputs.t_ns;
   // Older recordings lack what follows.
   VisitStream(io, kLaterStream, streams.goal, last.goal);
+  VisitCause(io, outputs.cause);
 }
 
 }  // namespace flextip::live::fields

@@ -20,6 +20,20 @@ bool SameBits(const std::optional<Eigen::Vector3d>& a, const std::optional<Eigen
   return a.has_value() == b.has_value() && (!a || SameBits(*a, *b));
 }
 
+bool SameBits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool SameCause(const SizedCause& a, const SizedCause& b) {
+  return a.cause == b.cause && SameBits(a.value, b.value) && SameBits(a.sd, b.sd);
+}
+
+bool SameCause(const FoundCause& a, const FoundCause& b) {
+  return SameCause(a.likeliest, b.likeliest) && SameCause(a.other, b.other) &&
+         a.has_more == b.has_more && SameBits(a.log_evidence, b.log_evidence) &&
+         a.found_ns == b.found_ns && a.since_ns == b.since_ns;
+}
+
 bool SameOutputs(const CycleOutputs& a, const CycleOutputs& b) {
   return a.hold == b.hold && a.held_by == b.held_by && a.has_command == b.has_command &&
          a.status == b.status && SameBits(a.p_RW_command, b.p_RW_command) &&
@@ -27,7 +41,7 @@ bool SameOutputs(const CycleOutputs& a, const CycleOutputs& b) {
          a.step_limited == b.step_limited && a.speed_limited == b.speed_limited &&
          a.acceleration_limited == b.acceleration_limited &&
          a.workspace_limited == b.workspace_limited && a.fixture_limited == b.fixture_limited &&
-         a.state_command == b.state_command && a.done == b.done;
+         a.state_command == b.state_command && a.done == b.done && SameCause(a.cause, b.cause);
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ std::vector<ReplayedCommand> ReplayController(const Scenario& scenario, Controll
   setup.controller.kind = kind;
   InstrumentController controller(
       ControllerOptionsOf(setup), setup.model ? setup.model() : nullptr,
-      TrackerOf(setup, frames != nullptr ? &scenario.tracker : nullptr));
+      TrackerOf(setup, frames != nullptr ? &scenario.tracker : nullptr),
+      setup.watch ? setup.watch() : nullptr);
   const PlantShape start = Plant(setup.plant, setup.plant_options).Solve(setup.p_RW_start);
   if (!start.IsUsable())
     throw InputError(fmt::format("the shaft has no equilibrium at the start: {}", start.message));

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/error.h"
+#include "diagnosis/running/running_diagnosis.h"
 #include "recording/cameras/camera_file.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/yaml_map.h"
@@ -262,6 +264,7 @@ class ScenarioReader {
     std::optional<YamlMap> control;
     if (top_.Has("control")) control = Section(top_, "control");
     reader.ReadSupervisor(top_);
+    reader.ReadDiagnosis(top_);
     if (control) {
       reader.ReadControl(*control);
       ReadTimes(*control);
@@ -276,6 +279,15 @@ class ScenarioReader {
     loop.direction = task.direction;
     loop.direction_free_axis = task.direction_free_axis;
     loop.fixtures = std::move(task.fixtures);
+    if (task.watch.running) Watch(task.watch);
+  }
+
+  void Watch(const WatchTask& watch) {
+    LoopSetup& loop = scenario_.loop;
+    const diagnosis::RunningOptions options{watch.false_alarms_per_hour, loop.port_prior_m};
+    loop.watch = [base = loop.base, options] {
+      return std::make_unique<diagnosis::RunningDiagnosis>(base, options);
+    };
   }
 
   /// The controller's rate, and the latencies that it is told of.

@@ -1,0 +1,69 @@
+#include "diagnosis/running/watched_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace flextip::diagnosis::running {
+namespace {
+
+/// Which block's parameters move the port: their prior is the port's registration.
+bool MovesPort(const Effect& effect, const SampleSet& set) {
+  const Eigen::Matrix<double, kMostWidened, 1> theta = Eigen::Matrix<double, kMostWidened, 1>::Zero();
+  EffectMemory memory{};
+  SampleInputs inputs = SampleInputs::Zero();
+  std::vector<InputChange::Column> columns;
+  InputChange change(theta.data(), 0, inputs, columns);
+  effect.Apply(theta.data(), {set, 0, 0.0, 0.0, 0.0}, memory, change);
+  return !columns.empty() && columns.front().input == sample_input::kPort;
+}
+
+}  // namespace
+
+WatchedParameters::WatchedParameters(const SampleSet& set, double port_prior_m) {
+  int column = 0;
+  for (const WatchedEffect& row : WatchedEffects()) {
+    WatchedBlock block;
+    block.row = &row;
+    block.effect = row.make();
+    const std::vector<FitParameter> fitted = block.effect->Parameters(set);
+    block.first = column;
+    block.count = static_cast<int>(fitted.size());
+    if (row.says != nullptr) block.widened = row.widened > 0 ? row.widened : block.count;
+    FLEXTIP_CHECK(block.widened <= kMostWidened && column + block.count <= kParameters,
+                  "room for every watched parameter");
+    block.positive = fitted[0].positive;
+    const bool port = MovesPort(*block.effect, set);
+    for (int i = 0; i < block.count; ++i) {
+      const FitParameter& parameter = fitted[static_cast<std::size_t>(i)];
+      const double tolerance =
+          port ? std::max(parameter.tolerance, port_prior_m) : parameter.tolerance;
+      tolerance_[column + i] = tolerance;
+      if (i < block.widened)
+        block.typical[static_cast<std::size_t>(i)] = parameter.typical / tolerance;
+    }
+    column += block.count;
+    blocks_.push_back(std::move(block));
+  }
+  FLEXTIP_CHECK(blocks_.size() <= kMostCauses, "room for every cause");
+  columns_.reserve(4 * kParameters);
+}
+
+const std::vector<InputChange::Column>& WatchedParameters::ColumnsAt(const SampleSet& set,
+                                                                     const SolvedSample& at,
+                                                                     double port_friction) {
+  static constexpr std::array<double, kParameters> kNone{};
+  const double by_friction_m = at.ds_port_dfriction_m;
+  const Instant now{set, 0, set.samples[0].t_s, at.s_port_m - by_friction_m * port_friction,
+                    by_friction_m};
+  columns_.clear();
+  SampleInputs unused = SampleInputs::Zero();
+  for (WatchedBlock& block : blocks_) {
+    InputChange change(kNone.data(), block.first, unused, columns_);
+    block.effect->Apply(kNone.data(), now, block.memory, change);
+  }
+  return columns_;
+}
+
+}  // namespace flextip::diagnosis::running
