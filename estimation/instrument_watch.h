@@ -8,7 +8,6 @@
 #include "core/time_series.h"
 #include "estimation/measurements.h"
 #include "estimation/shaft_change.h"
-#include "estimation/shaft_estimator.h"
 
 namespace flextip {
 
@@ -18,8 +17,7 @@ struct WatchedMoment {
   const Measurements& measurements;
   /// When em0, em1, strain and load were sampled: a sample counts once.
   std::array<TimeNs, 4> sampled_ns{};
-  const ShaftChange& change;      ///< of the found model, where there is one
-  const ShaftEstimate& estimate;  ///< of this moment
+  const ShaftChange& change;  ///< of the found model, where there is one
 };
 
 /// A cause, by its number in the watch's list, and its size in SI units.

@@ -153,7 +153,7 @@ bool InstrumentController::EstimateThen(const SensorReadings& seen, Supervision&
   Vote(seen.tip->t_ns, then, found);
   const ShaftEstimate estimate = estimator_.Update(then, model_ ? model_->Shaft() : ShaftChange());
   Learn(seen.tip->t_ns, estimate);
-  LookFor(seen.tip->t_ns, *past, then, estimate);
+  LookFor(seen.tip->t_ns, *past, then);
   return then.tip.has_value() || !had_tip;
 }
 
@@ -198,16 +198,15 @@ ShaftEstimate InstrumentController::Estimate(TimeNs t_ns, const Measurements& me
 }
 
 void InstrumentController::LookFor(TimeNs t_ns, const SensorReadings& readings,
-                                   const Measurements& z, const ShaftEstimate& estimate) {
+                                   const Measurements& z) {
   if (!watch_) return;
   const auto time = [](const auto& sample) { return sample ? sample->t_ns : TimeNs(0); };
   const ShaftChange none;
-  watch_->Look({t_ns,
-                z,
-                {time(readings.em0), time(readings.em1), time(readings.strain),
-                 time(readings.load)},
-                model_ ? model_->Shaft() : none,
-                estimate});
+  watch_->Look(
+      {t_ns,
+       z,
+       {time(readings.em0), time(readings.em1), time(readings.strain), time(readings.load)},
+       model_ ? model_->Shaft() : none});
 }
 
 /// Looks for causes of misfit. Late tips were looked at for the time at which they were seen, and
@@ -215,7 +214,7 @@ void InstrumentController::LookFor(TimeNs t_ns, const SensorReadings& readings,
 void InstrumentController::Watch(const ControllerInputs& inputs, ControllerCommand& command) {
   if (!watch_) return;
   if (!tip_is_carried_ && command.status != ControlStatus::kNoWrist)
-    LookFor(inputs.t_ns, inputs.sensors, command.measurements, command.estimate);
+    LookFor(inputs.t_ns, inputs.sensors, command.measurements);
   watch_->Work();
   command.cause = watch_->Found();
 }

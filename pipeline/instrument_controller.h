@@ -111,8 +111,7 @@ class InstrumentController {
   void ControlPlace(ControllerCommand& command);
   void ControlDirection(const Eigen::Vector3d& d_RE_desired, ControllerCommand& command);
   void Supervise(const ControllerInputs& inputs, ControllerCommand& command);
-  void LookFor(TimeNs t_ns, const SensorReadings& readings, const Measurements& z,
-               const ShaftEstimate& estimate);
+  void LookFor(TimeNs t_ns, const SensorReadings& readings, const Measurements& z);
   void Watch(const ControllerInputs& inputs, ControllerCommand& command);
 
   InstrumentControllerOptions options_;

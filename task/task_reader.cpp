@@ -94,7 +94,8 @@ void TaskReader::ReadDiagnosis(const YamlMap& map) {
   if (!map.Has("diagnosis")) return;
   const YamlMap section = Section(map, "diagnosis");
   WatchTask& watch = task_.watch;
-  if (section.Has("running")) watch.running = ReadChoice(section, "running", {"false", "true"}) == 1;
+  if (section.Has("running"))
+    watch.running = ReadChoice(section, "running", {"false", "true"}) == 1;
   watch.false_alarms_per_hour =
       section.PositiveOr("false_alarms_per_hour", watch.false_alarms_per_hour);
   if (watch.false_alarms_per_hour > kMostFalseAlarmsPerHour) {

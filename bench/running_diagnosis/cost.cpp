@@ -29,9 +29,8 @@ WatchCost MeasureCost(std::uint64_t seed) {
   run.setup.watch = nullptr;
   const simulation::LoopResult result = RunClosedLoop(run.setup, nullptr);
   const Recording& recording = result.recording;
-  ShaftEstimator estimator(
-      EstimatorOptionsFor(run.setup.base.instrument, run.setup.base.p_RP,
-                          run.setup.base.gravity_m_s2));
+  ShaftEstimator estimator(EstimatorOptionsFor(run.setup.base.instrument, run.setup.base.p_RP,
+                                               run.setup.base.gravity_m_s2));
   diagnosis::RunningDiagnosis watch(run.setup.base);
   const ShaftChange none;
   std::vector<double> times_s;
@@ -40,10 +39,9 @@ WatchCost MeasureCost(std::uint64_t seed) {
     const auto z = MeasurementsAt(recording, update.t_ns);
     if (!z) continue;
     const double begin_s = ThreadTime_s();
-    const ShaftEstimate estimate = estimator.Update(*z);
+    (void)estimator.Update(*z);
     const double between_s = ThreadTime_s();
-    watch.Look({update.t_ns, *z, {update.t_ns, update.t_ns, update.t_ns, update.t_ns}, none,
-                estimate});
+    watch.Look({update.t_ns, *z, {update.t_ns, update.t_ns, update.t_ns, update.t_ns}, none});
     watch.Work();
     const double end_s = ThreadTime_s();
     estimates_s += between_s - begin_s;
@@ -62,7 +60,8 @@ WatchCost MeasureCost(std::uint64_t seed) {
 
 std::string CostText(const WatchCost& cost) {
   return fmt::format(
-      "a cycle of the running diagnosis: {:.0f} us, 99 % below {:.0f}, worst {:.0f}; {:.2f} times an "
+      "a cycle of the running diagnosis: {:.0f} us, 99 % below {:.0f}, worst {:.0f}; {:.2f} times "
+      "an "
       "estimate ({:.0f} us); {} cycles\n",
       1e6 * cost.mean_s, 1e6 * cost.p99_s, 1e6 * cost.worst_s, cost.mean_s / cost.estimate_mean_s,
       1e6 * cost.estimate_mean_s, cost.cycles);

@@ -42,9 +42,11 @@ struct Row {
     delays_s.push_back(record.warned_s - record.onset_s);
   }
   std::string Text(const std::string& name) const {
-    const auto second = [](double s) { return s < 0.0 ? std::string("") : fmt::format("{:.1f}", s); };
-    return fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name, runs, early, warned,
-                       first_right, last_right, alone, second(Quantile(delays_s, 0.5)),
+    const auto second = [](double s) {
+      return s < 0.0 ? std::string("") : fmt::format("{:.1f}", s);
+    };
+    return fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name, runs, early,
+                       warned, first_right, last_right, alone, second(Quantile(delays_s, 0.5)),
                        second(Quantile(delays_s, 0.9)));
   }
 };
@@ -65,8 +67,7 @@ WatchedRecord RunWatched(const WatchedRun& run) {
     return record;
   }
   for (const simulation::LoopUpdate& update : result.updates) {
-    record.simulated_s =
-        1e-9 * static_cast<double>(update.t_ns - simulation::kSimulationStart_ns);
+    record.simulated_s = 1e-9 * static_cast<double>(update.t_ns - simulation::kSimulationStart_ns);
     if (!update.cause.IsThere()) continue;
     if (!record.Warned()) {
       record.warned_s = record.simulated_s;
@@ -86,9 +87,9 @@ std::string CsvText(const std::vector<WatchedRecord>& records) {
   std::string text =
       "cause,size,suite,simulated_s,onset_s,warned_s,first_names,last_names,value,sd,text,ended\n";
   for (const WatchedRecord& r : records) {
-    text += fmt::format("{},{},{},{:.2f},{:.2f},{:.2f},{},{},{:.6g},{:.3g},\"{}\",\"{}\"\n", r.cause,
-                        r.size, r.suite, r.simulated_s, r.onset_s, r.warned_s, r.first_names,
-                        r.last_names, r.value, r.sd, r.text, r.ended);
+    text += fmt::format("{},{},{},{:.2f},{:.2f},{:.2f},{},{},{:.6g},{:.3g},\"{}\",\"{}\"\n",
+                        r.cause, r.size, r.suite, r.simulated_s, r.onset_s, r.warned_s,
+                        r.first_names, r.last_names, r.value, r.sd, r.text, r.ended);
   }
   return text;
 }

@@ -13,9 +13,9 @@ struct WatchedRecord {
   std::string ended;               ///< why the run ended early; empty: it did not
   double simulated_s = 0.0;
   double onset_s = 0.0;
-  double warned_s = -1.0;             ///< of the run; -1: never
+  double warned_s = -1.0;               ///< of the run; -1: never
   std::string first_names, last_names;  ///< "port_compliance or port_offset"
-  std::string text;                   ///< of the last state
+  std::string text;                     ///< of the last state
   double value = 0.0, sd = 0.0;
 
   bool Warned() const { return warned_s >= 0.0; }

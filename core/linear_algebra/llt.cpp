@@ -53,7 +53,7 @@ template class Llt<2>;
 template class Llt<3>;
 template class Llt<6>;
 template class Llt<21>;  // the running diagnosis: a sample, what wanders, all parameters
-template class Llt<24>;
+template class Llt<31>;
 template class Llt<48>;
 template class Llt<Eigen::Dynamic>;
 

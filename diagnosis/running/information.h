@@ -11,9 +11,13 @@ namespace flextip::diagnosis::running {
 inline constexpr int kLoadRow = row::kCount, kRows = row::kCount + 3;
 /// Parameters of all watched effects, in units of their tolerances: with a prior of one.
 inline constexpr int kParameters = 48;
-/// What is another in each block, within tolerance: where a breathing port is, and what the model
+/// What is another in each block, within tolerance: where a breathing port is, how far it goes in
+/// half the block, friction that sticks somewhere, the wrist within its play, and what the model
 /// misses in each row.
-inline constexpr int kWandering = 3 + kRows;
+inline constexpr int kPlaceColumn = kParameters, kGoingColumn = kPlaceColumn + 3;
+inline constexpr int kStuckColumn = kGoingColumn + 3, kPlayColumn = kStuckColumn + 1;
+inline constexpr int kMissedColumn = kPlayColumn + 3;
+inline constexpr int kWandering = 10 + kRows;
 inline constexpr int kColumns = kParameters + kWandering;
 
 /// A sample's rows with unit covariance: e = X x + noise, x the parameters and what wanders.

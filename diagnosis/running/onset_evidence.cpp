@@ -65,8 +65,7 @@ void AllSamples::Since(const Information& part) {
   whitened_part_ = factor_.SolveL(part.H);
 }
 
-OnsetEvidence AllSamples::Of(const WatchedBlock& block,
-                             const WatchedParameters& parameters) const {
+OnsetEvidence AllSamples::Of(const WatchedBlock& block, const WatchedParameters& parameters) const {
   const int n = block.widened, c = block.first;
   Reduced reduced;
   for (int i = 0; i < n; ++i) {
@@ -83,9 +82,14 @@ OnsetEvidence AllSamples::Of(const WatchedBlock& block,
     SmallVector sd = SmallVector::Ones();
     for (int i = 0; i < n; ++i) sd[i] = size * block.typical[static_cast<std::size_t>(i)];
     const Weighed weighed = Weigh(reduced, sd, block.positive);
-    evidence.log_ratio = AddLogarithms(evidence.log_ratio,
-                                       weighed.log_ratio - std::log(double(kSizes.size())));
+    evidence.log_ratio =
+        AddLogarithms(evidence.log_ratio, weighed.log_ratio - std::log(double(kSizes.size())));
     if (weighed.log_ratio > best.log_ratio) best = weighed;
+  }
+  const double size = best.mean.norm();
+  if (size > 0.0) {
+    const SmallVector along = best.mean / size;
+    evidence.beyond = size - 2.0 * std::sqrt(std::max(0.0, along.dot(best.covariance * along)));
   }
   // What is told: the value itself, or the length of several.
   const int first = block.row->first, count = block.row->count;

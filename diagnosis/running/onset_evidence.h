@@ -13,8 +13,10 @@ namespace flextip::diagnosis::running {
 
 /// One cause that set in at one moment.
 struct OnsetEvidence {
-  double log_ratio = 0.0;  ///< of the probabilities, natural logarithm
+  double log_ratio = 0.0;        ///< of the probabilities, natural logarithm
   double value = 0.0, sd = 0.0;  ///< of what is told, in SI units
+  /// Of all that set in, in tolerances, less two standard deviations.
+  double beyond = 0.0;
 };
 
 /// All samples, for comparison with any part of them. Parameters within tolerance are the same

@@ -17,6 +17,7 @@ constexpr double kTipGone_s = 1.0;       // without a tip, the other sensors are
 constexpr double kMemory_s = 60.0;       // of what came before the blocks
 constexpr double kApart = 8.0;           // deviations of a reading from those on either side
 constexpr double kAsWell = 20.0;         // a cause is named too where it is so little less likely
+constexpr double kTolerance = 1.0;       // a cause is larger than its tolerance
 constexpr double kHour_s = 3600.0;
 
 constexpr double kNone = -std::numeric_limits<double>::infinity();
@@ -63,6 +64,9 @@ void RunningDiagnosis::Look(const WatchedMoment& moment) {
     return;
   }
   if (growing_from_ns_ == 0) growing_from_ns_ = moment.t_ns;
+  const double part = std::min(1.0, Seconds(moment.t_ns - growing_from_ns_) / kBlock_s);
+  rows_.X.middleCols<3>(running::kGoingColumn) =
+      (2.0 * part - 1.0) * rows_.X.middleCols<3>(running::kPlaceColumn);
   Keep(rows_);
   if (Seconds(moment.t_ns - growing_from_ns_) >= kBlock_s && step_ == Step::kNothing)
     CloseBlock(moment.t_ns);
@@ -112,7 +116,7 @@ void RunningDiagnosis::Work() {
       all_ = past_;
       for (int i = 0; i < count_; ++i) all_.Add(Newest(i).sums);
       weighing_.Take(all_);
-      for (Candidate& candidate : candidates_) candidate = {kNone, kNone, {}, 0};
+      for (Candidate& candidate : candidates_) candidate = {kNone, kNone, 0.0, {}, 0};
       part_.Clear();
       onset_ = 0;
       step_ = Step::kOnsets;
@@ -155,6 +159,7 @@ void RunningDiagnosis::WeighAll(TimeNs since_ns) {
     candidate.best_log_ratio = evidence.log_ratio;
     candidate.sized = {static_cast<std::int8_t>(i), evidence.value, evidence.sd};
     candidate.since_ns = since_ns;
+    candidate.beyond = evidence.beyond;
   }
 }
 
@@ -185,6 +190,8 @@ void RunningDiagnosis::Name(double log_evidence) {
     has_more |= other != nullptr;
     if (other == nullptr || candidate.log_evidence > other->log_evidence) other = &candidate;
   }
+  // What is within tolerance is no cause, however sure.
+  if (!found_.IsThere() && best->beyond < kTolerance) return;
   if (!found_.IsThere()) {
     found_.found_ns = decided_ns_;
     found_.since_ns = best->since_ns;

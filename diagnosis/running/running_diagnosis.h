@@ -73,7 +73,7 @@ class RunningDiagnosis : public InstrumentWatch {
   TimeNs growing_from_ns_ = 0;
   std::vector<Block> blocks_;
   int newest_ = -1, count_ = 0;
-  bool has_past_ = false;  // a block is not kept any more
+  bool has_past_ = false;             // a block is not kept any more
   running::Information past_;         // before the blocks; fades
   running::Information since_found_;  // of it, what came after the found cause; fades alike
   running::Information all_, part_;
@@ -83,7 +83,7 @@ class RunningDiagnosis : public InstrumentWatch {
   int onset_ = 0;
   struct Candidate {
     double log_evidence = 0.0;
-    double best_log_ratio = 0.0;
+    double best_log_ratio = 0.0, beyond = 0.0;
     SizedCause sized;
     TimeNs since_ns = 0;
   };

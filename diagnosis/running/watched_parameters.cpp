@@ -8,14 +8,15 @@
 namespace flextip::diagnosis::running {
 namespace {
 
-/// Which block's parameters move the port: their prior is the port's registration.
+constexpr std::array<double, kParameters> kNone{};
+
+/// Whether the effect's parameters move the port: their prior is the port's registration.
 bool MovesPort(const Effect& effect, const SampleSet& set) {
-  const Eigen::Matrix<double, kMostWidened, 1> theta = Eigen::Matrix<double, kMostWidened, 1>::Zero();
   EffectMemory memory{};
   SampleInputs inputs = SampleInputs::Zero();
   std::vector<InputChange::Column> columns;
-  InputChange change(theta.data(), 0, inputs, columns);
-  effect.Apply(theta.data(), {set, 0, 0.0, 0.0, 0.0}, memory, change);
+  InputChange change(kNone.data(), 0, inputs, columns);
+  effect.Apply(kNone.data(), {set, 0, 0.0, 0.0, 0.0}, memory, change);
   return !columns.empty() && columns.front().input == sample_input::kPort;
 }
 
@@ -53,7 +54,6 @@ WatchedParameters::WatchedParameters(const SampleSet& set, double port_prior_m) 
 const std::vector<InputChange::Column>& WatchedParameters::ColumnsAt(const SampleSet& set,
                                                                      const SolvedSample& at,
                                                                      double port_friction) {
-  static constexpr std::array<double, kParameters> kNone{};
   const double by_friction_m = at.ds_port_dfriction_m;
   const Instant now{set, 0, set.samples[0].t_s, at.s_port_m - by_friction_m * port_friction,
                     by_friction_m};

@@ -14,10 +14,15 @@ using namespace sample_input;
 // Of a force that no sensor sees, in units of EI / L^2: across the shaft as in a diagnosis, along
 // it as the estimator has it.
 constexpr double kForceAcross = 20.0, kForceAlong = 4.0;
-constexpr double kNewForce = 0.25;     // a step farther than this, in the same units, is a new place
-constexpr double kForceMemory = 0.7;   // of the force that derivatives are taken at
-constexpr double kBreathing_m = 1e-4;  // the port's motion that is within tolerance
-constexpr double kModelError = 0.2;    // of a row's noise, the same for a block of time
+// By how much the force differs from that of the moment before, in the same units; and the part of
+// it along the shaft that is forgotten where no load cell says it.
+constexpr double kStepAcross = 0.5, kStepAlong = 0.1, kForceDecay = 0.03;
+constexpr double kNewForce = 0.25, kFarthestStep = 2.0;
+// Within tolerance: the port's motion, its friction, and half the width of the wrist's play. As
+// breathing goes on at one frequency, it can keep in step with a motion for all of twenty blocks:
+// by its size times sqrt(20 / 2) in each, what is another in each of them looks as large.
+constexpr double kBreathing_m = 1e-4 * 3.162, kFriction = 0.03, kPlay_m = 5e-5;
+constexpr double kModelError = 0.2;  // of a row's noise, the same for a block of time
 constexpr double kLeastNoise = 1e-9;
 constexpr int kForce = rod_input::kForce;
 
@@ -44,7 +49,8 @@ void SampleWatch::SetSample(const WatchedMoment& moment, const std::array<bool, 
   const auto has = [&now](int first, int rows) {
     for (int i = 0; i < rows; ++i) now.present.set(static_cast<std::size_t>(first + i));
   };
-  now.t_s = Seconds(moment.t_ns);
+  if (start_ns_ == 0) start_ns_ = moment.t_ns;
+  now.t_s = Seconds(moment.t_ns - start_ns_);
   now.p_RW = z.p_RW;
   // As in sample_set: without a measured orientation, R's axes turned without twist to the port.
   const Eigen::Vector3d to_port = (set_.p_RP - z.p_RW).normalized();
@@ -60,7 +66,7 @@ void SampleWatch::SetSample(const WatchedMoment& moment, const std::array<bool, 
     set_.em_from_tip_m = z.em->distance_from_tip_m;
     now.p_RS = z.em->T_RS.p;
     now.d_em = z.em->T_RS.R.col(0);
-    if (sampled[0]) has(row::kEmPosition, 3), has(row::kEmDirection, 2);
+    if (sampled[0]) has(row::kEmPosition, 5);  // and its direction
   }
   if (z.port_direction && sampled[1]) {
     now.d_port = *z.port_direction;
@@ -142,21 +148,30 @@ SampleWatch::Matrix SampleWatch::OwnCovariance(const Measurements& z) const {
   return C;
 }
 
+/// The likeliest difference of the force from the one expected, of which `root` is a square root of
+/// the covariance.
+Eigen::Vector3d SampleWatch::ForceStep(const Matrix& known, const ByThree& by_force,
+                                       const Eigen::Matrix3d& root,
+                                       const Eigen::Matrix<double, kRows, 1>& e) {
+  const ByThree by_step = by_force * root;
+  Matrix C = known;
+  C.noalias() += by_step * by_step.transpose();
+  const Llt<kRows> factor(C);
+  if (!factor.Succeeded()) return Eigen::Vector3d::Constant(std::nan(""));
+  return root * (factor.SolveL(by_step).transpose() * factor.SolveL(e));
+}
+
 /// Derivatives are taken at the force of the moments before: at the moment's own, its noise would
-/// look like something explained.
-bool SampleWatch::FollowForce(const Eigen::Vector3d& step_N, const WatchedMoment& moment) {
+/// look like something explained. Along the shaft, where little is known of it, it follows slowly
+/// and goes back to none. Returns whether the force is near enough to where it was expected.
+bool SampleWatch::FollowForce(const Eigen::Vector3d& along, const Eigen::Vector3d& step_N) {
   if (!step_N.allFinite()) return false;
-  const bool near = knows_force_ && step_N.norm() < kNewForce * force_unit_N_;
-  if (near) {
-    f_tip_N_ += (1.0 - kForceMemory) * step_N;
-    return true;
-  }
-  const bool fitted = moment.estimate.status == EstimateStatus::kOk;
-  const Eigen::Vector3d by_fit = moment.estimate.model.f_tip_N;
-  const bool is_other = (by_fit - f_tip_N_).norm() > kNewForce * force_unit_N_;
-  f_tip_N_ = fitted && (is_other || !knows_force_) ? by_fit : f_tip_N_ + step_N;
-  knows_force_ = true;
-  return false;
+  const Eigen::Vector3d across_N = step_N - along.dot(step_N) * along;
+  const bool near = across_N.norm() < kNewForce * force_unit_N_;
+  const double farthest_N = kFarthestStep * force_unit_N_;
+  f_tip_N_ += step_N.norm() > farthest_N ? farthest_N * step_N.normalized() : step_N;
+  if (!has_load_) f_tip_N_ -= kForceDecay * along.dot(f_tip_N_) * along;
+  return near;
 }
 
 bool SampleWatch::Whiten(const WatchedMoment& moment, const std::array<bool, 4>& sampled,
@@ -168,7 +183,6 @@ bool SampleWatch::Whiten(const WatchedMoment& moment, const std::array<bool, 4>&
   if (!solved.ok) {
     solver_.Reset();
     f_tip_N_.setZero();
-    knows_force_ = false;
     known_ = 0;
     return false;
   }
@@ -188,37 +202,40 @@ bool SampleWatch::Whiten(const WatchedMoment& moment, const std::array<bool, 4>&
   }
   for (const InputChange::Column& column :
        parameters.ColumnsAt(set_, solved, inputs_[kPortFriction])) {
-    rows.X.col(column.parameter).head<row::kCount>() +=
-        column.value * parameters.Tolerance(column.parameter) *
-        compared.by_inputs.col(column.input);
+    rows.X.col(column.parameter).head<row::kCount>() += column.value *
+                                                        parameters.Tolerance(column.parameter) *
+                                                        compared.by_inputs.col(column.input);
   }
   const Matrix own = OwnCovariance(z);
-  rows.X.block<row::kCount, 3>(0, kParameters) =
+  rows.X.block<row::kCount, 3>(0, kPlaceColumn) =
       kBreathing_m * compared.by_inputs.middleCols<3>(kPort);
+  rows.X.col(kStuckColumn).head<row::kCount>() = kFriction * compared.by_inputs.col(kPortFriction);
+  rows.X.block<row::kCount, 3>(0, kPlayColumn) = kPlay_m * compared.by_inputs.middleCols<3>(kWrist);
   for (int r = 0; r < kRows; ++r) {
-    const bool is_there =
-        r >= kLoadRow ? has_load_ : now.present[static_cast<std::size_t>(r)];
-    if (is_there) rows.X(r, kParameters + 3 + r) = kModelError * std::sqrt(own(r, r));
+    const bool is_there = r >= kLoadRow ? has_load_ : now.present[static_cast<std::size_t>(r)];
+    if (is_there) rows.X(r, kMissedColumn + r) = kModelError * std::sqrt(own(r, r));
   }
   // What the force and the wrist's noise may explain.
   const Eigen::Vector3d along = (set_.p_RP - now.p_RW).normalized();
   const Eigen::Matrix3d T = along * along.transpose();
-  const Eigen::Matrix3d prior_root =
-      force_unit_N_ * (kForceAcross * (Eigen::Matrix3d::Identity() - T) + kForceAlong * T);
-  const ByThree by_prior = by_force * prior_root;
+  const auto by_parts = [&](double across, double part_along) -> Eigen::Matrix3d {
+    return force_unit_N_ * (across * (Eigen::Matrix3d::Identity() - T) + part_along * T);
+  };
+  const ByThree by_prior = by_force * by_parts(kForceAcross, kForceAlong);
   ByThree by_wrist = ByThree::Zero();
   by_wrist.topRows<row::kCount>() =
       z.wrist_position_noise_m * compared.by_inputs.middleCols<3>(kWrist);
-  Matrix C = own;
+  Matrix known = own;
+  known.noalias() += by_wrist * by_wrist.transpose();
+  Matrix C = known;
   C.noalias() += by_prior * by_prior.transpose();
-  C.noalias() += by_wrist * by_wrist.transpose();
   const Llt<kRows> factor(C);
   if (!factor.Succeeded()) return false;
+  const Eigen::Vector3d step_N =
+      ForceStep(known, by_force, by_parts(kStepAcross, kStepAlong), rows.e);
   rows.e = factor.SolveL(rows.e);
   rows.X = factor.SolveL(rows.X);
-  const Eigen::Vector3d step_N =
-      prior_root * (factor.SolveL(by_prior).transpose() * rows.e);
-  return FollowForce(step_N, moment) && rows.X.allFinite() && rows.e.allFinite();
+  return FollowForce(along, step_N) && rows.X.allFinite() && rows.e.allFinite();
 }
 
 }  // namespace flextip::diagnosis::running

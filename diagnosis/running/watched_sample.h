@@ -22,8 +22,9 @@ class SampleWatch {
 
   const SampleSet& Set() const { return set_; }
 
-  /// Fills `rows`. Returns false where nothing can be said: no equilibrium, too few sensors, or a
-  /// force that is not the last one's. `sampled` says which of em0, em1, strain and load are new.
+  /// Fills `rows`, all but where the port goes. Returns false where nothing can be said: no
+  /// equilibrium, too few sensors, or a force that jumps. `sampled` says which of em0, em1, strain
+  /// and load are new.
   bool Whiten(const WatchedMoment& moment, const std::array<bool, 4>& sampled,
               WatchedParameters& parameters, WatchedRows& rows);
 
@@ -35,14 +36,18 @@ class SampleWatch {
   void SetInputs(const ShaftChange& change);
   void FindRate(double t_s, const Geometry& at);
   Matrix OwnCovariance(const Measurements& z) const;
-  bool FollowForce(const Eigen::Vector3d& step_N, const WatchedMoment& moment);
+  static Eigen::Vector3d ForceStep(const Matrix& known, const ByThree& by_force,
+                                   const Eigen::Matrix3d& root,
+                                   const Eigen::Matrix<double, kRows, 1>& e);
+  bool FollowForce(const Eigen::Vector3d& along, const Eigen::Vector3d& step_N);
 
   SampleSet set_;
   double force_unit_N_;
   EffectRodSolver solver_;
   SampleInputs inputs_ = SampleInputs::Zero();
   Eigen::Vector3d f_tip_N_ = Eigen::Vector3d::Zero();  // by the moments before
-  bool knows_force_ = false, knows_place_ = false, has_load_ = false;
+  TimeNs start_ns_ = 0;
+  bool knows_place_ = false, has_load_ = false;
   // The last geometries, for the rate of change: the newest first.
   struct Timed {
     double t_s = 0.0;

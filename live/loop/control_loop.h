@@ -46,7 +46,7 @@ struct LoopReport {
   std::array<StreamCounts, kStreams> streams;
   std::optional<CameraCounts> camera;  ///< where the session has one
   long bad_states = 0;
-  std::string last_hold;  ///< of the last cycle
+  std::string last_hold;           ///< of the last cycle
   std::vector<FoundCause> causes;  ///< that were found, each time others were named; at most 16
 };
 

@@ -50,8 +50,7 @@ std::unique_ptr<InstrumentWatch> WatchOf(const Session& session) {
   const WatchTask& watch = session.task.watch;
   if (!watch.running) return nullptr;
   return std::make_unique<diagnosis::RunningDiagnosis>(
-      session.base,
-      diagnosis::RunningOptions{watch.false_alarms_per_hour, session.port_prior_m});
+      session.base, diagnosis::RunningOptions{watch.false_alarms_per_hour, session.port_prior_m});
 }
 
 double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }

@@ -87,7 +87,7 @@ struct LoopUpdate {
   ControlStatus status = ControlStatus::kOk;
   std::optional<TipObservation> tip;  ///< as the controller had it, carried on to now where late
   Supervision supervision;
-  FoundCause cause;      ///< by the watch
+  FoundCause cause;                                        ///< by the watch
   bool resumed = false;                                    ///< a person said so in this cycle
   Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();          ///< by the encoders, without noise
   Eigen::Vector3d p_RW_command = Eigen::Vector3d::Zero();  ///< perhaps not finite

@@ -55,8 +55,8 @@ struct TwoBlocks {
   /// parameters in the second one with these deviations.
   Eigen::MatrixXd Spread(const WatchedBlock& block, double size) const {
     const int extra = block.widened;
-    Eigen::MatrixXd X = Eigen::MatrixXd::Zero(Residual().size(),
-                                              kParameters + 2 * kWandering + extra);
+    Eigen::MatrixXd X =
+        Eigen::MatrixXd::Zero(Residual().size(), kParameters + 2 * kWandering + extra);
     for (std::size_t k = 0; k < samples.size(); ++k) {
       const Eigen::Index row = kRows * static_cast<Eigen::Index>(k);
       const bool late = k >= kOfBlock;
@@ -125,8 +125,9 @@ TEST(OnsetEvidence, OfWhatCannotBeNegativeIsOneSided) {
     double whole = 0.0;
     const Eigen::VectorXd e = two.Residual();
     for (const double size : {0.3, 1.0, 3.0})
-      whole += std::exp(0.5 * (Misfit(e, two.Spread(block, 0.0)) -
-                               Misfit(e, two.Spread(block, size)))) / 3.0;
+      whole +=
+          std::exp(0.5 * (Misfit(e, two.Spread(block, 0.0)) - Misfit(e, two.Spread(block, size)))) /
+          3.0;
     EXPECT_NEAR(0.5 * (std::exp(one) + std::exp(other)), whole, 1e-6 * whole)
         << block.effect->Name();
   }
