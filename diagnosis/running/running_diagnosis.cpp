@@ -169,8 +169,11 @@ void RunningDiagnosis::Decide() {
   for (const auto& watched : parameters_.Blocks()) causes += watched.widened > 0;
   for (const Candidate& candidate : candidates_)
     sum = running::AddLogarithms(sum, candidate.log_evidence);
+  // The block in which a cause sets in is half without it: no onset fits, and a wrong name may fit
+  // best. So the next block must say so, too.
+  const bool was_above = log_evidence_ >= log_limit_;
   log_evidence_ = sum - std::log(static_cast<double>(causes));
-  if (found_.IsThere() || log_evidence_ >= log_limit_) Name(log_evidence_);
+  if (found_.IsThere() || (was_above && log_evidence_ >= log_limit_)) Name(log_evidence_);
 }
 
 /// Takes the likeliest cause. One that was named before stays until another is far likelier.
