@@ -52,11 +52,11 @@ WatchedParameters::WatchedParameters(const SampleSet& set, double port_prior_m) 
 }
 
 const std::vector<InputChange::Column>& WatchedParameters::ColumnsAt(const SampleSet& set,
-                                                                     const SolvedSample& at,
+                                                                     double s_port_m,
+                                                                     double ds_port_dfriction_m,
                                                                      double port_friction) {
-  const double by_friction_m = at.ds_port_dfriction_m;
-  const Instant now{set, 0, set.samples[0].t_s, at.s_port_m - by_friction_m * port_friction,
-                    by_friction_m};
+  const Instant now{set, 0, set.samples[0].t_s, s_port_m - ds_port_dfriction_m * port_friction,
+                    ds_port_dfriction_m};
   columns_.clear();
   SampleInputs unused = SampleInputs::Zero();
   for (WatchedBlock& block : blocks_) {

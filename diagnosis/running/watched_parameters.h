@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "diagnosis/effects/watched.h"
-#include "diagnosis/model/geometry.h"
 #include "diagnosis/running/information.h"
 
 namespace flextip::diagnosis::running {
@@ -33,8 +32,10 @@ class WatchedParameters {
   /// Returns the tolerance of a column, its unit.
   double Tolerance(int column) const { return tolerance_[column]; }
 
-  /// Returns how the sample's inputs depend on the parameters. Call it once a sample, in order.
-  const std::vector<InputChange::Column>& ColumnsAt(const SampleSet& set, const SolvedSample& at,
+  /// Returns how the sample's inputs depend on the parameters, with the port at `s_port_m` on the
+  /// shaft. Call it once a sample, in order.
+  const std::vector<InputChange::Column>& ColumnsAt(const SampleSet& set, double s_port_m,
+                                                    double ds_port_dfriction_m,
                                                     double port_friction);
 
  private:

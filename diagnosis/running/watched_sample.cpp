@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
@@ -184,6 +185,7 @@ bool SampleWatch::Whiten(const WatchedMoment& moment, const std::array<bool, 4>&
     solver_.Reset();
     f_tip_N_.setZero();
     known_ = 0;
+    before_.ok = false;
     return false;
   }
   const DiagnosisSample& now = set_.samples[0];
@@ -200,8 +202,15 @@ bool SampleWatch::Whiten(const WatchedMoment& moment, const std::array<bool, 4>&
     rows.e.segment<3>(kLoadRow) = z.load->f_tip_N - f_tip_N_;
     by_force.bottomRows<3>().setIdentity();
   }
-  for (const InputChange::Column& column :
-       parameters.ColumnsAt(set_, solved, inputs_[kPortFriction])) {
+  // Friction and play go by where shaft and wrist were before: by this moment's own readings their
+  // noise would look like something explained.
+  if (!before_.ok) before_ = {true, now.p_RW, solved.s_port_m, solved.ds_port_dfriction_m};
+  std::swap(before_.p_RW, set_.samples[0].p_RW);
+  const auto& columns = parameters.ColumnsAt(set_, before_.s_port_m, before_.ds_port_dfriction_m,
+                                             inputs_[kPortFriction]);
+  std::swap(before_.p_RW, set_.samples[0].p_RW);
+  before_ = {true, now.p_RW, solved.s_port_m, solved.ds_port_dfriction_m};
+  for (const InputChange::Column& column : columns) {
     rows.X.col(column.parameter).head<row::kCount>() += column.value *
                                                         parameters.Tolerance(column.parameter) *
                                                         compared.by_inputs.col(column.input);

@@ -55,6 +55,12 @@ class SampleWatch {
   };
   std::array<Timed, 4> last_;
   int known_ = 0;
+  struct Place {
+    bool ok = false;
+    Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();
+    double s_port_m = 0.0, ds_port_dfriction_m = 0.0;
+  };
+  Place before_;  // at the last moment
   Geometry rate_ = Geometry::Zero();
 };
 
