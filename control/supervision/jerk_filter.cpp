@@ -5,7 +5,7 @@
 
 namespace flextip {
 
-double JerkFilter::Least_m_s3(double max_acceleration_m_s2, double rate_hz) {
+double JerkFilter::LeastJerk(double max_acceleration_m_s2, double rate_hz) {
   return 2.0 * max_acceleration_m_s2 * rate_hz / static_cast<double>(kLongest);
 }
 

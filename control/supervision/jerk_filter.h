@@ -19,10 +19,10 @@ class JerkFilter {
   static constexpr std::size_t kLongest = 64;  ///< cycles
 
   /// Returns the least jerk (m/s^3) that the longest filter keeps.
-  static double Least_m_s3(double max_acceleration_m_s2, double rate_hz);
+  static double LeastJerk(double max_acceleration_m_s2, double rate_hz);
 
   /// Takes the limits and the cycles' rate. Without a limit of jerk, or of acceleration, commands
-  /// go through as they are. A jerk below Least_m_s3 is kept as well as the longest filter can.
+  /// go through as they are. A jerk below LeastJerk is kept as well as the longest filter can.
   JerkFilter(const RateLimits& rates, double rate_hz);
 
   bool Limits() const { return length_ > 1; }

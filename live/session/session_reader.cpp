@@ -129,7 +129,7 @@ class SessionReader {
     limits.max_acceleration_m_s2 = NumberIn(map, "max_acceleration_m_s2", kAcceleration);
     if (map.Has("max_jerk_m_s3")) {
       const double least_m_s3 =
-          JerkFilter::Least_m_s3(limits.max_acceleration_m_s2, file_.session.rate_hz);
+          JerkFilter::LeastJerk(limits.max_acceleration_m_s2, file_.session.rate_hz);
       limits.max_jerk_m_s3 = map.Number("max_jerk_m_s3");
       if (!(limits.max_jerk_m_s3 >= least_m_s3)) {
         throw map.Error("max_jerk_m_s3",

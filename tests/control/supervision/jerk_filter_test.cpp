@@ -47,7 +47,7 @@ TEST(JerkFilter, WithoutALimitCommandsGoThrough) {
   JerkFilter filter({.max_acceleration_m_s2 = 1.0}, 120.0);
   EXPECT_FALSE(filter.Limits());
   EXPECT_EQ(filter.Next({1.0, 2.0, 3.0}), Eigen::Vector3d(1.0, 2.0, 3.0));
-  EXPECT_DOUBLE_EQ(JerkFilter::Least_m_s3(1.0, 128.0), 4.0);
+  EXPECT_DOUBLE_EQ(JerkFilter::LeastJerk(1.0, 128.0), 4.0);
 }
 
 }  // namespace
