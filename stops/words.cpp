@@ -81,6 +81,8 @@ std::string Why(const StopFacts& facts) {
                              1e3 * facts.jump_m)
                : "the tip's sensor jumped";
   }
+  if (cause == "model_disagrees" && facts.chi2 <= facts.chi2_limit)
+    return "the tip did not move as the wrist led it";
   if (cause == "model_disagrees") {
     return "no single sensor and no moved port explains it: the shaft is not the model's, "
            "chi-squared was " +
@@ -110,6 +112,10 @@ std::string Why(const StopFacts& facts) {
   }
   if (cause == "bad_time") return "a time stood, ran backwards, or was from the future";
   if (cause == "not_finite") return "a reading or the command was no number";
+  if (cause == "tip_astray")
+    return "the tip was farther from its way than it may be, and came no nearer";
+  if (cause == "port_depth") return "there was too little shaft before or beyond the port";
+  if (cause == "deadline") return "several cycles in a row came late";
   if (cause == "no_command") return "the controller had no command";
   return "";
 }

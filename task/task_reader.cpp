@@ -119,6 +119,13 @@ void TaskReader::ReadSupervisor(const YamlMap& map) {
   if (options.false_alarm > kMostFalseAlarms)
     throw section.Error("false_alarm", "expected a probability of a cycle, at most 0.01");
   options.max_tip_force_N = section.PositiveOr("max_tip_force_N", options.max_tip_force_N);
+  if (section.Has("max_late_cycles")) {
+    const std::int64_t cycles = section.Integer("max_late_cycles");
+    if (cycles < 1 || cycles > 1000) {
+      throw section.Error("max_late_cycles", fmt::format("found {}, expected 1 to 1000", cycles));
+    }
+    options.max_late_cycles = static_cast<int>(cycles);
+  }
   options.max_tip_deviation_m =
       section.PositiveOr("max_tip_deviation_m", options.max_tip_deviation_m);
   options.fixed_jump_m = section.PositiveOr("fixed_jump_m", options.fixed_jump_m);

@@ -57,14 +57,12 @@ void MotionGuard::LookAt(const ShaftEstimate& estimate, const Eigen::Vector3d& p
   end.J = (Eigen::Matrix3d::Identity() - C * K).inverse() * rod.dp_RE.leftCols<3>();
 }
 
-double MotionGuard::Update(const Eigen::Matrix3d& J_hat, const ShaftEstimate& estimate,
-                           const Eigen::Vector3d& p_RW) {
+void MotionGuard::Update(const ShaftEstimate& estimate, const Eigen::Vector3d& p_RW) {
   const bool fitted =
       estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
-  if (!fitted || !J_hat.allFinite() || !estimate.covariance.allFinite()) {
-    seen_rad_.fill(0.0);
+  if (!fitted || !estimate.covariance.allFinite()) {
     ends_.fill({});
-    return 0.0;
+    return;
   }
   const auto [mean, covariance] = WithPlausibleForce(estimate);
   for (int i = 0; i < axes_a_cycle_; ++i) {
@@ -76,13 +74,19 @@ double MotionGuard::Update(const Eigen::Matrix3d& J_hat, const ShaftEstimate& es
     for (const int side : {0, 1}) {
       const auto at = static_cast<std::size_t>(2 * axis_ + side);
       LookAt(estimate, p_RW, mean + (side == 0 ? 1.0 : -1.0) * shift, ends_[at]);
-      seen_rad_[at] = ends_[at].state == End::State::kFound
-                          ? FindLargestAngle(ends_[at].J, J_hat).phi_max_rad
-                          : std::numbers::pi;
     }
     axis_ = (axis_ + 1) % kAxes;
   }
-  return *std::max_element(seen_rad_.begin(), seen_rad_.end());
+}
+
+double MotionGuard::WorstAngle(const Eigen::Matrix3d& J_hat) const {
+  double largest_rad = 0.0;
+  for (const End& end : ends_) {
+    if (end.state == End::State::kUnknown) continue;
+    if (end.state == End::State::kBuckled || !J_hat.allFinite()) return std::numbers::pi;
+    largest_rad = std::max(largest_rad, FindLargestAngle(end.J, J_hat).phi_max_rad);
+  }
+  return largest_rad;
 }
 
 std::optional<Eigen::Matrix3d> MotionGuard::Jacobian() const {

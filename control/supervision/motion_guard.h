@@ -20,24 +20,25 @@ class MotionGuard {
   /// cycles' rate.
   MotionGuard(double deviations, double max_tissue_gain, double rate_hz);
 
-  /// Returns the largest angle of (2.9) (rad) over the axes, as each was seen last, between what
-  /// the controller's `J_hat` (d tip / d wrist) is asked for and what the exact rod does. Zero
-  /// where the estimate has no rod, or `J_hat` is not finite.
-  double Update(const Eigen::Matrix3d& J_hat, const ShaftEstimate& estimate,
-                const Eigen::Vector3d& p_RW);
+  /// Solves the rods of some of the axes anew. An estimate without a rod forgets all.
+  void Update(const ShaftEstimate& estimate, const Eigen::Vector3d& p_RW);
+
+  /// Returns the largest angle of (2.9) (rad) between what the controller's `J_hat` (d tip / d
+  /// wrist) is asked for and what the rods do, for the worst motion. pi where a rod has buckled or
+  /// `J_hat` is not finite; zero before Update.
+  double WorstAngle(const Eigen::Matrix3d& J_hat) const;
 
   /// Returns the exact Jacobian (d tip / d wrist), the mean over the rods; empty before Update.
   std::optional<Eigen::Matrix3d> Jacobian() const;
 
   /// Returns the largest angle (rad) between the tip's motion `dp_RE_wanted` and the one that the
-  /// wrist's step `dp_RW` makes, by the rods of the last calls of Update: at most what Update
-  /// returned, since that is for the worst motion. pi where a rod has buckled; zero before Update.
+  /// wrist's step `dp_RW` makes, by the rods of the last calls of Update: at most WorstAngle of
+  /// the Jacobian that the step is by. pi where a rod has buckled; zero before Update.
   double StepAngle(const Eigen::Vector3d& dp_RE_wanted, const Eigen::Vector3d& dp_RW) const;
 
   void VisitState(StateText& state) {
     state(rod_);
     state(ends_);
-    state(seen_rad_);
     state(axis_);
   }
 
@@ -59,7 +60,6 @@ class MotionGuard {
   int axes_a_cycle_;
   ShaftRod rod_;
   std::array<End, 2 * kAxes> ends_;
-  std::array<double, 2 * kAxes> seen_rad_{};  // the worst angle at each end
   int axis_ = 0;
 };
 

@@ -38,7 +38,7 @@ class PathWatch {
                 const Eigen::Vector3d& p_wish);
 
   /// Returns whether the tip that IsAstray was given last moved otherwise than the wrist moved it,
-  /// in the last 0.4 s: by more than noise, more than half of the way, and more than it may be
+  /// in the last 0.4 s: by more than noise, seven tenths of the way, and twice what it may be
   /// astray. A caught tip does, and one that is thrown.
   bool MovesOtherwise(TimeNs t_ns) const;
 

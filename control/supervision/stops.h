@@ -59,7 +59,7 @@ struct Supervision {
   std::uint8_t voted_out = 0;  ///< bit i: VotedSensor i is not used in this cycle
   double chi2 = 0.0;           ///< of all sensors together; 0: not tested
   double chi2_limit = 0.0;
-  double worst_angle_rad = 0.0;  ///< the largest seen lately; 0: not known
+  double worst_angle_rad = 0.0;  ///< of this step under the model's doubt; 0: not judged
   /// The wrist stays, in a hold or for this cycle alone: the goal should wait for it.
   bool waits = false;
 

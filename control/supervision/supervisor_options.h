@@ -11,7 +11,8 @@ namespace flextip {
 /// How much stands between controller and robot.
 enum class SupervisionKind : std::uint8_t {
   kNone,             ///< the command as the controller has it
-  kRateLimits,       ///< its step, speed and acceleration are limited
+  kRateLimits,       ///< its step, speed and acceleration are limited; the goal waits for a wrist
+                     ///< that stands
   kFixedThresholds,  ///< and a tip that jumps, or leaves the other sensors, by a fixed distance
                      ///< holds
   kFull              ///< all that stops.h names, by covariances

@@ -49,7 +49,9 @@ const char* Name(Hold hold) {
                              "port_moved",
                              "port_depth",
                              "force",
-                             "motion_angle"};
+                             "motion_angle",
+                             "tip_astray",
+                             "deadline"};
   static_assert(names.size() == kHolds);
   return names[static_cast<std::size_t>(hold)];
 }
@@ -85,6 +87,12 @@ Hold HoldBy(Stop stop) {
       return Hold::kForce;
     case Stop::kMotionAngle:
       return Hold::kMotionAngle;
+    case Stop::kSourceLost:
+      return Hold::kSourceLost;
+    case Stop::kTipAstray:
+      return Hold::kTipAstray;
+    case Stop::kDeadline:
+      return Hold::kDeadline;
     default:
       return Hold::kNoCommand;
   }

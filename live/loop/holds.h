@@ -37,8 +37,10 @@ enum class Hold : std::uint8_t {
   kPortDepth,
   kForce,
   kMotionAngle,
+  kTipAstray,
+  kDeadline,
 };
-inline constexpr int kHolds = static_cast<int>(Hold::kMotionAngle) + 1;
+inline constexpr int kHolds = static_cast<int>(Hold::kDeadline) + 1;
 
 /// Returns the name as in recordings and summaries: "stale_wrist".
 const char* Name(Hold hold);

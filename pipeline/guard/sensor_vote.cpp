@@ -127,7 +127,7 @@ int SensorVote::Choose(TimeNs t_ns, std::uint8_t jumped,
 }
 
 /// Whether a wrist that is not where it says explains all sensors, and no worse than leaving one of
-/// them out does. A port elsewhere is no wrist elsewhere: the port's name goes first.
+/// them out does.
 bool SensorVote::WristExplains(const Measurements& z, const ShaftChange& change,
                                double chi2_without) {
   Measurements loose = z;

@@ -70,14 +70,14 @@ void InstrumentController::Fuse(ControllerCommand& command) {
 /// within the tip's noise wants nothing.
 bool InstrumentController::MayPointWrong(ControllerCommand& command) {
   const Eigen::Vector3d& p_RW = command.measurements.p_RW;
-  command.supervision.worst_angle_rad =
-      motion_guard_.Update(command.J_tip_wrist, command.estimate, p_RW);
+  motion_guard_.Update(command.estimate, p_RW);
   const Eigen::Vector3d wanted = command.goal.p_RE_desired - command.p_RE_used;
   const double sd_m =
       MaxSd(by_all_ ? by_all_->tip.covariance_m2 : command.estimate.p_RE_covariance_m2);
   if (wanted.norm() < std::min(kStepDeviations * sd_m, kLeastStep_m)) return false;
-  return motion_guard_.StepAngle(wanted, command.p_RW_command - p_RW) >
-         options_.supervision.max_motion_angle_rad;
+  double& angle_rad = command.supervision.worst_angle_rad;
+  angle_rad = motion_guard_.StepAngle(wanted, command.p_RW_command - p_RW);
+  return angle_rad > options_.supervision.max_motion_angle_rad;
 }
 
 /// Whether a controller that calculates its tip has lost a sensor, and does not know the tip well

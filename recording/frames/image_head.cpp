@@ -23,15 +23,6 @@ constexpr auto kJpegStart = "\xff\xd8\xff"sv;
 constexpr auto kJpegEnd = "\xff\xd9"sv;
 constexpr std::streamoff kTail = 4096;  // some writers append notes after the image's end
 
-std::string ReadBytes(std::ifstream& in, std::streamoff from, std::streamoff count) {
-  std::string bytes(static_cast<std::size_t>(count), '\0');
-  in.clear();
-  in.seekg(from);
-  in.read(bytes.data(), count);
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return bytes;
-}
-
 std::int64_t BigEndian(std::string_view bytes) {
   std::int64_t value = 0;
   for (const char c : bytes) value = value << 8 | static_cast<unsigned char>(c);

@@ -14,15 +14,6 @@ using namespace std::string_view_literals;
 
 constexpr std::streamsize kHead = 4096;  // a PGM's comments may come before its size
 
-std::string ReadBytes(std::ifstream& in, std::streamoff from, std::streamsize count) {
-  std::string bytes(static_cast<std::size_t>(count), '\0');
-  in.clear();
-  in.seekg(from);
-  in.read(bytes.data(), count);
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return bytes;
-}
-
 /// Takes an unsigned number of 2 or 4 bytes; 0 where there are fewer.
 std::int64_t NumberAt(std::string_view bytes, std::size_t at, std::size_t size, bool big_endian) {
   if (at + size > bytes.size()) return 0;
@@ -76,6 +67,15 @@ StatedSize OfTiff(std::ifstream& in, std::string_view head) {
 }
 
 }  // namespace
+
+std::string ReadBytes(std::ifstream& in, std::streamoff from, std::streamsize count) {
+  std::string bytes(static_cast<std::size_t>(count), '\0');
+  in.clear();
+  in.seekg(from);
+  in.read(bytes.data(), count);
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
 
 std::optional<StatedSize> ReadStatedSize(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);

@@ -4,9 +4,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <optional>
+#include <string>
 
 namespace flextip {
+
+/// Returns `count` bytes of a file from the place `from` on, fewer where it ends before.
+std::string ReadBytes(std::ifstream& in, std::streamoff from, std::streamsize count);
 
 struct StatedSize {
   std::int64_t width_px = 0, height_px = 0;

@@ -152,6 +152,16 @@ TEST_F(SensorVoting, OffsetsWithinToleranceAreLearnt) {
   EXPECT_LT(agrees, 290);
 }
 
+TEST_F(SensorVoting, AWristElsewhereIsNamedAndNoSensorIsBlamed) {
+  for (int i = 0; i < 30; ++i) Ask(*Gather(shaft.Next()));
+  Measurements z = *Gather(shaft.Next());
+  z.p_RW += Eigen::Vector3d(0.0, 0.02, 0.0);
+  const Supervision found = Ask(z);
+  EXPECT_EQ(found.stop, Stop::kWristNotFollowing);
+  EXPECT_EQ(found.reaction, Reaction::kHold);
+  EXPECT_EQ(found.voted_out, 0);
+}
+
 TEST_F(SensorVoting, AMovedPortIsNamedAndNoSensorIsBlamed) {
   estimator.p_RP += Eigen::Vector3d(0.0, 0.01, 0.0);
   SensorVote moved(estimator, Full());
@@ -237,6 +247,24 @@ TEST_F(SampleScreening, WhatIsNoNumberOrOldIsTakenOut) {
   EXPECT_FALSE(readings.wrist);
   EXPECT_EQ(found.stop, Stop::kNotFinite);
   EXPECT_EQ(found.reaction, Reaction::kHold);
+}
+
+TEST_F(SampleScreening, ASampleOfAnotherAgeIsTakenOutUntilAPersonSaysItIsRight) {
+  const Eigen::Vector3d p_RW(0, 0, 0.3);
+  const auto kept = [&](int cycle, double age_s) {
+    const double t_s = cycle / 30.0;
+    SensorReadings readings = At(t_s, p_RW);
+    readings.em0 = {TimeOf(t_s - age_s), {}};
+    readings.em0->value.T_RS.p.x() = 1e-4 * cycle;  // never the same figures
+    Supervision found;
+    screen.Screen(TimeOf(t_s), {}, readings, found);
+    return readings.em0.has_value();
+  };
+  int cycle = 0;
+  for (; cycle < 20; ++cycle) EXPECT_TRUE(kept(cycle, 0.01 + 0.001 * (cycle % 3))) << cycle;
+  for (; cycle < 24; ++cycle) EXPECT_FALSE(kept(cycle, 0.06 + 0.001 * (cycle % 3))) << cycle;
+  screen.Forget();
+  for (; cycle < 28; ++cycle) EXPECT_TRUE(kept(cycle, 0.06)) << cycle;
 }
 
 TEST_F(SampleScreening, FiguresThatRepeatWhileTheWristMovesAreTakenOut) {

@@ -38,6 +38,7 @@ const HOLDS = {
   fixture: ["Held: fixture", "bad", "The tip is in a forbidden region."],
   force: ["Held: force", "bad", "The tip presses harder than it may."],
   motion_angle: ["Held: worst angle", "bad", "The tip may go another way than wished."],
+  tip_astray: ["Held: the tip leaves its way", "bad", "The tip is farther from its path than it may be, and gets no nearer."],
   deadline: ["Held: cycle too slow", "bad", "Too many cycles in a row took too long."],
 };
 

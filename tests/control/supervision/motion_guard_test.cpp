@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "control/supervision/worst_motion.h"
+#include "core/draw_vector.h"
 
 namespace flextip {
 namespace {
@@ -42,7 +45,8 @@ TEST(MotionGuard, IsBetweenTheEstimatesAngleAndTheSearchOverTheEllipsoid) {
     const ShaftEstimate estimate = Pressed(force_sd_N);
     const Eigen::Matrix3d J_hat = StraightJacobian(estimate);
     MotionGuard guard(2.0, options.max_tissue_gain, 30.0);
-    const double watched = guard.Update(J_hat, estimate, kWrist);
+    guard.Update(estimate, kWrist);
+    const double watched = guard.WorstAngle(J_hat);
     const WorstMotion worst = FindWorstMotion(J_hat, estimate, kWrist, options, 2.0);
     ASSERT_TRUE(worst.found);
     EXPECT_GE(watched, worst.angle_at_estimate_rad * 0.97) << force_sd_N;
@@ -56,9 +60,9 @@ TEST(MotionGuard, FasterCyclesSeeTheSameAnglesLater) {
   const ShaftEstimate estimate = Pressed(0.03);
   const Eigen::Matrix3d J_hat = StraightJacobian(estimate);
   MotionGuard slow(2.0, options.max_tissue_gain, 30.0), fast(2.0, options.max_tissue_gain, 1000.0);
-  double by_fast = 0.0;
-  for (int i = 0; i < 9; ++i) by_fast = fast.Update(J_hat, estimate, kWrist);
-  EXPECT_NEAR(by_fast, slow.Update(J_hat, estimate, kWrist), 1e-6);
+  for (int i = 0; i < 9; ++i) fast.Update(estimate, kWrist);
+  slow.Update(estimate, kWrist);
+  EXPECT_NEAR(fast.WorstAngle(J_hat), slow.WorstAngle(J_hat), 1e-6);
 }
 
 TEST(MotionGuard, AForceThatNobodyKnowsIsTakenAsAShaftIsUsed) {
@@ -66,15 +70,38 @@ TEST(MotionGuard, AForceThatNobodyKnowsIsTakenAsAShaftIsUsed) {
   const ShaftEstimate estimate = Pressed(3.4);  // the estimator's prior: the shaft would buckle
   const Eigen::Matrix3d J_hat = StraightJacobian(estimate);
   MotionGuard guard(2.0, options.max_tissue_gain, 30.0);
-  EXPECT_LT(guard.Update(J_hat, estimate, kWrist), 1.2);
+  guard.Update(estimate, kWrist);
+  EXPECT_LT(guard.WorstAngle(J_hat), 1.2);
   EXPECT_GT(FindWorstMotion(J_hat, estimate, kWrist, options, 2.0).angle_rad, 3.1);
 }
 
 TEST(MotionGuard, AJacobianThatPointsTheWrongWayIsAtNinetyDegreesAndMore) {
   const ShaftEstimate estimate = Pressed(0.01);
   MotionGuard guard(2.0, 1.7, 30.0);
-  EXPECT_GT(guard.Update(-StraightJacobian(estimate), estimate, kWrist), 1.6);
-  EXPECT_EQ(guard.Update(Eigen::Matrix3d::Constant(std::nan("")), estimate, kWrist), 0.0);
+  EXPECT_EQ(guard.WorstAngle(StraightJacobian(estimate)), 0.0);  // nothing was seen yet
+  guard.Update(estimate, kWrist);
+  EXPECT_GT(guard.WorstAngle(-StraightJacobian(estimate)), 1.6);
+  EXPECT_GT(guard.WorstAngle(Eigen::Matrix3d::Constant(std::nan(""))), 3.1);
+}
+
+TEST(MotionGuard, TheWorstStepsAngleIsTheWorstAngle) {
+  const ShaftEstimate estimate = Pressed(0.03);
+  const Eigen::Matrix3d J_hat = StraightJacobian(estimate);
+  MotionGuard guard(2.0, 1.7, 30.0);
+  guard.Update(estimate, kWrist);
+  const double worst = guard.WorstAngle(J_hat);
+  std::mt19937_64 rng(3);
+  std::normal_distribution<double> normal;
+  double largest = 0.0, least = 10.0;
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector3d wanted = DrawVector<3>(normal, rng);
+    const double angle = guard.StepAngle(wanted, J_hat.inverse() * wanted);
+    largest = std::max(largest, angle);
+    least = std::min(least, angle);
+  }
+  EXPECT_LE(largest, worst + 1e-9);
+  EXPECT_GT(largest, 0.98 * worst);
+  EXPECT_LT(least, 0.7 * worst);  // most steps are better off
 }
 
 }  // namespace

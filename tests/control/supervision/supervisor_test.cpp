@@ -93,6 +93,33 @@ TEST(Supervisor, AHoldDoesNotFollowAReadingBesideTheWay) {
   EXPECT_EQ(HeldAt(Eigen::Vector3d::Constant(std::nan(""))), last);
 }
 
+TEST(Supervisor, AGoalWaitsForAWristThatStands) {
+  for (const bool stands : {true, false}) {
+    Supervisor supervisor(Full());
+    bool waits = false;
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::Vector3d wish = kWrist + Eigen::Vector3d(0.02 * i / 30.0, 0, 0);
+      const Eigen::Vector3d reading = stands ? kWrist : wish - Eigen::Vector3d(0.0015, 0, 0);
+      const auto decision = supervisor.Decide(Cycle(i / 30.0, reading, wish));
+      EXPECT_EQ(decision.supervision.reaction, Reaction::kNone) << i;
+      waits |= decision.supervision.waits;
+    }
+    EXPECT_EQ(waits, stands);
+  }
+}
+
+TEST(Supervisor, AWristWaitsForATipThatIsHidden) {
+  Supervisor supervisor(Full());
+  supervisor.Decide(Cycle(0.0, kWrist, kWrist));
+  SupervisedCycle cycle = Cycle(1.0 / 30.0, kWrist, kWrist + Eigen::Vector3d(0.001, 0, 0));
+  cycle.tip_is_hidden = true;
+  const auto decision = supervisor.Decide(cycle);
+  EXPECT_EQ(decision.supervision.stop, Stop::kStaleTip);
+  EXPECT_EQ(decision.supervision.reaction, Reaction::kLimit);
+  EXPECT_TRUE(decision.supervision.waits);
+  EXPECT_EQ(*decision.p_RW_command, kWrist);
+}
+
 TEST(Supervisor, CyclesThatAreLateInARowHold) {
   Supervisor supervisor(Full());
   double t_s = 0.0;

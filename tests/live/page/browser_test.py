@@ -21,7 +21,7 @@ from live_run import LiveRun  # noqa: E402
 HOLDS = ("none", "bad_time", "source_lost", "stale_wrist", "stale_tip", "not_enabled", "resuming",
          "starting", "no_goal", "no_command", "not_finite", "stopped", "delay_unknown",
          "tip_jump", "tip_disagrees", "model_disagrees", "wrist_not_following", "port_moved",
-         "port_depth", "force", "motion_angle")
+         "port_depth", "force", "motion_angle", "tip_astray", "deadline")
 ROBOT = ("disabled", "enabled", "paused", "FAULT")
 # All at once, so that every number is of one cycle: page's scripts change all of it in one go.
 SEEN = """(() => {
