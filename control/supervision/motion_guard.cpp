@@ -72,7 +72,7 @@ void MotionGuard::Update(const ShaftEstimate& estimate, const Eigen::Vector3d& p
     Vector9d shift = Vector9d::Zero();
     if (sd > 0.0) shift = deviations_ / sd * covariance.col(axis_);
     for (const int side : {0, 1}) {
-      const auto at = static_cast<std::size_t>(2 * axis_ + side);
+      const std::size_t at = 2 * static_cast<std::size_t>(axis_) + static_cast<std::size_t>(side);
       LookAt(estimate, p_RW, mean + (side == 0 ? 1.0 : -1.0) * shift, ends_[at]);
     }
     axis_ = (axis_ + 1) % kAxes;
