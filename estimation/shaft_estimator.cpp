@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kObservable = 0.3;  // posterior over prior sd of the force across the shaft
 constexpr double kDoubtful = 0.005;  // sd of the tip over L past which a load has to stand out
-constexpr double kMisfit = 100.0;    // chi2 a measurement past which another start is tried
+constexpr double kMisfit = 10.0;     // chi2 a measurement past which another start is tried
 constexpr double kModestForces[] = {1.0, 2.0};  // sd of the force, EI / L^2, of those starts
 // A fit that goes on along the shaft, where the sensors say little, ends at a large load more often
 // than at the true one (WindowEstimator.CovarianceOfThePortMatchesMonteCarlo fails with 60).

@@ -105,6 +105,9 @@ void InstrumentController::VisitState(StateText& state) {
   state(path_watch_);
   state(by_all_);
   state(p_RW_watched_);
+  state(p_goal_last_);
+  state(corrections_);
+  state(excess_m_);
   state(guard_);
   state(motion_guard_);
   state(supervisor_);

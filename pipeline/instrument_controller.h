@@ -11,6 +11,7 @@
 #include "control/fixtures.h"
 #include "control/supervision/motion_guard.h"
 #include "control/supervision/path_watch.h"
+#include "control/supervision/rate_limits.h"
 #include "control/supervision/supervisor.h"
 #include "core/image.h"
 #include "estimation/instrument_model.h"
@@ -113,6 +114,7 @@ class InstrumentController {
   void ControlPlace(ControllerCommand& command);
   void ControlDirection(const Eigen::Vector3d& d_RE_desired, ControllerCommand& command);
   bool MayPointWrong(ControllerCommand& command);
+  Limited Corrected(const ControllerCommand& command);
   bool LosesItsLoad(const ControllerCommand& command) const;
   Eigen::Vector3d WayOfTip(const Eigen::Vector3d& p_RW);
   void Supervise(const ControllerInputs& inputs, ControllerCommand& command);
@@ -131,7 +133,9 @@ class InstrumentController {
   Supervisor supervisor_;
   PathWatch path_watch_;
   std::optional<VotedShaft> by_all_;  // of this cycle
-  std::optional<Eigen::Vector3d> p_RW_watched_;
+  std::optional<Eigen::Vector3d> p_RW_watched_, p_goal_last_;
+  int corrections_ = 0;                                 // limited ones in a row, in one direction
+  Eigen::Vector3d excess_m_ = Eigen::Vector3d::Zero();  // of the last one
   // Where the tip's source changes, the difference is taken up slowly.
   bool by_others_ = false;
   std::optional<Eigen::Vector3d> p_RE_last_;

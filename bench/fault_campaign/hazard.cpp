@@ -52,12 +52,12 @@ bool IsBeyond(const CommandMotion& motion, const HazardLimits& limits) {
          motion.speed_m_s > limits.speed_m_s || motion.acceleration_m_s2 > limits.acceleration_m_s2;
 }
 
-/// Whether the wrist moves because it was sent: its command changed in this cycle or the two
+/// Whether the wrist moves because it was sent: its command changed in one of the three cycles
 /// before, or it is still on its way there. Held at one command it only shakes with its encoders'
-/// noise.
+/// noise, and the command of this cycle has not moved it yet.
 bool Moves(const std::vector<TrueCycle>& cycles, std::size_t i) {
   if (!((cycles[i].p_RW - cycles[i - 1].p_RW).norm() >= kMoves_m)) return false;
-  for (std::size_t k = i; k + 3 > i && k > 0; --k) {
+  for (std::size_t k = i - 1; k + 4 > i && k > 0; --k) {
     const bool same = (cycles[k].p_RW_command - cycles[k - 1].p_RW_command).norm() <= kSame_m;
     if (!same) return true;
   }

@@ -8,6 +8,7 @@ namespace {
 
 /// A change of less than this part is rounding, no limit.
 constexpr double kRounding = 1e-12;
+constexpr double kStands_m = 1e-9;
 
 }  // namespace
 
@@ -41,6 +42,21 @@ Limited LimitAcceleration(const Eigen::Vector3d& p_last, const Eigen::Vector3d& 
   const Eigen::Vector3d p = p_last + dt_s * v.p;
   if ((p - p_wish).norm() <= kRounding * (1.0 + distance)) return {p_wish, false};
   return {p, true};
+}
+
+Limited LimitCorrection(const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_wish,
+                        const Eigen::Matrix3d& J, const Eigen::Vector3d& way, double max_m) {
+  const Eigen::Vector3d step = p_wish - p_RW, dp_RE = J * step;
+  const double way_m = way.norm();
+  Eigen::Vector3d across = dp_RE;
+  if (way_m > kStands_m) across -= dp_RE.dot(way) / (way_m * way_m) * way;
+  const double across_m = across.norm();
+  if (!(across_m > max_m)) return {p_wish, false};
+  const Eigen::Vector3d kept = dp_RE - (1.0 - max_m / across_m) * across;
+  const Eigen::Vector3d less = J.fullPivLu().solve(kept);
+  // A wrist that would go farther for less of the tip's way, by a Jacobian near a singular one.
+  if (less.allFinite() && less.norm() <= step.norm()) return {p_RW + less, true};
+  return {p_RW + max_m / across_m * step, true};
 }
 
 Limited KeepInBox(const WorkspaceBox& box, const Eigen::Vector3d& p) {

@@ -31,6 +31,12 @@ Limited LimitSpeed(const Eigen::Vector3d& p_last, const Eigen::Vector3d& p_wish,
 Limited LimitAcceleration(const Eigen::Vector3d& p_last, const Eigen::Vector3d& v_last_m_s,
                           const Eigen::Vector3d& p_wish, double dt_s, double max_acceleration_m_s2);
 
+/// Returns `p_wish`, drawn to `p_RW` so far that, by the Jacobian `J` (d tip / d wrist), it moves
+/// the tip by `max_m` at most across `way` (the goal's motion; zero: in any direction). All of
+/// `p_wish` where `J` is singular or not finite.
+Limited LimitCorrection(const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_wish,
+                        const Eigen::Matrix3d& J, const Eigen::Vector3d& way, double max_m);
+
 /// Returns the place in `box` nearest to `p`.
 Limited KeepInBox(const WorkspaceBox& box, const Eigen::Vector3d& p);
 

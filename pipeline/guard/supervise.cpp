@@ -9,10 +9,15 @@
 namespace flextip {
 namespace {
 
-// The other sensors carry the tip while its deviation is a quarter of the 2 mm that count as
-// astray.
-constexpr double kTakeOver_m = 0.0005;
+// The other sensors carry the tip while it is, by three of its deviations, within half of the 2 mm
+// that count as astray.
+constexpr double kTakeOver_m = 0.0003;
 constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is taken up
+
+// Two samples that are wrong in a row may lead the tip by 1.2 of what it may be astray: the first
+// by this part, the second by twice that. By then the vote has them.
+constexpr double kCorrection = 0.4;
+constexpr double kVideo_hz = 30.0;  // of tips that are seen
 
 constexpr double kForceDeviations = 3.0;
 constexpr double kLeastShaft = 0.01;  // of its length, on either side of the port
@@ -95,6 +100,27 @@ Eigen::Vector3d InstrumentController::WayOfTip(const Eigen::Vector3d& p_RW) {
   return motion_guard_.Jacobian().value_or(Eigen::Matrix3d::Zero()) * way;
 }
 
+/// The wish, with so little of a correction that one wrong sample does not lead the tip astray. A
+/// correction that goes on in one direction is no single sample's: it may grow.
+Limited InstrumentController::Corrected(const ControllerCommand& command) {
+  const Eigen::Vector3d& p_goal = command.goal.p_RE_desired;
+  const Eigen::Vector3d way = p_goal - p_goal_last_.value_or(p_goal);
+  p_goal_last_ = p_goal;
+  const auto J = motion_guard_.Jacobian();
+  const SupervisorOptions& options = options_.supervision;
+  if (!J || options.max_tip_deviation_m <= 0.0) return {command.p_RW_command, false};
+  const double samples = std::min(1.0, kVideo_hz / options.rate_hz);  // a cycle
+  const double most_m =
+      kCorrection * options.max_tip_deviation_m * samples * (1.0 + samples * corrections_);
+  const Limited limited =
+      LimitCorrection(command.measurements.p_RW, command.p_RW_command, *J, way, most_m);
+  const Eigen::Vector3d excess_m = command.p_RW_command - limited.p;
+  const bool goes_on = limited.limited && excess_m.dot(excess_m_) > 0.0;
+  corrections_ = goes_on ? corrections_ + 1 : 0;
+  excess_m_ = excess_m;
+  return limited;
+}
+
 /// The last word over the command.
 void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerCommand& command) {
   const SupervisorOptions& options = options_.supervision;
@@ -134,7 +160,15 @@ void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerC
            Stop::kTipAstray);
       hold(path_watch_.MovesOtherwise(inputs.t_ns), Stop::kModelDisagrees);
     }
-    if (acts && !command.J_tip_wrist.isZero(0.0)) cycle.may_point_wrong = MayPointWrong(command);
+    if (acts && !command.J_tip_wrist.isZero(0.0)) {
+      cycle.may_point_wrong = MayPointWrong(command);
+      const Limited corrected = Corrected(command);
+      cycle.p_wish = corrected.p;
+      if (corrected.limited && found.reaction == Reaction::kNone) {
+        found.stop = Stop::kStep;
+        found.reaction = Reaction::kLimit;
+      }
+    }
   }
   cycle.found = found;
   const Supervisor::Decision decision = supervisor_.Decide(cycle);

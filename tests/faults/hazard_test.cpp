@@ -64,6 +64,19 @@ TEST(Hazards, AWristThatStandsOffThePathDoesNotCount) {
   EXPECT_EQ(Judge(series).Text(), "none");
 }
 
+TEST(Hazards, ACommandOfThisCycleHasNotMovedTheWristYet) {
+  auto series = Quiet();
+  for (std::size_t i = 5; i < 20; ++i) {
+    series[i].p_RW = series[i].p_RW_command = {0.005, i % 2 == 0 ? 6e-5 : 0.0, 0.0};  // it shakes
+    series[i].p_RW_command = {0.005, 0.0, 0.0};
+    if (i > 8) series[i].deviation_m = 0.01;
+  }
+  series[19].p_RW_command = {0.004, 0.0, 0.0};
+  EXPECT_EQ(Judge(series).Text(), "none");
+  series[18].p_RW_command = {0.0045, 0.0, 0.0};
+  EXPECT_EQ(Judge(series).Text(), "path");
+}
+
 TEST(Hazards, AWayBackToThePathDoesNotCount) {
   auto series = Quiet();
   for (std::size_t i = 5; i < 15; ++i)

@@ -46,6 +46,34 @@ TEST(SupervisedLoop, OneTipThatIsWrongMovesNothing) {
   EXPECT_TRUE(named);
 }
 
+/// The farthest that the tip went across the path from one cycle to the next.
+double FartherInACycle(const LoopResult& result) {
+  double most_m = 0.0;
+  for (std::size_t i = 1; i < result.updates.size(); ++i)
+    most_m = std::max(most_m, result.updates[i].deviation_m - result.updates[i - 1].deviation_m);
+  return most_m;
+}
+
+// Vision alone, and wrong by less than it can be told to jump.
+TEST(SupervisedLoop, OneTipThatNobodyCanJudgeLeadsTheTipOnlyAPart) {
+  const std::vector<Fault> spike{{FaultKind::kSpike, FaultStream::kTip, kStart_s, 0.1, 0.002}};
+  LoopSetup setup = Press(SupervisionKind::kFull, spike);
+  setup.sensors.em0.reset();
+  setup.sensors.strain.reset();
+  setup.sensors.load.reset();
+  const LoopResult free = RunClosedLoop(setup, nullptr);
+  setup.supervision.max_tip_deviation_m = 0.002;
+  const LoopResult kept = RunClosedLoop(setup, nullptr);
+  EXPECT_GT(FartherInACycle(free), 0.0011);
+  // 0.8 mm by one sample, and what the wrist shakes.
+  EXPECT_LT(FartherInACycle(kept), 0.001);
+  const bool said = std::any_of(kept.updates.begin(), kept.updates.end(), [](const auto& update) {
+    return update.supervision.stop == Stop::kStep &&
+           update.supervision.reaction == Reaction::kLimit;
+  });
+  EXPECT_TRUE(said);
+}
+
 TEST(SupervisedLoop, OthersCarryATipThatIsCoveredFromItsFirstCycleOnWithoutAJump) {
   const std::vector<Fault> covered{
       {FaultKind::kTagsCovered, FaultStream::kTip, kStart_s, 1.0, 0.0}};
@@ -57,6 +85,35 @@ TEST(SupervisedLoop, OthersCarryATipThatIsCoveredFromItsFirstCycleOnWithoutAJump
   }
   EXPECT_LT(guarded.max_deviation_m, healthy.max_deviation_m + 5e-4);
   EXPECT_LT(LongestStep(guarded), 1.5 * LongestStep(healthy));
+}
+
+// The camera's tip is all that tells rod-calculate the load.
+TEST(SupervisedLoop, ALoopThatCalculatesHoldsWithoutItsSensorAndGoesOnWithIt) {
+  constexpr double kLasts_s = 0.5;
+  LoopSetup setup = Press(SupervisionKind::kFull,
+                          {{FaultKind::kOffset, FaultStream::kTip, kStart_s, kLasts_s, 0.02}});
+  setup.controller.kind = ControllerKind::kRodCalculate;
+  setup.sensors.em0.reset();
+  setup.sensors.strain.reset();
+  setup.sensors.load.reset();
+  const LoopResult result = RunClosedLoop(setup, nullptr);
+  const LoopUpdate* last = nullptr;
+  int held = 0, moved = 0;
+  for (const LoopUpdate& update : result.updates) {
+    const double t_s = 1e-9 * static_cast<double>(update.t_ns - kSimulationStart_ns);
+    const bool holds = update.supervision.reaction >= Reaction::kHold;
+    if (t_s < kStart_s) EXPECT_FALSE(holds) << t_s;
+    if (t_s > kStart_s && t_s < kStart_s + kLasts_s) {
+      EXPECT_TRUE(holds) << t_s;
+      held += holds && update.supervision.stop == Stop::kSourceLost;
+      moved += last != nullptr && held > 1 && update.p_RW_command != last->p_RW_command;
+    }
+    last = &update;
+  }
+  EXPECT_GE(held, 10);
+  EXPECT_EQ(moved, 0);
+  EXPECT_LT(last->supervision.reaction, Reaction::kHold);
+  EXPECT_FALSE(result.updates.empty());
 }
 
 TEST(SupervisedLoop, ATipThatPressesTooHardIsHeld) {
