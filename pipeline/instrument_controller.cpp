@@ -10,7 +10,8 @@
 namespace flextip {
 namespace {
 
-constexpr double kMotionDeviations = 2.0;  // of the ellipsoid in which the worst angle is sought
+constexpr double kMotionDeviations = 2.0;    // of the ellipsoid in which the worst angle is sought
+constexpr TimeNs kAhead_ns = 1'000'000'000;  // a stamp so far ahead is of another clock
 
 bool IsStraight(ControllerKind kind) {
   return kind == ControllerKind::kStraightCalculate || kind == ControllerKind::kStraightTrack;
@@ -155,7 +156,8 @@ SensorReadings InstrumentController::See(const ControllerInputs& inputs, Supervi
   }
   const bool is_new = seen.tip && (!tip_t_ns_ || seen.tip->t_ns > *tip_t_ns_);
   if (is_new) {
-    tip_t_ns_ = seen.tip->t_ns;
+    // A stamp of another clock would make all tips that follow old ones.
+    if (seen.tip->t_ns <= inputs.t_ns + kAhead_ns) tip_t_ns_ = seen.tip->t_ns;
     tip_is_hidden_ = seen.tip->value.tip.status == TipStatus::kLost;
   }
   if (!is_new) seen.tip.reset();

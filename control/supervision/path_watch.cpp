@@ -9,7 +9,6 @@
 namespace flextip {
 namespace {
 
-constexpr TimeNs kWay_ns = 1'000'000'000;      // of wishes: a robot may lag so far behind
 constexpr TimeNs kStep_ns = 34'000'000;        // between those that are kept
 constexpr TimeNs kAhead_ns = 250'000'000;      // of the way before the wish
 constexpr TimeNs kSpan_ns = 120'000'000;       // some cycles, and less than a robot's lag
@@ -29,7 +28,9 @@ constexpr double kSurprise = 25.0;          // of chi-squared
 }  // namespace
 
 void PathWatch::Note(TimeNs t_ns, const Eigen::Vector3d& p_wish) {
-  const bool is_due = count_ == 0 || t_ns - wishes_[(next_ + kSize - 1) % kSize].t_ns >= kStep_ns;
+  // A wish that waits is no way: the tip may stand behind it as long as it waits.
+  const Wish& newest = wishes_[(next_ + kSize - 1) % kSize];
+  const bool is_due = count_ == 0 || (t_ns - newest.t_ns >= kStep_ns && p_wish != newest.p);
   if (!is_due) return;
   wishes_[next_] = {t_ns, p_wish};
   next_ = (next_ + 1) % kSize;
@@ -49,7 +50,6 @@ Eigen::Vector3d PathWatch::NearestOnWay(TimeNs t_ns, const Eigen::Vector3d& p_wi
   Eigen::Vector3d nearest = NearestOnSegment(p_wish, ahead, tip_.p), later = p_wish;
   for (std::size_t i = 1; i <= count_; ++i) {
     const Wish& wish = wishes_[(next_ + kSize - i) % kSize];
-    if (t_ns - wish.t_ns > kWay_ns) break;
     const Eigen::Vector3d place = NearestOnSegment(wish.p, later, tip_.p);
     if ((tip_.p - place).norm() < (tip_.p - nearest).norm()) nearest = place;
     later = wish.p;

@@ -32,7 +32,8 @@ class PathWatch {
       : max_deviation_m_(max_deviation_m), tolerance_m_(tolerance_m) {}
 
   /// Returns whether the tip, seen as `tip`, is for certain (two deviations) farther than it may be
-  /// from the way through the wishes of the last second, up to `p_wish`, and gets no nearer to it.
+  /// from the way through the wishes of the last second in which they moved, up to `p_wish`, and
+  /// gets no nearer to it.
   /// `dp_RE`: how the wrist moved the tip since the last call, by the model.
   bool IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector3d& dp_RE,
                 const Eigen::Vector3d& p_wish);
@@ -54,7 +55,8 @@ class PathWatch {
   void VisitState(StateText& state);
 
  private:
-  static constexpr std::size_t kSize = 32;  // a wish each thirtieth of a second
+  // A wish each thirtieth of a second: a robot may lag a second behind.
+  static constexpr std::size_t kSize = 32;
   struct Wish {
     TimeNs t_ns = 0;
     Eigen::Vector3d p = Eigen::Vector3d::Zero();

@@ -116,6 +116,20 @@ TEST(SupervisedLoop, ALoopThatCalculatesHoldsWithoutItsSensorAndGoesOnWithIt) {
   EXPECT_FALSE(result.updates.empty());
 }
 
+TEST(SupervisedLoop, TipsAreSeenAgainAfterStampsOfTheFuture) {
+  for (const SupervisionKind kind : {SupervisionKind::kNone, SupervisionKind::kFull}) {
+    LoopSetup setup =
+        Press(kind, {{FaultKind::kStampJump, FaultStream::kTip, kStart_s, 0.1, 1000.0}});
+    setup.max_s = 8.0;
+    setup.sensors.em0.reset();
+    setup.sensors.strain.reset();
+    setup.sensors.load.reset();
+    const LoopResult result = RunClosedLoop(setup, nullptr);
+    EXPECT_EQ(result.updates.back().status, ControlStatus::kOk) << Name(kind);
+    EXPECT_LT(result.updates.back().supervision.reaction, Reaction::kHold) << Name(kind);
+  }
+}
+
 TEST(SupervisedLoop, ATipThatPressesTooHardIsHeld) {
   LoopSetup setup = Press(SupervisionKind::kFull);
   setup.supervision.max_tip_force_N = 0.2;  // the press reaches 0.5

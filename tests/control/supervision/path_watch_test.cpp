@@ -41,6 +41,15 @@ TEST(PathWatch, LaggingBehindIsNotLeaving) {
   for (int i = 0; i < 60; ++i) EXPECT_FALSE(walk.Next(0.0, std::min(walk.x_m, 0.006)));
 }
 
+TEST(PathWatch, BehindAGoalThatWaitsIsNotLeaving) {
+  Walk walk;
+  for (int i = 0; i < 30; ++i) EXPECT_FALSE(walk.Next(0.0));
+  for (int i = 0; i < 90; ++i) EXPECT_FALSE(walk.Next(0.0, 0.003, false)) << i;
+  bool found = false;
+  for (int i = 0; i < 10; ++i) found |= walk.Next(0.004, 0.003, false);
+  EXPECT_TRUE(found);
+}
+
 TEST(PathWatch, ATipThatComesNearerMayGoOn) {
   Walk walk;
   EXPECT_TRUE(walk.Next(0.01, 0.0, false));
