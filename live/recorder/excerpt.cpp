@@ -1,11 +1,8 @@
 #include "live/recorder/excerpt.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <memory>
 #include <set>
-#include <tuple>
 
 #include "live/recorder/cycle_table.h"
 #include "live/recorder/replay.h"
@@ -14,7 +11,7 @@
 #include "recording/recording_writer.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
-#include "stops/words.h"
+#include "stops/open_excerpt.h"
 
 namespace flextip::live {
 namespace {
@@ -60,15 +57,10 @@ class Watch {
 };
 
 /// One excerpt while its cycles go by.
-struct Open {
-  StopEvent stop;
-  std::size_t number = 0;
-  TimeNs from_ns = 0, to_ns = 0;
-  std::string state;  // of the cycle at the begin
+struct Open : OpenExcerpt {
+  explicit Open(const OpenExcerpt& excerpt) : OpenExcerpt(excerpt) {}
   CycleTableWriter table;
-  std::vector<Moment> moments;
   std::string lost;  // the source of a source_lost
-  long differ = 0;
 };
 
 Moment MomentOf(const CycleRecord& record, const Cycle& cycle, const char* cause) {
@@ -119,14 +111,8 @@ class ExcerptWriter {
         session_(RecordedSession(recording)),
         streams_(ReadRecording(recording, {.check_frames = false}).recording),
         stops_(StopsFound(found)) {
-    for (const StopEvent& stop : Gravest(found, kMostExcerpts)) {
-      waiting_.push_back(std::make_unique<Open>());
-      Open& open = *waiting_.back();
-      open.stop = stop;
-      open.number = stops_.kept.size();
-      std::tie(open.from_ns, open.to_ns) = SpanOf(stop);
-      stops_.kept.push_back({StopFolder(open.number + 1, stop), "", {}});
-    }
+    for (const OpenExcerpt& open : OpenExcerpts(found, stops_))
+      waiting_.push_back(std::make_unique<Open>(open));
   }
 
   StopsOfRun Write() {
@@ -178,27 +164,18 @@ class ExcerptWriter {
   }
 
   void Finish(Open& open) {
-    KeptStop& kept = stops_.kept[open.number];
-    const fs::path folder = to_ / kept.folder, inside = folder / "session0";
+    const fs::path folder = to_ / stops_.kept[open.number].folder, inside = folder / "session0";
     fs::create_directories(folder);
     CopySession(from_ / "session0", inside);
     WriteTextFile(inside / "cycles.csv", open.table.TakeText());
     WriteTextFile(inside / "state.txt", open.state);
     CopyEvents(from_ / "session0" / "events.csv", inside / "events.csv", open);
     WriteRecording(folder, Cut(streams_, open.from_ns, open.to_ns));
-    StoppedRun run{start_ns_, OptionsOf(session_).estimator,
-                   session_.task.supervision.max_motion_angle_rad,
-                   session_.task.supervision.max_tip_force_N, [&] { return ModelOf(session_); }};
-    StopStory story = TellStop(run, open.stop, open.moments);
-    story.facts.detail = open.lost;
-    WriteStopTable(folder, story, start_ns_);
-    kept.facts = story.facts;
-    kept.says = SayStop(story.facts);
-    if (open.differ == 0) return;
-    kept.warnings.push_back(fmt::format(
-        "{} of {} cycles came out differently when the excerpt was cut: the recording lacks "
-        "cycles, or another program made it",
-        open.differ, open.moments.size()));
+    const StoppedRun run{
+        start_ns_, OptionsOf(session_).estimator, session_.task.supervision.max_motion_angle_rad,
+        session_.task.supervision.max_tip_force_N, [&] { return ModelOf(session_); }};
+    CloseExcerpt(open, run, folder, open.lost,
+                 "the recording lacks cycles, or another program made it", stops_);
   }
 
   fs::path from_, to_;

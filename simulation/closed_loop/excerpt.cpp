@@ -1,9 +1,6 @@
 #include "simulation/closed_loop/excerpt.h"
 
-#include <fmt/format.h>
-
 #include <memory>
-#include <tuple>
 
 #include "core/error.h"
 #include "recording/cut.h"
@@ -11,7 +8,7 @@
 #include "recording/recording_writer.h"
 #include "recording/text/text.h"
 #include "simulation/closed_loop/loop_table.h"
-#include "stops/words.h"
+#include "stops/open_excerpt.h"
 
 namespace flextip::simulation {
 namespace {
@@ -65,14 +62,9 @@ Moment MomentOf(const LoopCycle& cycle, const ControllerCommand& command) {
 }
 
 /// One excerpt while its cycles go by.
-struct Open {
-  StopEvent stop;
-  std::size_t number = 0;
-  TimeNs from_ns = 0, to_ns = 0;
-  std::string state;  // of the controller at the begin
+struct Open : OpenExcerpt {
+  explicit Open(const OpenExcerpt& excerpt) : OpenExcerpt(excerpt) {}
   LoopTableWriter table;
-  std::vector<Moment> moments;
-  long differ = 0;
   bool done = false;
 };
 
@@ -85,14 +77,7 @@ class ExcerptWriter {
         to_(to),
         streams_(ReadRecording(recording, {.check_frames = false}).recording),
         stops_(StopsFound(found)) {
-    for (const StopEvent& stop : Gravest(found, kMostExcerpts)) {
-      Open open;
-      open.stop = stop;
-      open.number = stops_.kept.size();
-      std::tie(open.from_ns, open.to_ns) = SpanOf(stop);
-      stops_.kept.push_back({StopFolder(open.number + 1, stop), "", {}});
-      opens_.push_back(std::move(open));
-    }
+    for (const OpenExcerpt& open : OpenExcerpts(found, stops_)) opens_.emplace_back(open);
   }
 
   StopsOfRun Write() {
@@ -135,8 +120,7 @@ class ExcerptWriter {
 
   void Finish(Open& open) {
     open.done = true;
-    KeptStop& kept = stops_.kept[open.number];
-    const fs::path folder = to_ / kept.folder;
+    const fs::path folder = to_ / stops_.kept[open.number].folder;
     fs::create_directories(folder);
     WriteTextFile(TableOf(folder), open.table.Text());
     WriteTextFile(StateOf(folder), open.state);
@@ -144,16 +128,7 @@ class ExcerptWriter {
     const StoppedRun run{start_ns_, ControllerOptionsOf(setup_).estimator,
                          setup_.supervision.max_motion_angle_rad,
                          setup_.supervision.max_tip_force_N, setup_.model};
-    const StopStory story = TellStop(run, open.stop, open.moments);
-    WriteStopTable(folder, story, start_ns_);
-    kept.facts = story.facts;
-    kept.says = SayStop(story.facts);
-    if (open.differ > 0) {
-      kept.warnings.push_back(fmt::format(
-          "{} of {} cycles came out differently when the excerpt was cut: another program or "
-          "scenario made the recording",
-          open.differ, open.moments.size()));
-    }
+    CloseExcerpt(open, run, folder, "", "another program or scenario made the recording", stops_);
     open.moments.clear();
   }
 
