@@ -81,6 +81,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   diagnosis/replay/sample_input.h
   diagnosis/samples/sample_set.h
   estimation/instrument_model.h
+  estimation/watch/instrument_watch.h
   estimation/measurements.h
   estimation/rod_fit.h
   estimation/saved_state.h

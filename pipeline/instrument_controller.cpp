@@ -59,10 +59,12 @@ EstimatorOptions BetweenTips(const InstrumentControllerOptions& options) {
 
 InstrumentController::InstrumentController(const InstrumentControllerOptions& options,
                                            std::unique_ptr<InstrumentModel> model,
-                                           std::unique_ptr<InstrumentTracker> tracker)
+                                           std::unique_ptr<InstrumentTracker> tracker,
+                                           std::unique_ptr<InstrumentWatch> watch)
     : options_(options),
       model_(std::move(model)),
       tracker_(std::move(tracker)),
+      watch_(std::move(watch)),
       estimator_(OptionsFor(options.estimator, options.control.kind), options.window_samples),
       place_(PlaceOptions(options)),
       guard_(options.estimator, options.supervision),
@@ -138,6 +140,7 @@ ControllerCommand InstrumentController::Step(const ControllerInputs& inputs) {
     command.goal = Keep(inputs, command.estimate);
     Control(inputs, command);
   }
+  Watch(inputs, command);
   guard_.Believe(late_, seen, command.supervision);
   Supervise(inputs, command);
   return command;
@@ -190,6 +193,7 @@ bool InstrumentController::EstimateThen(const SensorReadings& seen, Supervision&
   Vote(seen.tip->t_ns, then, found);
   const ShaftEstimate estimate = estimator_.Update(then, model_ ? model_->Shaft() : ShaftChange());
   Learn(seen.tip->t_ns, estimate);
+  LookFor(seen.tip->t_ns, *past, then);
   return then.tip.has_value() || !had_tip;
 }
 
@@ -231,6 +235,28 @@ ShaftEstimate InstrumentController::Estimate(TimeNs t_ns, const Measurements& me
   if (IsStraight(options_.control.kind) && options_.straight_at_registered_port)
     estimate.model.p_RP = options_.estimator.p_RP;
   return estimate;
+}
+
+void InstrumentController::LookFor(TimeNs t_ns, const SensorReadings& readings,
+                                   const Measurements& z) {
+  if (!watch_) return;
+  const auto time = [](const auto& sample) { return sample ? sample->t_ns : TimeNs(0); };
+  const ShaftChange none;
+  watch_->Look(
+      {t_ns,
+       z,
+       {time(readings.em0), time(readings.em1), time(readings.strain), time(readings.load)},
+       model_ ? model_->Shaft() : none});
+}
+
+/// Looks for causes of misfit. Late tips were looked at for the time at which they were seen, and
+/// one that is carried on says nothing new.
+void InstrumentController::Watch(const ControllerInputs& inputs, ControllerCommand& command) {
+  if (!watch_) return;
+  if (!tip_is_carried_ && command.status != ControlStatus::kNoWrist)
+    LookFor(inputs.t_ns, inputs.sensors, command.measurements);
+  watch_->Work();
+  command.cause = watch_->Found();
 }
 
 /// Keeps the goal out of forbidden regions.

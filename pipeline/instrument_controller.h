@@ -15,6 +15,7 @@
 #include "control/supervision/supervisor.h"
 #include "core/image.h"
 #include "estimation/instrument_model.h"
+#include "estimation/watch/instrument_watch.h"
 #include "pipeline/guard/sensor_guard.h"
 #include "pipeline/instrument_estimator.h"
 #include "pipeline/instrument_tracker.h"
@@ -65,6 +66,7 @@ struct ControllerCommand {
   FixturesOutput goal;                           ///< the wish, kept by the fixtures
   Eigen::Matrix3d J_tip_wrist = Eigen::Matrix3d::Zero();  ///< that the step used; zero: none
   Supervision supervision;  ///< the supervisor's findings; p_RW_command is what it let through
+  FoundCause cause;         ///< by the watch: a warning, which changes no command
 };
 
 /// The whole cycle. A function of its inputs and its own state: the same inputs give the same
@@ -72,11 +74,12 @@ struct ControllerCommand {
 class InstrumentController {
  public:
   /// Takes the `model` of instrument and sensors that a diagnosis found; null: as their data say.
-  /// `tracker` sees the tip where a cycle is given pictures. Throws InputError where
-  /// `options.direction` comes without a rod kind.
+  /// `tracker` sees the tip where a cycle is given pictures. `watch` looks for causes of misfit.
+  /// Throws InputError where `options.direction` comes without a rod kind.
   explicit InstrumentController(const InstrumentControllerOptions& options,
                                 std::unique_ptr<InstrumentModel> model = nullptr,
-                                std::unique_ptr<InstrumentTracker> tracker = nullptr);
+                                std::unique_ptr<InstrumentTracker> tracker = nullptr,
+                                std::unique_ptr<InstrumentWatch> watch = nullptr);
 
   /// Runs one cycle. Throws InputError only for pictures of the wrong size.
   ControllerCommand Step(const ControllerInputs& inputs);
@@ -118,10 +121,13 @@ class InstrumentController {
   bool LosesItsLoad(const ControllerCommand& command) const;
   Eigen::Vector3d WayOfTip(const Eigen::Vector3d& p_RW);
   void Supervise(const ControllerInputs& inputs, ControllerCommand& command);
+  void LookFor(TimeNs t_ns, const SensorReadings& readings, const Measurements& z);
+  void Watch(const ControllerInputs& inputs, ControllerCommand& command);
 
   InstrumentControllerOptions options_;
   std::unique_ptr<InstrumentModel> model_;
   std::unique_ptr<InstrumentTracker> tracker_;
+  std::unique_ptr<InstrumentWatch> watch_;
   InstrumentEstimator estimator_;
   TipController place_;
   std::optional<DirectionController> direction_;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kMostFalseAlarms = 0.01;
+constexpr double kMostFalseAlarmsPerHour = 100.0;
 constexpr double kAnyRate_hz = 1e3;  // of updates: two of them are all that it changes
 
 bool IsOutsideForbidden(const YamlMap& map) {
@@ -87,6 +88,21 @@ void TaskReader::ReadControl(const YamlMap& map) {
   task_.fixtures.margin_m = map.NonNegativeOr("fixture_margin_m", 0.0);
   task_.fixtures.margin_sd = map.NonNegativeOr("fixture_margin_sd", 0.0);
   if (map.Has("direction")) ReadDirection(Section(map, "direction"));
+}
+
+void TaskReader::ReadDiagnosis(const YamlMap& map) {
+  if (!map.Has("diagnosis")) return;
+  const YamlMap section = Section(map, "diagnosis");
+  WatchTask& watch = task_.watch;
+  if (section.Has("running"))
+    watch.running = ReadChoice(section, "running", {"false", "true"}) == 1;
+  watch.false_alarms_per_hour =
+      section.PositiveOr("false_alarms_per_hour", watch.false_alarms_per_hour);
+  if (watch.false_alarms_per_hour > kMostFalseAlarmsPerHour) {
+    throw section.Error("false_alarms_per_hour",
+                        fmt::format("found {}, expected at most {}", watch.false_alarms_per_hour,
+                                    kMostFalseAlarmsPerHour));
+  }
 }
 
 void TaskReader::ReadSupervisor(const YamlMap& map) {

@@ -15,6 +15,12 @@
 
 namespace flextip {
 
+/// Whether a running loop looks for causes of misfit.
+struct WatchTask {
+  bool running = false;
+  double false_alarms_per_hour = 0.1;
+};
+
 struct TipTask {
   PathSetup path;
   ControllerOptions controller;
@@ -22,6 +28,7 @@ struct TipTask {
   Eigen::Vector3d direction_free_axis = Eigen::Vector3d::Zero();
   Fixtures fixtures;
   SupervisorOptions supervision;
+  WatchTask watch;
 };
 
 /// Reads a direction and makes it a unit vector. Throws InputError for a zero vector.
@@ -53,6 +60,8 @@ class TaskReader {
   void ReadControl(const YamlMap& map);
   /// Reads the section `supervisor` of `map`, where it has one.
   void ReadSupervisor(const YamlMap& map);
+  /// Reads the section `diagnosis` of `map`, where it has one.
+  void ReadDiagnosis(const YamlMap& map);
   /// Turns the direction's control on where the waypoints have directions. `control` and
   /// `controllers` are where to complain; `kinds` are all that will run.
   void FinishDirection(const YamlMap& control, const YamlMap& controllers,

@@ -12,8 +12,11 @@
 #include "apps/control/tables.h"
 #include "apps/stops/stops.h"
 #include "core/error.h"
+#include "diagnosis/running/running_diagnosis.h"
+#include "diagnosis/running/warnings_table.h"
 #include "live/loop/control_loop.h"
 #include "live/recorder/excerpt.h"
+#include "recording/text/text.h"
 #include "report/figure.h"
 #include "report/pages.h"
 
@@ -96,6 +99,9 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
   if (recorder.Dropped() > 0)
     output.Warn(fmt::format("{} samples and cycles were not recorded: the disk was too slow",
                             recorder.Dropped()));
+  for (const Warning& warning : report.causes) output.Warn(diagnosis::Text(warning.cause));
+  if (session.task.watch.running)
+    WriteTextFile(output.folder() / "warnings.csv", diagnosis::WarningsCsv(report.causes));
   const StopsOfRun stops = loop.only_timing ? StopsOfRun() : CutStops(output, quiet);
   nlohmann::ordered_json summary = ReportJson(session, report, loop.only_timing);
   AddStopsJson(stops, summary);

@@ -21,6 +21,8 @@
 #include "apps/stops/stops.h"
 #include "core/error.h"
 #include "diagnosis/model/extended_model.h"
+#include "diagnosis/running/running_diagnosis.h"
+#include "diagnosis/running/warnings_table.h"
 #include "recording/recording_writer.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
@@ -134,6 +136,8 @@ OneRun RunOne(const simulation::Scenario& scenario, ControllerKind kind,
   WriteRecording(folder, result.recording);
   WriteTruth(folder, result.truth);
   WriteDeviation(folder / "deviation.csv", result);
+  if (scenario.loop.watch)
+    WriteTextFile(folder / "warnings.csv", diagnosis::WarningsCsv(WarningsOf(result)));
   if (!keeps_cycles) return run;
   WriteTextFile(folder / "loop0" / "cycles.csv", cycles.Text());
   if (supervised) run.stops = simulation::WriteExcerpts(scenario, kind, folder, folder);
@@ -216,6 +220,12 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
     });
   }
   nlohmann::json controllers;
+  for (std::size_t i = 0; i < runs; ++i) {
+    const auto& updates = results[i].result.updates;
+    if (updates.empty() || !updates.back().cause.IsThere()) continue;
+    const FoundCause& cause = updates.back().cause;
+    output.Warn(fmt::format("{}: {}", Name(scenario.controllers[i]), diagnosis::Text(cause)));
+  }
   for (std::size_t i = 0; i < runs; ++i)
     controllers[Name(scenario.controllers[i])] = Figures(scenario.loop, results[i]);
   nlohmann::ordered_json summary = {{"scenario", options.scenario.filename().string()},

@@ -52,6 +52,8 @@ double Llt<N>::ReciprocalCondition() const requires(N == Eigen::Dynamic) {
 template class Llt<2>;
 template class Llt<3>;
 template class Llt<6>;
+template class Llt<21>;  // the running diagnosis: a sample, all parameters
+template class Llt<48>;
 template class Llt<Eigen::Dynamic>;
 
 }  // namespace flextip

@@ -16,6 +16,7 @@ namespace flextip::live {
 namespace {
 
 constexpr double kPauseWait_s = 1.0;  // for the robot's word that it is paused
+constexpr std::size_t kMostCauses = 16;
 
 class Loop {
  public:
@@ -32,6 +33,7 @@ class Loop {
         cycle_(session, options.wait || options.only_timing),
         T_BR_(session.robot.T_RB.Inverse()),
         T_WD_(session.robot.T_DW.Inverse()) {
+    report_.causes.reserve(kMostCauses);
     set_point_.device = session.robot.command.device;
     if (session.robot.command_state) state_command_.device = session.robot.command_state->device;
   }
@@ -228,6 +230,9 @@ class Loop {
     report_.fixture_limited += outputs.fixture_limited;
     report_.done |= outputs.done;
     last_hold_ = outputs.hold;
+    if (IsNews(outputs.cause, last_cause_) && report_.causes.size() < kMostCauses)
+      report_.causes.push_back({outputs.t_ns, outputs.cause});
+    last_cause_ = outputs.cause;
     const auto& state = record.inputs.streams.state;
     enabled_ = state && state->value.state == CrtkState::kEnabled;
     report_.wake.Add(record.woke_ns - record.due_ns);
@@ -282,6 +287,7 @@ class Loop {
   LoopReport report_;
   std::array<long, 16> holds_{};
   Hold last_hold_ = Hold::kNone;
+  FoundCause last_cause_;
   TimeNs begin_ns_ = 0, stop_ns_ = 0;
   bool stops_ = false, enabled_ = false;
 };

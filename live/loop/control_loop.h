@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "live/camera/tip_camera.h"
 #include "live/loop/cycle.h"
@@ -45,7 +46,8 @@ struct LoopReport {
   std::array<StreamCounts, kStreams> streams;
   std::optional<CameraCounts> camera;  ///< where the session has one
   long bad_states = 0;
-  std::string last_hold;  ///< of the last cycle
+  std::string last_hold;        ///< of the last cycle
+  std::vector<Warning> causes;  ///< each time that others were named; at most 16
 };
 
 /// Runs the session until its path is done, the time is over or the operator stops it; then pauses

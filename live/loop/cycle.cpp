@@ -7,6 +7,7 @@
 #include "control/supervision/rate_limits.h"
 #include "core/rotation.h"
 #include "diagnosis/model/extended_instrument.h"
+#include "diagnosis/running/running_diagnosis.h"
 
 namespace flextip::live {
 namespace {
@@ -53,10 +54,17 @@ std::unique_ptr<InstrumentModel> ModelOf(const Session& session) {
   return std::make_unique<diagnosis::ExtendedInstrument>(*session.model, session.base);
 }
 
+std::unique_ptr<InstrumentWatch> WatchOf(const Session& session) {
+  const WatchTask& watch = session.task.watch;
+  if (!watch.running) return nullptr;
+  return std::make_unique<diagnosis::RunningDiagnosis>(
+      session.base, diagnosis::RunningOptions{watch.false_alarms_per_hour, session.port_prior_m});
+}
+
 Cycle::Cycle(const Session& session, bool wait)
     : session_(session),
       wait_(wait),
-      controller_(OptionsOf(session), ModelOf(session)),
+      controller_(OptionsOf(session), ModelOf(session), nullptr, WatchOf(session)),
       jerk_({.max_acceleration_m_s2 = session.limits.max_acceleration_m_s2,
              .max_jerk_m_s3 = session.limits.max_jerk_m_s3},
             session.rate_hz) {}
@@ -118,6 +126,7 @@ CycleOutputs Cycle::Step(const CycleInputs& inputs) {
   const ControllerCommand& command = command_;
   outputs.status = command.status;
   outputs.supervision = command.supervision;
+  outputs.cause = command.cause;
   if (wish.p_RE_desired && Acts(command.status)) p_RE_known_ = command.p_RE_used;
   if (clear && phase_ == Phase::kAveraging) {
     outputs.hold = Hold::kStarting;

@@ -10,6 +10,7 @@
 #include "control/supervision/jerk_filter.h"
 #include "control/tip_path.h"
 #include "core/robot/crtk.h"
+#include "estimation/watch/instrument_watch.h"
 #include "live/loop/holds.h"
 #include "pipeline/instrument_controller.h"
 
@@ -31,6 +32,7 @@ struct CycleOutputs {
   std::optional<CrtkCommand> state_command;  ///< to send to the robot
   bool done = false;                         ///< the path was run to its end
   std::optional<Supervision> supervision;    ///< the supervisor's findings; empty: no step was made
+  FoundCause cause;                          ///< that the running diagnosis found: a warning
 };
 
 /// Returns what the controller of a session is made of, and its found model; null for none.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "diagnosis/running/running_diagnosis.h"
 #include "live/page/findings.h"
 #include "live/page/history.h"
 #include "live/page/picture_json.h"
@@ -67,10 +68,16 @@ class Page::Worker {
   // The cycle's thread.
   void Take(const PageSnapshot& snapshot) {
     const CycleRecord& record = snapshot.record;
-    PageChange now{record.inputs.t_ns, record.outputs.hold, record.outputs.held_by, {}, {}};
+    PageChange now{record.inputs.t_ns, record.outputs.hold, record.outputs.held_by, {}, {}, {}};
     if (record.inputs.streams.state) now.state = record.inputs.streams.state->value;
     if (IsOther(now, last_change_)) changes_.Push(now);
     last_change_ = now;
+    if (IsNews(record.outputs.cause, last_cause_)) {
+      last_cause_ = record.outputs.cause;
+      PageChange found = now;
+      found.cause = record.outputs.cause;
+      changes_.Push(found);
+    }
     if (record.outputs.state_command) {
       now.told = record.outputs.state_command;
       changes_.Push(now);
@@ -161,6 +168,13 @@ class Page::Worker {
     }
     for (auto& [t_ns, what] : events) history_.AddEvent({t_ns, PageEvent::Kind::kText, what, {}});
     changes_.Drain([&](const PageChange& change) {
+      if (change.cause.IsThere()) {
+        history_.AddEvent({change.t_ns,
+                           PageEvent::Kind::kText,
+                           fmt::format("warning: {}", diagnosis::Text(change.cause)),
+                           {}});
+        return;
+      }
       history_.AddEvent({change.t_ns, PageEvent::Kind::kChange, "", change});
     });
   }
@@ -193,6 +207,7 @@ class Page::Worker {
   Newest<PageSnapshot> snapshots_;
   Ring<PageChange> changes_;
   PageChange last_change_;  // of the cycle's thread
+  FoundCause last_cause_;   // of it, too
 
   std::mutex mutex_;  // not for the cycle's thread
   std::vector<std::pair<TimeNs, std::string>> events_;

@@ -28,6 +28,7 @@ struct PageChange {
   int held_by = -1;
   std::optional<CrtkOperatingState> state;
   std::optional<CrtkCommand> told;  ///< by the cycle
+  FoundCause cause;                 ///< where it is there, that it was found is what happened
 };
 
 /// Something that happened.

@@ -176,6 +176,31 @@ void VisitSupervision(Io& io, Supervision& found) {
 
 inline constexpr const char* kLaterStream = "asked";
 inline constexpr const char* kLaterFindings = "found";
+inline constexpr const char* kLaterCause = "cause";
+
+template <class Io>
+void VisitSized(Io& io, const std::string& name, SizedCause& sized) {
+  VisitEnum(io, name, sized.cause);
+  io.Number(name + " value", sized.value);
+  io.Number(name + " sd", sized.sd);
+}
+
+/// What the running diagnosis found; empty where nothing is.
+template <class Io>
+void VisitCause(Io& io, FoundCause& found) {
+  std::optional<FoundCause> cause;
+  if (found.IsThere()) cause = found;
+  VisitOptional(io, cause, FoundCause{}, [&](FoundCause& c) {
+    const std::string name = kLaterCause;
+    VisitSized(io, name, c.likeliest);
+    VisitSized(io, name + " or", c.other);
+    VisitFlag(io, name + " or others", c.has_more);
+    io.Number(name + " evidence", c.log_evidence);
+    io.Integer(name + " found [ns]", c.found_ns);
+    io.Integer(name + " since [ns]", c.since_ns);
+  });
+  found = cause.value_or(FoundCause{});
+}
 
 template <class Io>
 void VisitRecord(Io& io, CycleRecord& record, const CycleRecord& before) {
@@ -216,6 +241,7 @@ void VisitRecord(Io& io, CycleRecord& record, const CycleRecord& before) {
   VisitStream(io, kLaterStream, streams.goal, last.goal);
   VisitOptional(io, outputs.supervision, Supervision(),
                 [&](Supervision& found) { VisitSupervision(io, found); });
+  VisitCause(io, outputs.cause);
 }
 
 }  // namespace flextip::live::fields

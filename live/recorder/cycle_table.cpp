@@ -18,7 +18,8 @@ std::vector<std::string> ColumnNames() {
 CsvOptions MayLackLater() {
   CsvOptions options;
   for (const std::string& name : ColumnNames())
-    if (name.starts_with(fields::kLaterStream) || name.starts_with(fields::kLaterFindings))
+    if (name.starts_with(fields::kLaterStream) || name.starts_with(fields::kLaterFindings) ||
+        name.starts_with(fields::kLaterCause))
       options.may_lack.push_back(name);
   return options;
 }

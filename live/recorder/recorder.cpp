@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "diagnosis/running/running_diagnosis.h"
 #include "recording/recording_file.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/text.h"
@@ -139,6 +140,10 @@ void Recorder::NoteChanges(const CycleRecord& record) {
   now += fmt::format("; robot: {}", state ? Text(state->value) : "not known");
   if (outputs.state_command)
     TakeEvent(record.inputs.t_ns, fmt::format("told the robot: {}", Name(*outputs.state_command)));
+  if (IsNews(outputs.cause, last_cause_)) {
+    last_cause_ = outputs.cause;
+    TakeEvent(record.inputs.t_ns, fmt::format("warning: {}", diagnosis::Text(outputs.cause)));
+  }
   if (now == last_change_) return;
   last_change_ = now;
   TakeEvent(record.inputs.t_ns, now);

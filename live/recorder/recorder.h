@@ -60,6 +60,7 @@ class Recorder {
   CycleTableWriter table_;
   LineFile cycles_file_, events_file_;
   std::string last_change_;
+  FoundCause last_cause_;
   std::string problem_;
   std::jthread thread_;
 };

@@ -37,6 +37,15 @@ bool SameFindings(const std::optional<Supervision>& was, const std::optional<Sup
          SameBits(was->worst_angle_rad, now->worst_angle_rad);
 }
 
+bool SameCause(const SizedCause& a, const SizedCause& b) {
+  return a.cause == b.cause && SameBits(a.value, b.value) && SameBits(a.sd, b.sd);
+}
+
+bool SameCause(const FoundCause& a, const FoundCause& b) {
+  return SameCause(a.likeliest, b.likeliest) && SameCause(a.other, b.other) &&
+         a.has_more == b.has_more && SameBits(a.log_evidence, b.log_evidence) &&
+         a.found_ns == b.found_ns && a.since_ns == b.since_ns;
+}
 }  // namespace
 
 bool SameOutputs(const CycleOutputs& a, const CycleOutputs& b) {
@@ -47,7 +56,7 @@ bool SameOutputs(const CycleOutputs& a, const CycleOutputs& b) {
          a.acceleration_limited == b.acceleration_limited &&
          a.workspace_limited == b.workspace_limited && a.fixture_limited == b.fixture_limited &&
          a.state_command == b.state_command && a.done == b.done &&
-         SameFindings(a.supervision, b.supervision);
+         SameFindings(a.supervision, b.supervision) && SameCause(a.cause, b.cause);
 }
 
 bool HasSession(const std::filesystem::path& recording) {
@@ -82,9 +91,12 @@ ReplayedSession ReplaySession(const std::filesystem::path& recording, const Sess
   const auto made = CycleAtBegin(recording, session);
   Cycle& cycle = *made;
   ReplayedSession replayed;
+  // An excerpt lacks what its warnings come from: the samples before it.
+  const bool is_excerpt = std::filesystem::exists(folder / "state.txt");
   while (const auto record = table.Next()) {
     const CycleOutputs& was = record->outputs;
-    const CycleOutputs again = cycle.Step(record->inputs);
+    CycleOutputs again = cycle.Step(record->inputs);
+    if (is_excerpt) again.cause = was.cause;
     ReplayedCycle row{record->inputs.t_ns,    was.hold,         again.hold,
                       was.has_command,        was.p_RW_command, again.p_RW_command,
                       SameOutputs(was, again)};

@@ -106,6 +106,7 @@ class SessionReader {
     reader.ReadControl(map);
     file_.session.task.supervision.kind = SupervisionKind::kFull;
     reader.ReadSupervisor(file_.top);
+    reader.ReadDiagnosis(file_.top);
     RequireIn(map, "max_step_m", kStep, file_.session.task.controller.max_step_m);
     file_.session.task.controller.kind = ReadControllerKind(map, "kind", map.Text("kind"));
     const std::int64_t window = map.Has("window_samples") ? map.Integer("window_samples") : 0;

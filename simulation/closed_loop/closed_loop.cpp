@@ -30,7 +30,8 @@ class Loop {
         plant_(setup.plant, setup.plant_options),
         sensors_(WithoutTipIf(camera != nullptr, setup.sensors), setup.seed, setup.sensor_effects),
         controller_(ControllerOptionsOf(setup), setup.model ? setup.model() : nullptr,
-                    TrackerOf(setup, camera != nullptr ? &camera->tracker : nullptr)),
+                    TrackerOf(setup, camera != nullptr ? &camera->tracker : nullptr),
+                    setup.watch ? setup.watch() : nullptr),
         servo_(setup.servo, setup.p_RW_start, setup.seed),
         curves_(setup.sensor_effects.camera_latency_s),
         sensor_faults_(setup.faults, setup.fault_seed),
@@ -104,11 +105,19 @@ class Loop {
     result_.recording.vision0->rate_hz = setup_.base.cam0->calibration.rate_hz;
   }
 
+  void SetIn(double t_s) {
+    if (has_set_in_ || !setup_.onset || t_s < setup_.onset->t_s) return;
+    has_set_in_ = true;
+    plant_.SetEffects(setup_.onset->plant);
+    sensors_.SetEffects(setup_.onset->sensors);
+  }
+
   /// Returns false where the shaft has no equilibrium any more because of a fault.
   bool MoveWrist() {
     const double t_s = Seconds(t_ns_);
     servo_.SetMaxSpeed(setup_.servo.max_speed_m_s * robot_faults_.SpeedPart(t_s));
     servo_.Advance(t_ns_);
+    SetIn(t_s);
     plant_faults_.Act(t_s, shape_, plant_);
     wrist_shift_ = plant_faults_.WristShift(t_s);
     PlantShape shape = plant_.Solve(servo_.p_RW() + wrist_shift_, t_s);
@@ -236,6 +245,7 @@ class Loop {
     update.status = command.status;
     update.tip = command.measurements.tip;
     update.supervision = command.supervision;
+    update.cause = command.cause;
     update.resumed = resumed;
     update.p_RW = servo_.p_RW();
     update.p_RW_command = p_RW_sent_;
@@ -280,6 +290,7 @@ class Loop {
   RobotFaults robot_faults_;
   Supervision supervision_;  // of the last cycle
   double resumed_s_ = -1.0;
+  bool has_set_in_ = false;
   Eigen::Vector3d p_RW_sent_ = Eigen::Vector3d::Zero();  // the last command
   Eigen::Vector3d p_RE_goal_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d wrist_shift_ = Eigen::Vector3d::Zero();  // of the true wrist from the encoders
@@ -327,6 +338,16 @@ void TakeOffLatencies(const LoopSetup& setup, ControllerInputs& inputs) {
 LoopResult RunClosedLoop(const LoopSetup& setup, const LoopCamera* camera,
                          const std::function<void(int, int)>& progress) {
   return Loop(setup, camera).Run(progress);
+}
+
+std::vector<Warning> WarningsOf(const LoopResult& result) {
+  std::vector<Warning> warnings;
+  FoundCause last;
+  for (const LoopUpdate& update : result.updates) {
+    if (IsNews(update.cause, last)) warnings.push_back({update.t_ns, update.cause});
+    last = update.cause;
+  }
+  return warnings;
 }
 
 }  // namespace flextip::simulation

@@ -18,6 +18,7 @@
 #include "core/image.h"
 #include "estimation/instrument_model.h"
 #include "estimation/shaft_estimator.h"
+#include "estimation/watch/instrument_watch.h"
 #include "pipeline/instrument_controller.h"
 #include "recording/recording.h"
 #include "recording/truth.h"
@@ -32,6 +33,13 @@ namespace flextip::simulation {
 
 struct LoopCycle;  // loop_table.h
 
+/// What sets in while a run goes on: from then on plant and sensors have these effects.
+struct EffectsOnset {
+  double t_s = 0.0;  ///< since the run's begin
+  PlantEffects plant;
+  SensorEffects sensors;
+};
+
 struct LoopSetup {
   Recording base;  ///< instrument, registered port, gravity, camera and collar; no samples
   PlantSetup plant;
@@ -43,6 +51,9 @@ struct LoopSetup {
   /// Makes the found model that estimator and controller know of; empty: none. The plant does not
   /// know it. Called for each run, perhaps by several at once.
   std::function<std::unique_ptr<InstrumentModel>()> model;
+  /// Makes what looks for causes while the loop runs; empty: nothing does.
+  std::function<std::unique_ptr<InstrumentWatch>()> watch;
+  std::optional<EffectsOnset> onset;
   double update_rate_hz = 30.0;  ///< of the controller
   /// What the controller is told of the tip's and em0's latencies: `sensor_effects` makes them.
   Latency tip_latency, em0_latency;
@@ -80,6 +91,7 @@ struct LoopUpdate {
   ControlStatus status = ControlStatus::kOk;
   std::optional<TipObservation> tip;  ///< as the controller had it, carried on to now where late
   Supervision supervision;
+  FoundCause cause;                                        ///< by the watch
   bool resumed = false;                                    ///< a person said so in this cycle
   Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();          ///< by the encoders, without noise
   Eigen::Vector3d p_RW_command = Eigen::Vector3d::Zero();  ///< perhaps not finite
@@ -100,6 +112,9 @@ struct LoopResult {
   /// With faults, why the shaft has no equilibrium any more, where the run ended so.
   std::string lost_equilibrium;
 };
+
+/// Returns the warnings of the run: a row each time that other causes were named.
+std::vector<Warning> WarningsOf(const LoopResult& result);
 
 /// Returns what the controller of a run is made of, and the tracker of recordings for `camera`;
 /// null without one: the tip's sensor is then simulated by its figures.

@@ -68,9 +68,9 @@ std::vector<ReplayedCommand> ReplayController(const Scenario& scenario, Controll
     throw InputError("the recording has no command0, expected one of simulate");
   LoopSetup setup = scenario.loop;
   setup.controller.kind = kind;
-  InstrumentController controller(
-      ControllerOptionsOf(setup), setup.model ? setup.model() : nullptr,
-      TrackerOf(setup, frames != nullptr ? &scenario.tracker : nullptr));
+  InstrumentController controller(ControllerOptionsOf(setup), setup.model ? setup.model() : nullptr,
+                                  TrackerOf(setup, frames != nullptr ? &scenario.tracker : nullptr),
+                                  setup.watch ? setup.watch() : nullptr);
   const PlantShape start = Plant(setup.plant, setup.plant_options).Solve(setup.p_RW_start);
   if (!start.IsUsable())
     throw InputError(fmt::format("the shaft has no equilibrium at the start: {}", start.message));

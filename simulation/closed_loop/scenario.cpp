@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/error.h"
+#include "diagnosis/running/running_diagnosis.h"
 #include "recording/cameras/camera_file.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/yaml_map.h"
@@ -266,6 +268,7 @@ class ScenarioReader {
     std::optional<YamlMap> control;
     if (top_.Has("control")) control = Section(top_, "control");
     reader.ReadSupervisor(top_);
+    reader.ReadDiagnosis(top_);
     if (control) {
       reader.ReadControl(*control);
       ReadTimes(*control);
@@ -280,9 +283,18 @@ class ScenarioReader {
     loop.direction = task.direction;
     loop.direction_free_axis = task.direction_free_axis;
     loop.fixtures = std::move(task.fixtures);
+    if (task.watch.running) Watch(task.watch);
     // A loop that is held does not come to its path's end.
     if (loop.supervision.kind != SupervisionKind::kNone)
       loop.max_s = PathSeconds(loop.path, loop.update_rate_hz) + kLongestHeld_s;
+  }
+
+  void Watch(const WatchTask& watch) {
+    LoopSetup& loop = scenario_.loop;
+    const diagnosis::RunningOptions options{watch.false_alarms_per_hour, loop.port_prior_m};
+    loop.watch = [base = loop.base, options] {
+      return std::make_unique<diagnosis::RunningDiagnosis>(base, options);
+    };
   }
 
   /// faults: what goes wrong while the loop runs, which nobody is told of.

@@ -28,8 +28,8 @@ class Plant {
   const PlantSetup& Setup() const { return setup_; }
   /// Changes the load; the next solve starts from the shape under the old one.
   void SetLoad(const TipLoad& load) { setup_.load = load; }
-  /// Changes the effects but for the shaft's own (length, stiffness, taper, bend); what has a
-  /// memory keeps it.
+  /// Changes the effects; what has a memory keeps it, in units of the shaft's length, so that a
+  /// shaft with friction must keep its length.
   void SetEffects(const PlantEffects& effects) { setup_.effects = effects; }
   /// Turns the instrument about its own axis.
   void SetRoll(double roll_rad) { setup_.roll_rad = roll_rad; }

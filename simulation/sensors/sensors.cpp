@@ -71,6 +71,11 @@ Sensors::Sensors(const SensorSetup& setup, std::uint64_t seed, const SensorEffec
       load_(MakeChannel(seed, 5)),
       tip_(MakeChannel(seed, 6)) {}
 
+void Sensors::SetEffects(const SensorEffects& effects) {
+  effects_ = effects;
+  em_field_ = EmField(effects.em_gradient, effects.em_centre_m, effects.em_curvature);
+}
+
 bool Sensors::Channel::Due(double rate_hz, TimeNs t_ns) {
   constexpr TimeNs kRounding_ns = 1000;
   if (t_ns + kRounding_ns < next_ns) return false;

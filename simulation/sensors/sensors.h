@@ -73,6 +73,9 @@ class Sensors {
   /// Before kSimulationStart_ns nothing is due: such calls only give the latencies their past.
   void Sample(const PlantShape& shape, TimeNs t_ns, Recording& recording);
 
+  /// Changes the effects from now on, but for the noise's.
+  void SetEffects(const SensorEffects& effects);
+
   /// Returns the time at which the next sample of any sensor is due; empty without sensors.
   std::optional<TimeNs> NextDue() const;
 

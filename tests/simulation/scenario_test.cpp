@@ -95,6 +95,24 @@ TEST(Scenario, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(Complaint("controllers: all", "controllers: [rod-track, flex-track]"), "");
 }
 
+TEST(Scenario, TheRunningDiagnosisReads) {
+  EXPECT_FALSE(ReadScenario(kPress).loop.watch);
+  std::string text = PressText();
+  const std::string control = "control: {", on = "diagnosis: {running: true}\n";
+  text.insert(text.find(control), on);
+  const fs::path file =
+      fs::path(testing::TempDir()) / ("watched_" + std::to_string(::getpid()) + ".yaml");
+  std::ofstream(file) << text;
+  const LoopSetup loop = ReadScenario(file).loop;
+  ASSERT_TRUE(loop.watch);
+  EXPECT_FALSE(loop.watch()->Found().IsThere());
+  EXPECT_THAT(Complaint(control, "diagnosis: {running: perhaps}\n" + control),
+              HasSubstr("running"));
+  EXPECT_THAT(Complaint(control, "diagnosis: {false_alarms_per_hour: 1000}\n" + control),
+              HasSubstr("expected at most 100"));
+  EXPECT_THAT(Complaint(control, "diagnosis: {runs: true}\n" + control), HasSubstr("runs"));
+}
+
 TEST(Scenario, FixturesAndDirectionsRead) {
   const fs::path folder = kPress.parent_path();
   const Scenario fixtures = ReadScenario(folder / "fixtures.yaml");

@@ -14,6 +14,7 @@
 #include "live/recorder/recorder.h"
 #include "live/recorder/replay.h"
 #include "recording/recording_reader.h"
+#include "recording/text/text.h"
 #include "tests/control/allocation_counter.h"
 #include "tests/live/loop/peer.h"
 #include "tests/live/session/sample_session.h"
@@ -188,6 +189,45 @@ TEST_F(Running, AllocatesNothingOnceItMoves) {
   const long before = AllocationCount();
   for (int i = 5; i < 20; ++i) cycle.Step(inputs[i]);
   EXPECT_EQ(AllocationCount(), before);
+}
+
+struct Watching : Running {
+  Watching() : Running(SessionText() + "diagnosis: {running: true}\n") {}
+};
+
+TEST_F(Watching, WarnsOfACauseInTheRecordingAndInTheReplay) {
+  const auto folder = session.file.parent_path() / "watched";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  Recorder recorder(folder, session);
+  int first = 0;
+  constexpr int kCycles = 2400, kOnset = 800;
+  for (int i = 0; i < kCycles; ++i) {
+    if (i == kOnset) peer.tip_offset_m = 0.0015;
+    CycleRecord record;
+    record.inputs = peer.Next();
+    record.outputs = last = cycle.Step(record.inputs);
+    if (i % 100 == 0) {
+      recorder.Take(StreamName::kWrist,
+                    {record.inputs.t_ns, record.inputs.t_ns, record.inputs.streams.wrist->value});
+    }
+    recorder.Take(record);
+    peer.Do(last);
+    if (first == 0 && last.cause.IsThere()) first = i;
+  }
+  recorder.Finish();
+  EXPECT_GT(first, kOnset);
+  EXPECT_LT(first, kOnset + 800);
+  const std::string events = ReadTextFile(folder / "session0/events.csv");
+  EXPECT_THAT(events, testing::HasSubstr("warning: the "));
+  const ReplayedSession replayed = ReplaySession(folder, RecordedSession(folder));
+  EXPECT_EQ(replayed.equal, kCycles);
+  // Without the watch the commands are the same, and the warnings are not.
+  Session blind = RecordedSession(folder);
+  blind.task.watch.running = false;
+  const ReplayedSession unwatched = ReplaySession(folder, blind);
+  EXPECT_EQ(unwatched.largest_difference_m, 0.0);
+  EXPECT_EQ(unwatched.equal, first);
 }
 
 TEST_F(Running, ItsRecordingReplaysBitForBit) {
