@@ -115,6 +115,8 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
     PrintTimes(report);
   } else {
     PrintRun(report);
+    for (const Warning& warning : report.causes)
+      fmt::print("warning: {}\n", diagnosis::Text(warning.cause));
     PrintStops(stops, options.out);
   }
   fmt::print("{}\n", (options.out / "report.html").string());

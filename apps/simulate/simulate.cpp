@@ -220,12 +220,14 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
     });
   }
   nlohmann::json controllers;
+  std::vector<std::string> causes;
   for (std::size_t i = 0; i < runs; ++i) {
     const auto& updates = results[i].result.updates;
     if (updates.empty() || !updates.back().cause.IsThere()) continue;
     const FoundCause& cause = updates.back().cause;
-    output.Warn(fmt::format("{}: {}", Name(scenario.controllers[i]), diagnosis::Text(cause)));
+    causes.push_back(fmt::format("{}: {}", Name(scenario.controllers[i]), diagnosis::Text(cause)));
   }
+  output.Warn(causes);
   for (std::size_t i = 0; i < runs; ++i)
     controllers[Name(scenario.controllers[i])] = Figures(scenario.loop, results[i]);
   nlohmann::ordered_json summary = {{"scenario", options.scenario.filename().string()},
@@ -247,6 +249,7 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
     if (runs > 1 && results[i].stops.found > 0) fmt::print("{}:\n", kind);
     PrintStops(results[i].stops, runs == 1 ? options.out : options.out / kind);
   }
+  for (const std::string& cause : causes) fmt::print("warning: {}\n", cause);
   PrintNextOf(output.folder());
   fmt::print("report: {}\n", (options.out / "report.html").string());
 }
