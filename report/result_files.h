@@ -17,7 +17,7 @@ struct ResultTable {
   std::vector<std::string> names;
   std::vector<std::vector<double>> numbers;     ///< one list a column
   std::vector<std::vector<std::string>> texts;  ///< the same cells as written
-  std::vector<TimeNs> t_ns;  ///< of the rows; empty where the first column is no timestamp
+  std::vector<TimeNs> t_ns = {};  ///< of the rows; empty where the first column is no timestamp
 
   std::size_t Rows() const { return numbers.empty() ? 0 : numbers.front().size(); }
   /// The column whose name is `name`, with or without its unit in brackets; nullptr where absent.
