@@ -94,7 +94,7 @@ std::vector<WrittenFile> WritePlainCsv(const std::vector<TimedTable>& tables,
                                        const TableUnits& units) {
   TimeNs first_ns = std::numeric_limits<TimeNs>::max();
   for (const TimedTable& table : tables) {
-    if (!table.t_ns.empty()) first_ns = std::min(first_ns, table.t_ns.front());
+    if (!table.cells.t_ns.empty()) first_ns = std::min(first_ns, table.cells.t_ns.front());
   }
   std::vector<WrittenFile> written;
   for (const TimedTable& table : tables) {
@@ -106,8 +106,8 @@ std::vector<WrittenFile> WritePlainCsv(const std::vector<TimedTable>& tables,
       factors.push_back(column.factor);
     }
     CsvWriter csv(header, false);
-    for (std::size_t row = 0; row < table.t_ns.size(); ++row) {
-      csv.Add(Seconds(table.t_ns[row] - first_ns));
+    for (std::size_t row = 0; row < table.cells.t_ns.size(); ++row) {
+      csv.Add(Seconds(table.cells.t_ns[row] - first_ns));
       for (std::size_t k = 0; k < factors.size(); ++k) {
         const std::string& cell = table.cells.texts[k][row];
         const double number = table.cells.numbers[k][row];
@@ -116,7 +116,7 @@ std::vector<WrittenFile> WritePlainCsv(const std::vector<TimedTable>& tables,
       }
       csv.EndRow();
     }
-    written.push_back({FileOf(folder, table.name, ".csv"), table.t_ns.size()});
+    written.push_back({FileOf(folder, table.name, ".csv"), table.cells.t_ns.size()});
     WriteTextFile(written.back().file, csv.text());
   }
   return written;

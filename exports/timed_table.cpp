@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 
@@ -32,14 +31,6 @@ std::string NameOf(const fs::path& relative) {
   return name.generic_string();
 }
 
-TimeNs ReadTime(const std::string& cell, const fs::path& file, std::size_t row) {
-  TimeNs t_ns = 0;
-  const auto result = std::from_chars(cell.data(), cell.data() + cell.size(), t_ns);
-  if (result.ec == std::errc() && result.ptr == cell.data() + cell.size()) return t_ns;
-  throw InputError::At(file.string(), static_cast<int>(row) + 2,
-                       fmt::format("found '{}', expected a time in nanoseconds", cell));
-}
-
 /// The columns of a vector: p_RW_x, p_RW_y, p_RW_z; empty where one is absent.
 template <std::size_t N>
 std::optional<std::array<const std::vector<double>*, N>> Columns(const TimedTable& table,
@@ -59,9 +50,9 @@ Trajectory Path(const TimedTable& table, const std::string& point) {
   const auto q = Columns<4>(table, "q_" + point, "wxyz");
   const auto d = Columns<3>(table, "d_" + point, "xyz");
   const auto* status = table.cells.Texts("status");
-  for (std::size_t i = 0; i < table.t_ns.size(); ++i) {
+  for (std::size_t i = 0; i < table.cells.t_ns.size(); ++i) {
     if (status != nullptr && (*status)[i] == "lost") continue;
-    TimedPose pose{.t_ns = table.t_ns[i], .p = {(*p[0])[i], (*p[1])[i], (*p[2])[i]}};
+    TimedPose pose{.t_ns = table.cells.t_ns[i], .p = {(*p[0])[i], (*p[1])[i], (*p[2])[i]}};
     if (!pose.p.allFinite()) continue;
     const Eigen::Vector4d turn =
         q ? Eigen::Vector4d((*(*q)[0])[i], (*(*q)[1])[i], (*(*q)[2])[i], (*(*q)[3])[i])
@@ -94,10 +85,7 @@ std::vector<TimedTable> ReadTimedTables(const fs::path& folder) {
     if (!entry.is_regular_file() || file.extension() != ".csv" || !IsTimed(file)) continue;
     TimedTable table{.name = NameOf(file.lexically_relative(folder)), .file = file};
     table.cells = report::ReadResultTable(file);
-    const auto& times = table.cells.texts.front();
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      table.t_ns.push_back(ReadTime(times[i], file, i));
-    }
+    if (table.cells.t_ns.size() != table.cells.Rows()) continue;  // "timestamp [ns]x"
     tables.push_back(std::move(table));
   }
   if (tables.empty()) {

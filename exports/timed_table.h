@@ -16,7 +16,6 @@ namespace flextip::exports {
 struct TimedTable {
   std::string name;  ///< "wrist0", or "rod-track/truth0" of a result with several recordings
   std::filesystem::path file;
-  std::vector<TimeNs> t_ns = {};
   report::ResultTable cells = {};  ///< all columns, the time's first
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <utility>
 
@@ -91,12 +90,9 @@ void AddShortTable(Report& report, const std::filesystem::path& file, const std:
 
 std::vector<double> SecondsOf(const ResultTable& table) {
   std::vector<double> seconds;
-  if (table.texts.empty() || table.texts.front().empty()) return seconds;
-  seconds.reserve(table.Rows());
-  const long long first = std::atoll(table.texts.front().front().c_str());
-  for (const auto& stamp : table.texts.front()) {
-    seconds.push_back(static_cast<double>(std::atoll(stamp.c_str()) - first) * 1e-9);
-  }
+  seconds.reserve(table.t_ns.size());
+  for (const TimeNs t_ns : table.t_ns)
+    seconds.push_back(static_cast<double>(t_ns - table.t_ns.front()) * 1e-9);
   return seconds;
 }
 
@@ -124,6 +120,7 @@ FigureTrace PathTrace(const ResultTable& table, const std::string& prefix,
 
 void AddColumnsOverTime(Report& report, const ResultTable& table) {
   const auto seconds = SecondsOf(table);
+  if (seconds.empty()) return;
   std::vector<Figure> plots;
   for (std::size_t i = 1; i < table.names.size(); ++i) {
     if (!HasNumbers(table.numbers[i])) continue;

@@ -1,5 +1,7 @@
 #include "report/result_files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -15,11 +17,15 @@ double NumberIn(const std::string& cell) {
 
 namespace {
 
+constexpr const char* kTimestamp = "timestamp [ns]";
+
 std::ptrdiff_t Find(const ResultTable& table, const std::string& name) {
   const auto same = [&](const std::string& n) { return n == name || n.starts_with(name + " ["); };
   const auto it = std::find_if(table.names.begin(), table.names.end(), same);
   return it == table.names.end() ? -1 : it - table.names.begin();
 }
+
+bool IsTimed(const CsvReader& csv) { return csv.Columns().front() == kTimestamp; }
 
 bool IsPicture(const std::filesystem::path& path) {
   const auto extension = path.extension().string();
@@ -38,25 +44,31 @@ const std::vector<std::string>* ResultTable::Texts(const std::string& name) cons
   return i < 0 ? nullptr : &texts[static_cast<std::size_t>(i)];
 }
 
-void ForEachRow(const std::filesystem::path& path,
-                const std::function<void(const std::vector<std::string>& names,
-                                         const std::vector<std::string>& cells)>& row) {
+void ForEachTimedRow(const std::filesystem::path& path,
+                     const std::function<void(const std::vector<std::string>& names, TimeNs t_ns,
+                                              const std::vector<std::string>& cells)>& row) {
   ReadLog log;
   CsvReader csv(path, log, {.from_recorder = false});
+  if (!IsTimed(csv)) {
+    throw csv.Error(fmt::format("found {} as the first column, expected {}",
+                                Quoted(csv.Columns().front()), kTimestamp));
+  }
   std::vector<std::string> cells(csv.Columns().size());
   while (csv.Next()) {
     for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = csv.Text(i);
-    row(csv.Columns(), cells);
+    row(csv.Columns(), csv.Integer(0), cells);
   }
 }
 
 ResultTable ReadResultTable(const std::filesystem::path& path) {
   ReadLog log;
   CsvReader csv(path, log, {.from_recorder = false});
-  ResultTable table{.names = csv.Columns(), .numbers = {}, .texts = {}};
+  ResultTable table{.names = csv.Columns(), .numbers = {}, .texts = {}, .t_ns = {}};
   table.numbers.resize(table.names.size());
   table.texts.resize(table.names.size());
+  const bool timed = IsTimed(csv);
   while (csv.Next()) {
+    if (timed) table.t_ns.push_back(csv.Integer(0));
     for (std::size_t i = 0; i < table.names.size(); ++i) {
       table.texts[i].emplace_back(csv.Text(i));
       table.numbers[i].push_back(NumberIn(table.texts[i].back()));

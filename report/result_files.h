@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/time_series.h"
+
 namespace flextip::report {
 
 /// A CSV file by columns. A cell that is empty or no number is NaN in `numbers`.
@@ -15,6 +17,7 @@ struct ResultTable {
   std::vector<std::string> names;
   std::vector<std::vector<double>> numbers;     ///< one list a column
   std::vector<std::vector<std::string>> texts;  ///< the same cells as written
+  std::vector<TimeNs> t_ns = {};  ///< of the rows; empty where the first column is no timestamp
 
   std::size_t Rows() const { return numbers.empty() ? 0 : numbers.front().size(); }
   /// The column whose name is `name`, with or without its unit in brackets; nullptr where absent.
@@ -25,12 +28,14 @@ struct ResultTable {
 /// A cell's number; NaN where it is empty or none.
 double NumberIn(const std::string& cell);
 
-/// Hands over the cells of a table row by row, with the columns' names. Throws as ReadResultTable.
-void ForEachRow(const std::filesystem::path& path,
-                const std::function<void(const std::vector<std::string>& names,
-                                         const std::vector<std::string>& cells)>& row);
+/// Hands over the cells of a table over time row by row, with the columns' names and the row's
+/// time. Throws as ReadResultTable, and where the first column is no timestamp.
+void ForEachTimedRow(const std::filesystem::path& path,
+                     const std::function<void(const std::vector<std::string>& names, TimeNs t_ns,
+                                              const std::vector<std::string>& cells)>& row);
 
-/// Throws InputError where the file is missing or a line has another number of cells.
+/// Throws InputError where the file is missing, a line has another number of cells, or a timestamp
+/// is no whole number within its bounds.
 ResultTable ReadResultTable(const std::filesystem::path& path);
 
 /// A file's bytes. Throws InputError where it cannot be read.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <utility>
@@ -120,29 +119,28 @@ ThinnedTable ReadThinned(const std::filesystem::path& file,
   Thinner thinner(by_worth, max_buckets);
   std::vector<std::vector<std::size_t>> places;
   std::ptrdiff_t text_place = -1;
-  long long start_ns = 0;
+  TimeNs start_ns = 0;
   bool started = false;
-  ForEachRow(file,
-             [&](const std::vector<std::string>& names, const std::vector<std::string>& cells) {
-               if (!started) {
-                 for (const auto& column : columns) places.push_back(Places(names, column));
-                 text_place = Find(names, text_column);
-                 start_ns = std::atoll(cells[0].c_str());
-                 started = true;
-               }
-               ThinnedBucket row;
-               row.t_s = 1e-9 * static_cast<double>(std::atoll(cells[0].c_str()) - start_ns);
-               if (text_place >= 0)
-                 row.first_text = row.worst_text = cells[static_cast<std::size_t>(text_place)];
-               for (std::size_t i = 0; i < columns.size(); ++i) {
-                 std::vector<double> numbers;
-                 for (const std::size_t place : places[i])
-                   numbers.push_back(NumberIn(cells[place]));
-                 const double v = numbers.empty() ? kNone : columns[i].value(numbers);
-                 row.columns.push_back({v, v, v, row.t_s, row.t_s});
-               }
-               thinner.Add(std::move(row));
-             });
+  ForEachTimedRow(file, [&](const std::vector<std::string>& names, TimeNs t_ns,
+                            const std::vector<std::string>& cells) {
+    if (!started) {
+      for (const auto& column : columns) places.push_back(Places(names, column));
+      text_place = Find(names, text_column);
+      start_ns = t_ns;
+      started = true;
+    }
+    ThinnedBucket row;
+    row.t_s = 1e-9 * static_cast<double>(t_ns - start_ns);
+    if (text_place >= 0)
+      row.first_text = row.worst_text = cells[static_cast<std::size_t>(text_place)];
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      std::vector<double> numbers;
+      for (const std::size_t place : places[i]) numbers.push_back(NumberIn(cells[place]));
+      const double v = numbers.empty() ? kNone : columns[i].value(numbers);
+      row.columns.push_back({v, v, v, row.t_s, row.t_s});
+    }
+    thinner.Add(std::move(row));
+  });
   return thinner.Take();
 }
 

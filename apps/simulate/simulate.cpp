@@ -32,8 +32,6 @@
 #include "simulation/closed_loop/given_streams.h"
 #include "simulation/closed_loop/loop_table.h"
 #include "simulation/closed_loop/scenario_run.h"
-#include "simulation/sensors/sensors.h"
-#include "task/path_time.h"
 
 namespace flextip {
 namespace {
@@ -156,21 +154,6 @@ void CheckFramesOf(const SimulateOptions& options, const simulation::Scenario& s
   }
 }
 
-/// Throws InputError for a run that would fill the memory before it ends.
-void RequireShort(const simulation::Scenario& scenario, const fs::path& file) {
-  constexpr double kMostSamples = 5e6;
-  const simulation::LoopSetup& loop = scenario.loop;
-  const double seconds = PathSeconds(loop.path, loop.update_rate_hz);
-  const double rate_hz = simulation::SamplesPerSecond(loop.sensors) + loop.update_rate_hz;
-  const double samples = seconds * rate_hz * static_cast<double>(scenario.controllers.size());
-  if (samples <= kMostSamples) return;
-  throw InputError::At(
-      file.string(), 0,
-      fmt::format("asks for {:.2g} samples ({:.3g} s, {:.3g} samples a second, {} controllers), "
-                  "expected at most {:g}: a shorter path or lower rates",
-                  samples, seconds, rate_hz, scenario.controllers.size(), kMostSamples));
-}
-
 /// Returns whether the frames of a controller are written.
 bool KeepsFrames(const SimulateOptions& options, ControllerKind kind) {
   const auto& names = options.frames_of;
@@ -197,7 +180,7 @@ void RunSimulate(const SimulateOptions& options, bool quiet) {
   simulation::Scenario scenario = simulation::ReadScenario(options.scenario);
   simulation::RequireRunnable(scenario, options.scenario, options.render);
   CheckFramesOf(options, scenario);
-  RequireShort(scenario, options.scenario);
+  simulation::RequireShort(scenario, options.scenario);
   std::vector<fs::path> inputs = {options.scenario};
   if (!options.model.empty()) {
     inputs.push_back(options.model);

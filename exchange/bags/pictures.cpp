@@ -57,7 +57,14 @@ cv::Mat PictureOf(const std::filesystem::path& file, const ImageMessage& message
                     Quoted(message.encoding)));
   }
   const Encoding& encoding = found->second;
+  if (encoding.type == CV_8UC2 && message.width_px % 2 != 0) {  // two pixels share their colour
+    refuse(fmt::format("found {} pixels in a line of {}, expected an even number", message.width_px,
+                       message.encoding));
+  }
   const auto pixel = static_cast<std::size_t>(CV_ELEM_SIZE(encoding.type));
+  if (message.width_px < 1 || message.height_px < 1) {
+    refuse(fmt::format("found a picture of {} x {} pixels", message.width_px, message.height_px));
+  }
   const auto lines = static_cast<std::size_t>(message.height_px);
   if (message.step < pixel * static_cast<std::size_t>(message.width_px) ||
       message.data.size() < message.step * lines) {
@@ -93,7 +100,13 @@ void WritePicture(const std::filesystem::path& file, const ImageMessage& message
     return;
   }
   std::vector<std::uint8_t> packed;
-  cv::imencode(".png", PictureOf(file, message), packed, {cv::IMWRITE_PNG_COMPRESSION, 1});
+  try {
+    cv::imencode(".png", PictureOf(file, message), packed, {cv::IMWRITE_PNG_COMPRESSION, 1});
+  } catch (const cv::Exception&) {
+    throw InputError::At(file.filename().string(), 0,
+                         fmt::format("found {} x {} pixels of {}: cannot be made a picture",
+                                     message.width_px, message.height_px, message.encoding));
+  }
   WriteTextFile(file, std::string(packed.begin(), packed.end()));
 }
 

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
 #include "core/median.h"
 #include "recording/streams/sensor_streams.h"
+#include "recording/text/bounds.h"
 #include "recording/text/yaml_map.h"
 
 namespace flextip::exchange {
@@ -66,7 +68,14 @@ void TakeFrameRate(CameraStream& camera) {
   };
   add(camera.frame_numbers);
   add(camera.filenames);
-  if (!steps.empty()) camera.calibration.rate_hz = 1e9 / static_cast<double>(Median(steps));
+  if (steps.empty()) return;
+  const double rate_hz = 1e9 / static_cast<double>(Median(steps));
+  const std::string expected = ExpectedAbove(BoundsOf("rate_hz"), rate_hz, false);
+  if (!expected.empty()) {
+    throw InputError(fmt::format("the pictures are {:.3g} s apart, expected a rate of {}",
+                                 1.0 / rate_hz, expected));
+  }
+  camera.calibration.rate_hz = rate_hz;
 }
 
 void ReadCollar(ImportPlan& plan, Recording& recording, ImportLog& log) {

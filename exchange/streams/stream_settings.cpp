@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
 #include "core/median.h"
+#include "recording/text/bounds.h"
 
 namespace flextip::exchange {
 namespace {
@@ -103,7 +105,11 @@ double Settings::Rate(const std::vector<TimeNs>& times) {
   std::vector<TimeNs> steps;
   for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   if (steps.empty()) throw MissingKey("rate_hz");
-  return 1e9 / static_cast<double>(Median(steps));
+  const double rate_hz = 1e9 / static_cast<double>(Median(steps));
+  const std::string expected = ExpectedAbove(BoundsOf("rate_hz"), rate_hz, false);
+  if (expected.empty()) return rate_hz;
+  throw InputError(fmt::format("{}: its samples are {:.3g} s apart, expected a rate of {}", stream_,
+                               1.0 / rate_hz, expected));
 }
 
 double Settings::Noted(const std::string& key, const std::optional<MeasuredNoise>& measured) {

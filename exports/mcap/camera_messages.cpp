@@ -30,9 +30,9 @@ std::string AsJpeg(const Image& image) {
 
 /// The rows of a table at that time.
 std::pair<std::size_t, std::size_t> RowsAt(const TimedTable& table, TimeNs t_ns) {
-  const auto range = std::equal_range(table.t_ns.begin(), table.t_ns.end(), t_ns);
-  return {static_cast<std::size_t>(range.first - table.t_ns.begin()),
-          static_cast<std::size_t>(range.second - table.t_ns.begin())};
+  const auto range = std::equal_range(table.cells.t_ns.begin(), table.cells.t_ns.end(), t_ns);
+  return {static_cast<std::size_t>(range.first - table.cells.t_ns.begin()),
+          static_cast<std::size_t>(range.second - table.cells.t_ns.begin())};
 }
 
 void AddTags(const TimedTable& table, std::size_t row, Annotations& annotations) {

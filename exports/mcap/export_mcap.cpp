@@ -41,8 +41,8 @@ class Export {
   void AddTable(const TimedTable& table) {
     if (table.cells.names.size() < 2) return;
     const auto channel = Channel("/" + table.name, TableSchema(table));
-    for (std::size_t row = 0; row < table.t_ns.size(); ++row) {
-      Add(table.t_ns[row], channel, [&table, row] { return RowMessage(table, row); });
+    for (std::size_t row = 0; row < table.cells.t_ns.size(); ++row) {
+      Add(table.cells.t_ns[row], channel, [&table, row] { return RowMessage(table, row); });
     }
   }
 

@@ -46,6 +46,7 @@ Simulation SimulateWhole(const std::filesystem::path& file,
   Scenario scenario = simulation::ReadScenario(file);
   simulation::RequireRunnable(scenario, file, render);
   if (controllers) ChooseControllers(*controllers, scenario);
+  simulation::RequireShort(scenario, file);
   if (model) simulation::UseModel(*model, scenario);
   std::optional<simulation::Laparoscope> laparoscope;
   if (render) laparoscope.emplace(simulation::LaparoscopeOf(scenario));

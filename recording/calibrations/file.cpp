@@ -1,6 +1,7 @@
 #include "recording/calibrations/file.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/error.h"
 #include "core/linear_algebra.h"
@@ -51,6 +52,13 @@ Eigen::MatrixXd ReadCovariance(const YamlMap& map, const std::vector<std::string
     throw map.Error("data", "no covariance: an eigenvalue is negative");
   }
   return C;
+}
+
+/// Such a name is written as it is.
+bool IsPlain(const std::string& name) {
+  return std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-');
+  });
 }
 
 void RejectUnknown(const YamlMap& map) {
@@ -115,6 +123,7 @@ Calibration ReadCalibration(const std::filesystem::path& file) {
   calibration.kind = yaml.Text("kind");
   const YamlMap found = yaml.Map("found");
   for (const std::string& name : found.Keys()) {
+    if (!IsPlain(name)) throw found.Error(name, "expected a name of letters, digits, _, . and -");
     if (name.find(".T_") != std::string::npos) {
       calibration.poses[name] = found.Transform(name);
     } else if (name.ends_with("_model")) {

@@ -44,9 +44,9 @@ struct Reader {
   }
   /// OpenCV asks for the memory of a matrix before it counts what is in it.
   void RefuseLarge(const std::string& name, const cv::FileNode& node) const {
-    if (node.isMap() && !node["sizes"].empty())
+    if (!node.isMap()) return;
+    if (!node["sizes"].empty() || !node["rows"].isInt() || !node["cols"].isInt())
       throw Error(fmt::format("{}: expected a matrix of rows and columns", name));
-    if (!node.isMap() || !node["rows"].isInt() || !node["cols"].isInt()) return;
     const int rows = static_cast<int>(node["rows"]), cols = static_cast<int>(node["cols"]);
     if (rows >= 0 && rows <= kLargestMatrix && cols >= 0 && cols <= kLargestMatrix) return;
     throw Error(fmt::format("{}: found {} rows and {} columns, expected at most {}", name, rows,

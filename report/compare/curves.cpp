@@ -58,15 +58,15 @@ std::string TipFile(const std::string& command) {
 }
 
 /// The tips (mm) by their times (ns).
-std::map<long long, Eigen::Vector3d> TipsOf(const fs::path& file) {
-  std::map<long long, Eigen::Vector3d> tips;
+std::map<TimeNs, Eigen::Vector3d> TipsOf(const fs::path& file) {
+  std::map<TimeNs, Eigen::Vector3d> tips;
   if (!fs::exists(file)) return tips;
   const ResultTable table = ReadResultTable(file);
   const auto *x = table.Column("p_RE_x"), *y = table.Column("p_RE_y"), *z = table.Column("p_RE_z");
   if (x == nullptr || y == nullptr || z == nullptr) return tips;
-  for (std::size_t i = 0; i < table.Rows(); ++i) {
+  for (std::size_t i = 0; i < table.t_ns.size(); ++i) {
     const Eigen::Vector3d p_mm = kMmPerM * Eigen::Vector3d((*x)[i], (*y)[i], (*z)[i]);
-    if (p_mm.allFinite()) tips[std::stoll(table.texts.front()[i])] = p_mm;
+    if (p_mm.allFinite()) tips[table.t_ns[i]] = p_mm;
   }
   return tips;
 }

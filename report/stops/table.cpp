@@ -12,6 +12,7 @@ namespace flextip::report {
 namespace {
 
 constexpr double kMmPerM = 1000.0;
+constexpr double kMostBits = 65535.0;
 constexpr std::array kReactions{"none", "limit", "hold", "fault"};
 
 class TableReader {
@@ -28,7 +29,7 @@ class TableReader {
   std::vector<int> Bits(const std::string& name) const {
     std::vector<int> bits;
     for (const double number : Numbers(name))
-      bits.push_back(std::isfinite(number) ? static_cast<int>(number) : 0);
+      bits.push_back(number >= 0.0 && number <= kMostBits ? static_cast<int>(number) : 0);
     return bits;
   }
 

@@ -7,6 +7,8 @@
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
 #include "simulation/sensors/camera_view.h"
+#include "simulation/sensors/sensors.h"
+#include "task/path_time.h"
 
 namespace flextip::simulation {
 
@@ -22,6 +24,19 @@ void RequireRunnable(const Scenario& scenario, const std::filesystem::path& file
   if (!scenario.has_camera) refuse("rendered, the scenario needs a section camera");
   if (loop.plant.effects.tip_compliance_m_N != 0.0)
     refuse("effects: tip_compliance does not show in rendered frames: run it not rendered");
+}
+
+void RequireShort(const Scenario& scenario, const std::filesystem::path& file) {
+  const LoopSetup& loop = scenario.loop;
+  const double seconds = PathSeconds(loop.path, loop.update_rate_hz);
+  const double rate_hz = SamplesPerSecond(loop.sensors) + loop.update_rate_hz;
+  const double samples = seconds * rate_hz * static_cast<double>(scenario.controllers.size());
+  if (samples <= kMostSamples) return;
+  throw InputError::At(
+      file.string(), 0,
+      fmt::format("asks for {:.2g} samples ({:.3g} s, {:.3g} samples a second, {} controllers), "
+                  "expected at most {:g}: a shorter path or lower rates",
+                  samples, seconds, rate_hz, scenario.controllers.size(), kMostSamples));
 }
 
 void UseModel(const diagnosis::ExtendedModel& model, Scenario& scenario) {

@@ -13,6 +13,12 @@ namespace flextip::simulation {
 /// that pictures do not show), or not rendered (no sensor of the tip).
 void RequireRunnable(const Scenario& scenario, const std::filesystem::path& file, bool rendered);
 
+inline constexpr double kMostSamples = 5e6;
+
+/// Throws InputError naming `file` where the runs of all controllers would take more than
+/// kMostSamples samples of sensors and updates together: they are held in memory.
+void RequireShort(const Scenario& scenario, const std::filesystem::path& file);
+
 /// Lets estimator and controllers of all runs know of `model`. The simulated instrument does not.
 void UseModel(const diagnosis::ExtendedModel& model, Scenario& scenario);
 

@@ -50,6 +50,18 @@ TEST(FarTimes, OfATableAreRefused) {
   }
 }
 
+// Their rate is below what a recording holds: it was written, and could not be read.
+TEST(FarTimes, ApartByHoursAreRefused) {
+  const TemporaryFolder folder;
+  WriteText(folder / "a.csv", "t [s],x [m],y [m],z [m]\n0,1,2,3\n60000,1,2,3\n");
+  ImportPlan plan = PlanWithSettings();
+  plan.streams["wrist0"].file = folder / "a.csv";
+  plan.streams["wrist0"].units["length"] = "m";
+  TellSensor(plan, "test", "wrist0", "position_noise_m", "1e-4");
+  TellSensor(plan, "test", "wrist0", "orientation_noise_rad", "1e-3");
+  EXPECT_THAT(test_support::Refusal(plan), HasSubstr("wrist0: its samples are 6e+04 s apart"));
+}
+
 TEST(FarTimes, OfASideCarAreRefused) {
   const TemporaryFolder folder;
   WriteText(folder / "v.json", R"({"timestamps": [-3.9e9], "estimated_latency": 3.9e9})");

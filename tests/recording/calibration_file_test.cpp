@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <sstream>
+#include <string>
 #include <tuple>
 
 #include "core/error.h"
@@ -107,6 +108,15 @@ TEST_F(CalibrationFile, RefusesWhatIsBroken) {
   EXPECT_NE(ErrorWith("\"cam0.time_offset_s\"", "\"cam0.gamma\"").find("parameters"),
             std::string::npos);
   EXPECT_NE(ErrorWith("unobservable:", "unobservabel:"), "");
+}
+
+// It could not be read again.
+TEST_F(CalibrationFile, RefusesANameThatIsNone) {
+  for (const std::string name : {"cam 0.time_offset_s", "a#b", "a: b", "\xc3\xa9"}) {
+    std::ofstream(file_) << "format: flextip-calibration\nversion: 1\nkind: camera\nfound:\n  \""
+                         << name << "\": 1\n";
+    EXPECT_THROW(ReadCalibration(file_), InputError) << name;
+  }
 }
 
 TEST_F(CalibrationFile, RefusesWhatIsNoCovariance) {

@@ -64,6 +64,16 @@ TEST_F(Compared, SaysWhichTrackWasBestAndByHowMuch) {
   EXPECT_NEAR(path.traces[1].y.back(), 410.0, 1e-9);
 }
 
+TEST_F(Compared, ATableWithoutTimesIsRefused) {
+  std::vector<std::filesystem::path> runs;
+  for (const char* name : {"a", "b"}) {
+    runs.push_back(Run(name, R"({"command": "track", "frames": 1, "ok": 1})"));
+    Write(std::string(name) + "/vision0/data.csv",
+          "#timestamp [ns],p_RE_x [m],p_RE_y [m],p_RE_z [m]\nnever,0,0,0\n");
+  }
+  EXPECT_THROW(CompareResults(runs), InputError);
+}
+
 TEST_F(Compared, ControllersAreComparedOneByOne) {
   const auto a = Run("a", R"({"command": "simulate", "controllers": {
     "rod-track": {"max_deviation_m": 0.001}, "flex-track": {"max_deviation_m": 0.002}}})");

@@ -10,6 +10,9 @@
 #include <fstream>
 #include <random>
 
+#include "core/error.h"
+#include "report/result_files.h"
+
 namespace flextip::report {
 namespace {
 
@@ -68,6 +71,24 @@ TEST_P(Thinned, KeepsExtremesTimesAndTheWorstStatus) {
   table.Trace(0, x, y);
   EXPECT_TRUE(std::is_sorted(x.begin(), x.end()));
   EXPECT_LE(x.size(), 2 * kMax);
+}
+
+// Two of the largest numbers, subtracted, are beyond them.
+TEST(TimesOfResults, AreRefusedBeyondTheirBounds) {
+  const std::string file = std::filesystem::temp_directory_path() /
+                           ("flextip-times-" + std::to_string(getpid()) + ".csv");
+  for (const char* time : {"9223372036854775807", "-9223372036854775808", "1.5", "x", ""}) {
+    std::ofstream(file) << "#timestamp [ns],v [m],status []\n0,1,ok\n" << time << ",2,ok\n";
+    EXPECT_THROW(ReadThinned(file, {kValue}, "status", {"ok"}, 4), InputError) << time;
+    EXPECT_THROW(ReadResultTable(file), InputError) << time;
+  }
+  std::ofstream(file) << "#timestamp [ns],v [m],status []\n-4000000000000000000,1,ok\n"
+                         "4000000000000000000,2,ok\n";
+  EXPECT_DOUBLE_EQ(ReadThinned(file, {kValue}, "status", {"ok"}, 4).end_s, 8e9);
+  std::ofstream(file) << "image [],v [m]\na,1\n";
+  EXPECT_THROW(ReadThinned(file, {kValue}, "", {}, 4), InputError);
+  EXPECT_TRUE(ReadResultTable(file).t_ns.empty());
+  std::filesystem::remove(file);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rows, Thinned, testing::Values(1, 14, 64, 65, 128, 129, 5000));

@@ -83,6 +83,11 @@ TEST_F(Absurd, SimulateRefusesWhatWouldNotEnd) {
                       {"direction.yaml:", "speed_m_s", "1e-9", "m/s"}));
   EXPECT_TRUE(Refuses({"simulate", Changed(scenario, "", "(\n  speed_m_s:) [0-9.]+", "$1 1e-6")},
                       {"direction.yaml:", "speed_m_s", "takes", "4500 s"}));
+  // 500 s at 1e4 Hz, twice: each within its bounds.
+  EXPECT_TRUE(Refuses(
+      {"simulate", Changed(scenario, "", "(wrist: \\{rate_hz:) 30([^$]*\n  speed_m_s:) [0-9.]+",
+                           "$1 1e4$2 1e-5")},
+      {"direction.yaml:", "1e+07 samples", "at most 5e+06"}));
 }
 
 TEST_F(Absurd, MapRefusesWhatNoMemoryHolds) {
