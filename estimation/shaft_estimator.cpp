@@ -15,7 +15,11 @@ namespace {
 
 constexpr double kObservable = 0.3;  // posterior over prior sd of the force across the shaft
 constexpr double kDoubtful = 0.005;  // sd of the tip over L past which a load has to stand out
-constexpr double kMisfit = 10.0;     // chi2 a measurement past which another start is tried
+constexpr double kMisfit = 100.0;    // chi2 a measurement past which another start is tried
+// So it is from here on where the last fit was so many times nearer: a shaft that is not the
+// model's misfits more and more, and a fit that is at another load each time is no better.
+constexpr double kSuddenMisfit = 10.0;
+constexpr double kSudden = 4.0;
 constexpr double kModestForces[] = {1.0, 2.0};  // sd of the force, EI / L^2, of those starts
 // A fit that goes on along the shaft, where the sensors say little, ends at a large load more often
 // than at the true one (WindowEstimator.CovarianceOfThePortMatchesMonteCarlo fails with 60).
@@ -168,9 +172,11 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
     nothing.model = straight;
     nothing.status = EstimateStatus::kNotConverged;
     last_force_N_.setZero();
+    last_misfit_ = 0.0;
     return nothing;
   };
   if (!FitFromAnyStart(fit, x, estimate)) return give_up();
+  last_misfit_ = estimate.chi2 / (1 + estimate.measurements);
   Describe(fit, x, estimate);
   if (!IsFinite(estimate)) return give_up();
   FillModel(fit, x, z, estimate);
@@ -183,7 +189,9 @@ bool ShaftEstimator::FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimat
   RodParameters unloaded = x;
   unloaded.tail<3>().setZero();
   bool ok = Fit(fit, x, estimate);
-  const auto fits = [&] { return ok && estimate.chi2 < kMisfit * (1 + estimate.measurements); };
+  const double most =
+      last_misfit_ > 0.0 ? std::clamp(kSudden * last_misfit_, kSuddenMisfit, kMisfit) : kMisfit;
+  const auto fits = [&] { return ok && estimate.chi2 < most * (1 + estimate.measurements); };
   // With effects a fit that is not at the bottom yet goes on from here with the next sample.
   if (fits() || (ok && !IsPlain(estimate.model.effects))) return ok;
 

@@ -83,6 +83,7 @@ class ShaftEstimator {
   void VisitState(StateText& state) {
     state(solver_);
     state(last_force_N_);
+    state(last_misfit_);
     state(port_shift_m_);
     state(port_whitening_);
     state(tissue_);
@@ -101,6 +102,7 @@ class ShaftEstimator {
   EstimatorOptions options_;
   ShaftRod solver_;
   Eigen::Vector3d last_force_N_ = Eigen::Vector3d::Zero();
+  double last_misfit_ = 0.0;  // of the last fit, chi2 a measurement; 0: there is none
   Eigen::Vector3d port_shift_m_ = Eigen::Vector3d::Zero();
   std::optional<Eigen::Matrix3d> port_whitening_;
   TissueSecants tissue_;
