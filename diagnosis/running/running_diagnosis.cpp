@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "core/check.h"
@@ -233,9 +234,9 @@ void RunningDiagnosis::Name(double log_evidence) {
   } else {
     const double as_well =
         std::min(best->log_evidence - std::log(kAsWell), kNearlyAsMuch * best->log_evidence);
-    const int named = found_.likeliest.cause;
+    const std::int8_t named = found_.likeliest.cause;
     if (found_.IsThere() && named != kUnknownCause) {
-      const Candidate& before = candidates_[static_cast<std::size_t>(named)];
+      const Candidate& before = candidates_[static_cast<std::uint8_t>(named)];
       if (before.is_near && before.log_evidence >= best->log_evidence - std::log(kAsWell))
         best = &before;
     }

@@ -48,7 +48,7 @@ void SampleWatch::SetSample(const WatchedMoment& moment, const std::array<bool, 
   DiagnosisSample& now = set_.samples[0];
   now.present.reset();
   const auto has = [&now](int first, int rows) {
-    for (int i = 0; i < rows; ++i) now.present.set(static_cast<std::size_t>(first + i));
+    for (int i = first; i < first + rows; ++i) now.present.set(static_cast<std::size_t>(i));
   };
   if (start_ns_ == 0) start_ns_ = moment.t_ns;
   now.t_s = Seconds(moment.t_ns - start_ns_);
