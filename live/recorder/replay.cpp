@@ -46,6 +46,7 @@ bool SameCause(const FoundCause& a, const FoundCause& b) {
          a.has_more == b.has_more && SameBits(a.log_evidence, b.log_evidence) &&
          a.found_ns == b.found_ns && a.since_ns == b.since_ns;
 }
+
 }  // namespace
 
 bool SameOutputs(const CycleOutputs& a, const CycleOutputs& b) {

@@ -74,16 +74,24 @@ Recording Base() {
   return base;
 }
 
-TEST(OnsetEvidence, IsTheRatioOfTwoDensities) {
+/// Both blocks, weighed by the watched parameters.
+class OnsetEvidenceTest : public testing::Test {
+ protected:
+  OnsetEvidenceTest() {
+    all.Add(two.blocks[1]);
+    weighing.Take(all);
+  }
+
   const TwoBlocks two;
-  const SampleWatch watch(Base());
-  const WatchedParameters parameters(watch.Set(), 0.0);
-  Information all = two.blocks[0];
-  all.Add(two.blocks[1]);
-  AllSamples weighing;
-  weighing.Take(all);
-  weighing.Since(two.blocks[1]);
   const Eigen::VectorXd e = two.Residual();
+  const SampleWatch watch{Base()};
+  const WatchedParameters parameters{watch.Set(), 0.0};
+  Information all = two.blocks[0];
+  AllSamples weighing;
+};
+
+TEST_F(OnsetEvidenceTest, IsTheRatioOfTwoDensities) {
+  weighing.Since(two.blocks[1]);
   int compared = 0;
   for (const WatchedBlock& block : parameters.Blocks()) {
     if (block.widened == 0 || block.positive || block.drifts) continue;
@@ -98,14 +106,7 @@ TEST(OnsetEvidence, IsTheRatioOfTwoDensities) {
   EXPECT_GE(compared, 8);
 }
 
-TEST(OnsetEvidence, OfADriftIsTheRatioOfTwoDensities) {
-  const TwoBlocks two;
-  const SampleWatch watch(Base());
-  const WatchedParameters parameters(watch.Set(), 0.0);
-  Information all = two.blocks[0];
-  all.Add(two.blocks[1]);
-  AllSamples weighing;
-  weighing.Take(all);
+TEST_F(OnsetEvidenceTest, OfADriftIsTheRatioOfTwoDensities) {
   weighing.Since(all);
   int compared = 0;
   for (const WatchedBlock& block : parameters.Blocks()) {
@@ -113,7 +114,6 @@ TEST(OnsetEvidence, OfADriftIsTheRatioOfTwoDensities) {
     Growth growth;
     growth.TakeOlder({}, two.blocks[1], block.first);
     growth.TakeOlder(two.blocks[1], two.blocks[0], block.first);
-    const Eigen::VectorXd e = two.Residual();
     const double none = Misfit(e, two.Spread(block, 0.0));
     double expected = 0.0;
     for (const double size : {0.3, 1.0, 3.0})
@@ -124,16 +124,8 @@ TEST(OnsetEvidence, OfADriftIsTheRatioOfTwoDensities) {
   EXPECT_EQ(compared, 2);
 }
 
-TEST(OnsetEvidence, OfAllCausesAtOnceIsTheRatioOfTwoDensities) {
-  const TwoBlocks two;
-  const SampleWatch watch(Base());
-  const WatchedParameters parameters(watch.Set(), 0.0);
-  Information all = two.blocks[0];
-  all.Add(two.blocks[1]);
-  AllSamples weighing;
-  weighing.Take(all);
+TEST_F(OnsetEvidenceTest, OfAllCausesAtOnceIsTheRatioOfTwoDensities) {
   weighing.Since(two.blocks[1]);
-  const Eigen::VectorXd e = two.Residual();
   Eigen::MatrixXd spread(e.size(), 0);
   for (const WatchedBlock& block : parameters.Blocks()) {
     if (block.widened == 0 || block.drifts) continue;
@@ -147,17 +139,12 @@ TEST(OnsetEvidence, OfAllCausesAtOnceIsTheRatioOfTwoDensities) {
   EXPECT_NEAR(weighing.OfAll(parameters), 0.5 * (Misfit(e, within) - Misfit(e, both)), 1e-6);
 }
 
-TEST(OnsetEvidence, OfWhatCannotBeNegativeIsOneSided) {
-  const TwoBlocks two;
-  const SampleWatch watch(Base());
-  const WatchedParameters parameters(watch.Set(), 0.0);
-  Information all = two.blocks[0], turned = two.blocks[1];
-  all.Add(two.blocks[1]);
+TEST_F(OnsetEvidenceTest, OfWhatCannotBeNegativeIsOneSided) {
+  Information turned = two.blocks[1];
   turned.g *= -1.0;
   for (const WatchedBlock& block : parameters.Blocks()) {
     if (block.widened != 1 || !block.positive) continue;
     // Once as drawn and once with the signs turned: both halves together are the whole normal.
-    AllSamples weighing;
     weighing.Take(all);
     weighing.Since(two.blocks[1]);
     const double one = weighing.Of(block, parameters).log_ratio;
@@ -167,7 +154,6 @@ TEST(OnsetEvidence, OfWhatCannotBeNegativeIsOneSided) {
     weighing.Since(turned);
     const double other = weighing.Of(block, parameters).log_ratio;
     double whole = 0.0;
-    const Eigen::VectorXd e = two.Residual();
     for (const double size : {0.3, 1.0, 3.0})
       whole +=
           std::exp(0.5 * (Misfit(e, two.Spread(block, 0.0)) - Misfit(e, two.Spread(block, size)))) /

@@ -64,9 +64,10 @@ TEST(SupervisedLoop, OneTipThatNobodyCanJudgeLeadsTheTipOnlyAPart) {
   const LoopResult free = RunClosedLoop(setup, nullptr);
   setup.supervision.max_tip_deviation_m = 0.002;
   const LoopResult kept = RunClosedLoop(setup, nullptr);
-  EXPECT_GT(FartherInACycle(free), 0.0011);
-  // 0.8 mm by one sample, and what the wrist shakes.
-  EXPECT_LT(FartherInACycle(kept), 0.001);
+  // 0.8 mm by one sample, and three deviations of what the wrist shakes.
+  constexpr double kMost_m = 0.001;
+  EXPECT_GT(FartherInACycle(free), kMost_m);
+  EXPECT_LT(FartherInACycle(kept), kMost_m);
   const bool said = std::any_of(kept.updates.begin(), kept.updates.end(), [](const auto& update) {
     return update.supervision.stop == Stop::kStep &&
            update.supervision.reaction == Reaction::kLimit;
