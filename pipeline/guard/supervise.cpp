@@ -17,6 +17,8 @@ constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is take
 // Two samples that are wrong in a row may lead the tip by 1.2 of what it may be astray: the first
 // by this part, the second by twice that. By then the vote has them.
 constexpr double kCorrection = 0.4;
+// About the last command, it may take the last correction back and make its own.
+constexpr double kCorrections = 2.0;
 constexpr double kVideo_hz = 30.0;  // of tips that are seen
 
 constexpr double kForceDeviations = 3.0;
@@ -101,7 +103,8 @@ Eigen::Vector3d InstrumentController::WayOfTip(const Eigen::Vector3d& p_RW) {
 }
 
 /// The wish, with so little of a correction that one wrong sample does not lead the tip astray. A
-/// correction that goes on in one direction is no single sample's: it may grow.
+/// correction that goes on in one direction is no single sample's: it may grow. About the last
+/// command it may not: there the reading itself may be what is wrong.
 Limited InstrumentController::Corrected(const ControllerCommand& command) {
   const Eigen::Vector3d& p_goal = command.goal.p_RE_desired;
   const Eigen::Vector3d way = p_goal - p_goal_last_.value_or(p_goal);
@@ -110,10 +113,15 @@ Limited InstrumentController::Corrected(const ControllerCommand& command) {
   const SupervisorOptions& options = options_.supervision;
   if (!J || options.max_tip_deviation_m <= 0.0) return {command.p_RW_command, false};
   const double samples = std::min(1.0, kVideo_hz / options.rate_hz);  // a cycle
-  const double most_m =
-      kCorrection * options.max_tip_deviation_m * samples * (1.0 + samples * corrections_);
-  const Limited limited =
+  const double once_m = kCorrection * options.max_tip_deviation_m * samples;
+  const double most_m = once_m * (1.0 + samples * corrections_);
+  Limited limited =
       LimitCorrection(command.measurements.p_RW, command.p_RW_command, *J, way, most_m);
+  if (const auto& p_last = supervisor_.LastCommand()) {
+    const bool before = limited.limited;
+    limited = LimitCorrection(*p_last, limited.p, *J, way, kCorrections * once_m);
+    limited.limited = limited.limited || before;
+  }
   const Eigen::Vector3d excess_m = command.p_RW_command - limited.p;
   const bool goes_on = limited.limited && excess_m.dot(excess_m_) > 0.0;
   corrections_ = goes_on ? corrections_ + 1 : 0;

@@ -54,13 +54,18 @@ double FartherInACycle(const LoopResult& result) {
   return most_m;
 }
 
-// Vision alone, and wrong by less than it can be told to jump.
-TEST(SupervisedLoop, OneTipThatNobodyCanJudgeLeadsTheTipOnlyAPart) {
-  const std::vector<Fault> spike{{FaultKind::kSpike, FaultStream::kTip, kStart_s, 0.1, 0.002}};
-  LoopSetup setup = Press(SupervisionKind::kFull, spike);
+/// The press as only the camera sees it.
+LoopSetup PressBySight(const std::vector<Fault>& faults) {
+  LoopSetup setup = Press(SupervisionKind::kFull, faults);
   setup.sensors.em0.reset();
   setup.sensors.strain.reset();
   setup.sensors.load.reset();
+  return setup;
+}
+
+// Vision alone, and wrong by less than it can be told to jump.
+TEST(SupervisedLoop, OneTipThatNobodyCanJudgeLeadsTheTipOnlyAPart) {
+  LoopSetup setup = PressBySight({{FaultKind::kSpike, FaultStream::kTip, kStart_s, 0.1, 0.002}});
   const LoopResult free = RunClosedLoop(setup, nullptr);
   setup.supervision.max_tip_deviation_m = 0.002;
   const LoopResult kept = RunClosedLoop(setup, nullptr);
@@ -73,6 +78,19 @@ TEST(SupervisedLoop, OneTipThatNobodyCanJudgeLeadsTheTipOnlyAPart) {
            update.supervision.reaction == Reaction::kLimit;
   });
   EXPECT_TRUE(said);
+}
+
+// About the reading no command was long: the limit about the last command takes it.
+TEST(SupervisedLoop, OneReadingOfTheWristLeadsTheTipOnlyAPart) {
+  LoopSetup setup = PressBySight({{FaultKind::kSpike, FaultStream::kWrist, kStart_s, 0.1, 0.002}});
+  const LoopResult free = RunClosedLoop(setup, nullptr);
+  setup.supervision.max_tip_deviation_m = 0.002;
+  const LoopResult kept = RunClosedLoop(setup, nullptr);
+  // Twice 0.8 mm, and three deviations of what the wrist shakes.
+  constexpr double kMost_m = 0.0018;
+  EXPECT_GT(FartherInACycle(free), kMost_m);
+  EXPECT_LT(FartherInACycle(kept), kMost_m);
+  EXPECT_LT(kept.max_deviation_m, setup.supervision.max_tip_deviation_m);
 }
 
 TEST(SupervisedLoop, OthersCarryATipThatIsCoveredFromItsFirstCycleOnWithoutAJump) {
@@ -91,12 +109,9 @@ TEST(SupervisedLoop, OthersCarryATipThatIsCoveredFromItsFirstCycleOnWithoutAJump
 // The camera's tip is all that tells rod-calculate the load.
 TEST(SupervisedLoop, ALoopThatCalculatesHoldsWithoutItsSensorAndGoesOnWithIt) {
   constexpr double kLasts_s = 0.5;
-  LoopSetup setup = Press(SupervisionKind::kFull,
-                          {{FaultKind::kOffset, FaultStream::kTip, kStart_s, kLasts_s, 0.02}});
+  LoopSetup setup =
+      PressBySight({{FaultKind::kOffset, FaultStream::kTip, kStart_s, kLasts_s, 0.02}});
   setup.controller.kind = ControllerKind::kRodCalculate;
-  setup.sensors.em0.reset();
-  setup.sensors.strain.reset();
-  setup.sensors.load.reset();
   const LoopResult result = RunClosedLoop(setup, nullptr);
   const LoopUpdate* last = nullptr;
   int held = 0, moved = 0;
