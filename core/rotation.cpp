@@ -33,6 +33,15 @@ Eigen::Matrix3d RotationWithoutTwist(const Eigen::Vector3d& from, const Eigen::V
   return q.normalized().toRotationMatrix();
 }
 
+Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
+  const double angle = w.norm();
+  const Eigen::Matrix3d W = Skew(w);
+  if (angle < 1e-4) return Eigen::Matrix3d::Identity() + 0.5 * W + W * W / 6.0;
+  const double square = angle * angle;
+  return Eigen::Matrix3d::Identity() + (1.0 - std::cos(angle)) / square * W +
+         (angle - std::sin(angle)) / (square * angle) * W * W;
+}
+
 Eigen::Matrix<double, 3, 2> NormalBasis(const Eigen::Vector3d& t) {
   Eigen::Index smallest = 0;
   t.cwiseAbs().minCoeff(&smallest);

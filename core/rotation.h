@@ -14,6 +14,9 @@ inline Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
 /// Returns the rotation by the vector `w` (axis times angle, rad).
 Eigen::Matrix3d ExpRotation(const Eigen::Vector3d& w);
 
+/// Returns J with Exp(w + dw) = Exp(J dw) Exp(w) to first order.
+Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w);
+
 /// Returns the rotation vector (rad) of `R`, the inverse of ExpRotation for angles below pi.
 Eigen::Vector3d LogRotation(const Eigen::Matrix3d& R);
 

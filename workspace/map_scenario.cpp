@@ -136,7 +136,7 @@ class Reader {
   }
 
   void ReadGrid() {
-    scenario_.spacing_m = 0.0025;
+    scenario_.spacing_m = std::max(0.0025, LeastSpacing_m());
     if (top_.Has("grid")) {
       const YamlMap map = Section(top_, "grid");
       scenario_.spacing_m = Spacing(map, scenario_.spacing_m);
@@ -146,9 +146,11 @@ class Reader {
   }
 
   /// So that a typing error does not ask for a billion points.
+  double LeastSpacing_m() const { return scenario_.setup.truth.shaft_m / 400.0; }
+
   double Spacing(const YamlMap& map, double fallback) const {
     const double spacing = map.PositiveOr("spacing_m", fallback);
-    const double least = scenario_.setup.truth.shaft_m / 400.0;
+    const double least = LeastSpacing_m();
     if (spacing < least)
       throw map.Error("spacing_m", fmt::format("found {}, expected at least {:.3g} (the shaft's "
                                                "length over 400)",

@@ -25,14 +25,6 @@ const Names& Sensors() {
   return sensors;
 }
 
-/// The sensor without which an effect is nowhere to be seen.
-bool IsOfSensor(const std::string& effect, const std::string& sensor) {
-  if (sensor == "em0") return effect.starts_with("em_");
-  if (sensor == "strain0") return effect.starts_with("strain_");
-  return sensor == "vision0" &&
-         Has({"camera_latency", "hand_eye", "focal_length", "tag_offset"}, effect);
-}
-
 class Planner {
  public:
   explicit Planner(const MatrixPlan& plan) : plan_(plan) {
@@ -80,12 +72,13 @@ class Planner {
     if (Wanted("pairs")) Add(one, "pairs", plan_.pairs);
     one.drawn = 0;
     for (const std::string& effect : effects_) {
+      if (hidden::SensorOf(effect) == "load0" && !one.load) continue;
       one.effects = {effect};
       if (Wanted("singles")) Add(one, "singles", plan_.seeds_per_cell);
       for (const std::string& sensor : Sensors()) {
         MatrixCase blind = one;
         blind.left_out = sensor;
-        const bool shows = !IsOfSensor(effect, sensor);
+        const bool shows = hidden::SensorOf(effect) != sensor;
         if (Wanted("leave_sensor") && shows) Add(blind, "leave_sensor", plan_.seeds_per_cell);
       }
       MatrixCase ignorant = one;

@@ -38,6 +38,11 @@ simulation::EffectParameters TruthOf(const hidden::HiddenRecording& hidden,
   }
   // A pose found from tags keeps its attitude to the line of sight, which the scale moves.
   if (effect == "focal_length") truth["turn"] = {std::log(truth.at("scale").at(0))};
+  // The tags' image grows by the mean of 1 + 3 k1 r^2 along the radius and 1 + k1 r^2 across.
+  if (effect == "lens_radial") {
+    truth["depth"] = {2.0 * truth.at("k1").at(0)};
+    truth["turn"] = truth.at("k1");
+  }
   return truth;
 }
 
@@ -53,6 +58,8 @@ TrueParameters TrueTheta(const hidden::HiddenRecording& hidden,
     }
     if (truth.contains("frequency_hz"))
       layout.MutableEffect(b).SetScanCentre(truth.at("frequency_hz").at(0));
+    if (truth.contains("wavelength_m"))
+      layout.MutableEffect(b).SetScanCentre(1.0 / truth.at("wavelength_m").at(0));
     const auto reported = block.effect->Report(Eigen::VectorXd::Zero(block.size),
                                                Eigen::MatrixXd::Identity(block.size, block.size));
     const Values values = ReportedTruth(reported, truth);

@@ -111,6 +111,8 @@ void ReadResolution(Lines& lines, CornersFile& corners) {
 
 void ReadRow(const Lines& lines, const std::vector<Eigen::Vector3d>& board, CornersFile& corners) {
   const auto cells = Cells(lines);
+  if (cells[0].find('\r') != std::string::npos)
+    throw lines.Wrong("found a carriage return in an image's name");
   const bool nothing = cells[1].empty() && cells[2].empty();
   const bool same = !corners.views.empty() && corners.views.back().name == cells[0];
   if (same && (nothing || !corners.views.back().sighting.Found())) {

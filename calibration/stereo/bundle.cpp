@@ -19,15 +19,6 @@ namespace {
 
 constexpr int kPose = 6, kWarp = 2, kPlace = 3;
 
-// d exp(w) = [LeftJacobian(w) dw]x exp(w).
-Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
-  const double a = w.norm();
-  const Eigen::Matrix3d W = Skew(w);
-  if (a < 1e-5) return Eigen::Matrix3d::Identity() + 0.5 * W + W * W / 6.0;
-  return Eigen::Matrix3d::Identity() + (1 - std::cos(a)) / (a * a) * W +
-         (a - std::sin(a)) / (a * a * a) * W * W;
-}
-
 Pose Moved(const Pose& T, const Vector6d& step) {
   return {ExpRotation(step.head<3>()) * T.R, T.p + step.tail<3>()};
 }

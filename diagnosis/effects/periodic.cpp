@@ -49,7 +49,7 @@ std::vector<FitParameter> PeriodicEffect::Parameters(const SampleSet& samples) c
 void PeriodicEffect::Apply(const double* theta, const Instant& now, EffectMemory&,
                            InputChange& change) const {
   const int frequency = FrequencyIndex();
-  const double angle = kTwoPi * (frequency_hz_ + theta[frequency]) * now.t_s;
+  const double t_s = TimeOf(now), angle = kTwoPi * (frequency_hz_ + theta[frequency]) * t_s;
   for (int i = 0; i < 3; ++i) {
     const int input = oscillation_.first_input + i;
     change.Linear(kSine + i, input, std::sin(angle));
@@ -61,8 +61,16 @@ void PeriodicEffect::Apply(const double* theta, const Instant& now, EffectMemory
       slope += 2 * theta[kOvertoneSine + i] * std::cos(2 * angle) -
                2 * theta[kOvertoneCosine + i] * std::sin(2 * angle);
     }
-    change.Derivative(frequency, input, kTwoPi * now.t_s * slope);
+    change.Derivative(frequency, input, kTwoPi * t_s * slope);
   }
+}
+
+/// When the inputs acted that the sample shows: a reading is the one nearest to the sample's time.
+double PeriodicEffect::TimeOf(const Instant& now) const {
+  const DiagnosisSample& sample = now.samples.samples[now.k];
+  if (oscillation_.first_input == sample_input::kEmOffset) return now.t_s + sample.dt_em_s;
+  if (oscillation_.first_input == sample_input::kCameraShift) return now.t_s + sample.dt_tip_s;
+  return now.t_s;
 }
 
 /// Returns amplitude (largest component positive), frequency and phase from the fitted parameters.
@@ -125,8 +133,11 @@ Eigen::VectorXd PeriodicEffect::FromReported(const std::vector<std::vector<doubl
 }
 
 std::optional<ScannedParameter> PeriodicEffect::Scanned(const SampleSet& samples) const {
+  const double nyquist_hz = 0.5 / std::max(samples.period_s, 1e-6);
+  const double highest_hz =
+      std::max(oscillation_.lowest_hz, std::min(oscillation_.highest_hz, nyquist_hz));
   return ScannedParameter{.lowest = oscillation_.lowest_hz,
-                          .highest = oscillation_.highest_hz,
+                          .highest = highest_hz,
                           .resolution = 1.0 / std::max(samples.Duration(), 1.0),
                           .correction = FrequencyIndex(),
                           .first_input = oscillation_.first_input,
@@ -134,7 +145,7 @@ std::optional<ScannedParameter> PeriodicEffect::Scanned(const SampleSet& samples
 }
 
 Eigen::Vector2d PeriodicEffect::ScanShapes(double frequency_hz, const Instant& now) const {
-  const double angle = kTwoPi * frequency_hz * now.t_s;
+  const double angle = kTwoPi * frequency_hz * TimeOf(now);
   return {std::sin(angle), std::cos(angle)};
 }
 

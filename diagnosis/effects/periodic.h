@@ -42,6 +42,7 @@ class PeriodicEffect : public Effect {
 
  private:
   bool HasOvertone() const { return oscillation_.overtone > 0.0; }
+  double TimeOf(const Instant& now) const;
   int FrequencyIndex() const { return HasOvertone() ? 12 : 6; }
   Eigen::VectorXd Reported(const Eigen::VectorXd& theta) const;
 

@@ -7,12 +7,38 @@
 namespace flextip::diagnosis {
 namespace {
 
-constexpr std::unique_ptr<Effect> (*kMakers[])() = {
-    MakeStiffness,       MakeLength,         MakeSelfWeight,   MakePrecurvature, MakePortOffset,
-    MakePortMotion,      MakePortCompliance, MakePortFriction, MakePortMoment,   MakeShaftLoad,
-    MakeWristCompliance, MakeTipCompliance,  MakeBacklash,     MakeEmDistortion, MakeEmLatency,
-    MakeCameraLatency,   MakeHandEye,        MakeFocalLength,  MakeTagOffset,    MakeStrainGain,
-    MakeStrainDrift};
+constexpr std::unique_ptr<Effect> (*kMakers[])() = {MakeStiffness,
+                                                    MakeLength,
+                                                    MakeSelfWeight,
+                                                    MakePrecurvature,
+                                                    MakePortOffset,
+                                                    MakePortMotion,
+                                                    MakePortCompliance,
+                                                    MakePortFriction,
+                                                    MakePortMoment,
+                                                    MakeShaftLoad,
+                                                    MakeWristCompliance,
+                                                    MakeTipCompliance,
+                                                    MakeBacklash,
+                                                    MakeEmDistortion,
+                                                    MakeEmLatency,
+                                                    MakeCameraLatency,
+                                                    MakeHandEye,
+                                                    MakeFocalLength,
+                                                    MakeTagOffset,
+                                                    MakeStrainGain,
+                                                    MakeStrainDrift,
+                                                    MakeGageRotation,
+                                                    MakeStrainCrosstalk,
+                                                    MakeWristScale,
+                                                    MakeEncoderEccentricity,
+                                                    MakeEmClock,
+                                                    MakeCameraClock,
+                                                    MakeLoadScale,
+                                                    MakeLoadRotation,
+                                                    MakeLensRadial,
+                                                    MakeCameraDrift,
+                                                    MakeEmInterference};
 
 /// Returns new effects: those of the catalogue, then those of `own`.
 Catalogue AllEffects(const EffectMakers& own) {

@@ -31,6 +31,17 @@ std::unique_ptr<Effect> MakeFocalLength();
 std::unique_ptr<Effect> MakeTagOffset();
 std::unique_ptr<Effect> MakeStrainGain();
 std::unique_ptr<Effect> MakeStrainDrift();
+std::unique_ptr<Effect> MakeGageRotation();
+std::unique_ptr<Effect> MakeStrainCrosstalk();
+std::unique_ptr<Effect> MakeWristScale();
+std::unique_ptr<Effect> MakeEncoderEccentricity();
+std::unique_ptr<Effect> MakeEmClock();
+std::unique_ptr<Effect> MakeCameraClock();
+std::unique_ptr<Effect> MakeLoadScale();
+std::unique_ptr<Effect> MakeLoadRotation();
+std::unique_ptr<Effect> MakeLensRadial();
+std::unique_ptr<Effect> MakeCameraDrift();
+std::unique_ptr<Effect> MakeEmInterference();
 
 using Catalogue = std::vector<std::unique_ptr<Effect>>;
 

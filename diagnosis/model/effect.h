@@ -121,6 +121,8 @@ class Effect {
   /// Returns the input by which the first parameter delays a sensor (kEmDelay, kCameraDelay), or
   /// -1.
   virtual int DelayInput() const { return -1; }
+  /// Returns whether that parameter is a clock's rate: the delay is -rate times the time.
+  virtual bool DelayGrows() const { return false; }
   /// Returns the width (m) of the play between measured and true wrist.
   virtual double WristPlay(const Eigen::VectorXd& /*theta*/) const { return 0.0; }
 

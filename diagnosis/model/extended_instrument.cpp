@@ -9,11 +9,32 @@
 #include "core/rotation.h"
 #include "diagnosis/model/extended_effect.h"
 #include "diagnosis/model/geometry.h"
+#include "diagnosis/replay/sensor_prediction.h"
 #include "estimation/saved_state.h"
 
 namespace flextip::diagnosis {
 
 using namespace sample_input;
+
+namespace {
+
+/// Backwards through sensor_prediction's ThroughLens, by iteration: what a lens leaves over is
+/// small.
+Eigen::Vector3d BeforeLens(const Eigen::Vector3d& axis, const SampleInputs& u,
+                           const Eigen::Vector3d& seen) {
+  constexpr int kIterations = 5;
+  Eigen::Vector3d p = seen;
+  for (int i = 0; i < kIterations; ++i) {
+    const double depth = std::max(axis.dot(p), 1e-3);
+    const Eigen::Vector3d across = p - axis.dot(p) * axis;
+    const double r2 = across.squaredNorm() / (depth * depth);
+    const double sideways = u[kLensRadial] - u[kLensDepth];
+    p = seen - r2 * (sideways * across - u[kLensDepth] * depth * axis);
+  }
+  return p;
+}
+
+}  // namespace
 
 struct ExtendedInstrument::Acting {
   std::unique_ptr<Effect> effect;
@@ -87,7 +108,7 @@ void ExtendedInstrument::SetSample(TimeNs t_ns, const Measurements& z,
   DiagnosisSample& now = set_.samples[0];
   now.t_s = 1e-9 * static_cast<double>(t_ns - start_ns_);
   now.p_RW = z.p_RW;
-  now.f_tip_N = z.load ? z.load->f_tip_N : f_tip_N;
+  now.f_tip_N = now.f_around_N = z.load ? z.load->f_tip_N : f_tip_N;
   // As in sample_set: without a measured orientation, R's axes turned without twist to the port.
   const Eigen::Vector3d to_port = (set_.p_RP - z.p_RW).normalized();
   now.y_wrist = z.R_RW ? Eigen::Vector3d(z.R_RW->col(1))
@@ -174,7 +195,9 @@ void ExtendedInstrument::CorrectTip(const SampleInputs& u, Measurements& z) cons
   const Eigen::Matrix3d A = camera * stretch * vision_back;
   const Eigen::Vector3d seen =
       vision_back * (tip.p_RE - set_.centre - u.segment<3>(kVisionShift)) + set_.centre;
-  tip.p_RE = p_RC + u.segment<3>(kCameraShift) + camera * stretch * (seen - p_RC);
+  Eigen::Vector3d from_camera = stretch * (seen - p_RC);
+  if (set_.has_camera) from_camera = BeforeLens(set_.T_RC.R.col(2), u, from_camera);
+  tip.p_RE = p_RC + u.segment<3>(kCameraShift) + camera * from_camera;
   tip.p_RE -= R_RE_ * u.segment<3>(kTagOffset);
   tip.covariance_m2 = A * tip.covariance_m2 * A.transpose();
   if (!tip.d_RE) return;
@@ -184,7 +207,8 @@ void ExtendedInstrument::CorrectTip(const SampleInputs& u, Measurements& z) cons
     const double depth_m = std::max(p_C.z(), 1e-3);
     const Eigen::Vector3d axis =
         set_.T_RC.R * Eigen::Vector3d(-p_C.y() / depth_m, p_C.x() / depth_m, 0.0);
-    focal = ExpRotation(-u[kFocalTurn] * axis);
+    const double turn = u[kFocalTurn] + u[kLensTurn] * axis.squaredNorm();
+    focal = ExpRotation(-turn * axis);
   }
   tip.d_RE = camera * focal * vision_back * *tip.d_RE;
 }
@@ -196,10 +220,11 @@ Measurements ExtendedInstrument::CorrectBy(const SampleInputs& u,
   if (z.port_direction) z.port_direction = ExpRotation(-u.segment<3>(kEmTurn)) * *z.port_direction;
   if (z.tip && z.tip->status != TipStatus::kLost) CorrectTip(u, z);
   if (z.strain) {
-    const Eigen::Vector4d gain = Eigen::Vector4d::Ones() + u.segment<4>(kStrainGain);
-    z.strain->moments_Nm = (z.strain->moments_Nm - u.segment<4>(kStrainOffset)).cwiseQuotient(gain);
-    z.strain->moment_noise_Nm *= std::sqrt(gain.cwiseAbs2().cwiseInverse().mean());
+    const Eigen::Matrix4d back = StrainBridge(u).inverse();
+    z.strain->moments_Nm = back * (z.strain->moments_Nm - u.segment<4>(kStrainOffset));
+    z.strain->moment_noise_Nm *= back.norm() / 2.0;  // the RMS over the gages
   }
+  if (z.load) z.load->f_tip_N += u.segment<3>(kForce);
   return z;
 }
 

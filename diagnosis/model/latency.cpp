@@ -11,25 +11,39 @@ namespace {
 
 struct Delay {
   double value_s = 0.0, sd_s = 0.0;
+  double growth = 0.0, growth_sd = 0.0;  ///< in each second since the recording's start
+  TimeNs start_ns = 0;
+
+  double SinceStart_s(TimeNs t_ns) const { return 1e-9 * static_cast<double>(t_ns - start_ns); }
+  double At(TimeNs t_ns) const { return value_s + growth * SinceStart_s(t_ns); }
+  double SdAt(TimeNs t_ns) const { return std::hypot(sd_s, growth_sd * SinceStart_s(t_ns)); }
 };
 
 /// The delay of a sensor's stamps by all of `effects` that act on it.
-Delay DelayBy(const std::vector<EffectFit>& effects, int delay_input, const EffectMakers& own) {
+Delay DelayBy(const std::vector<EffectFit>& effects, int delay_input, TimeNs start_ns,
+              const EffectMakers& own) {
   Delay delay;
+  delay.start_ns = start_ns;
   for (const EffectFit& fit : effects) {
     const auto effect = MakeEffectOfModel(fit.effect, own);
     if (!effect || effect->DelayInput() != delay_input) continue;
     const ReportedParameter& parameter = fit.parameters.at(0);
-    delay.value_s += parameter.value.at(0);
-    if (!parameter.sd.empty()) delay.sd_s = std::hypot(delay.sd_s, parameter.sd[0]);
+    const double sd = parameter.sd.empty() ? 0.0 : parameter.sd[0];
+    if (effect->DelayGrows()) {
+      delay.growth -= parameter.value.at(0);
+      delay.growth_sd = std::hypot(delay.growth_sd, sd);
+    } else {
+      delay.value_s += parameter.value.at(0);
+      delay.sd_s = std::hypot(delay.sd_s, sd);
+    }
   }
   return delay;
 }
 
 template <class Samples>
-void MoveStamps(Samples& samples, double delay_s) {
-  const auto delay_ns = static_cast<TimeNs>(std::llround(1e9 * delay_s));
-  for (auto& sample : samples) sample.t_ns -= delay_ns;
+void MoveStamps(Samples& samples, const Delay& delay) {
+  for (auto& sample : samples)
+    sample.t_ns -= static_cast<TimeNs>(std::llround(1e9 * delay.At(sample.t_ns)));
 }
 
 /// Two neighbours of a sample and the seconds between them; the same at the series' ends.
@@ -48,7 +62,7 @@ Around NeighboursOf(const Series<Value>& samples, std::size_t i) {
 
 void MoveAlongPath(EmStream& em, const Delay& delay) {
   const Series<EmSample> measured = em.samples;
-  double speed2 = 0.0, turning2 = 0.0;
+  double off2_m2 = 0.0, turn2_rad2 = 0.0;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     const auto [before, after, span_s] = NeighboursOf(measured, i);
     if (span_s <= 0.0) continue;
@@ -56,16 +70,16 @@ void MoveAlongPath(EmStream& em, const Delay& delay) {
     const Eigen::Vector3d speed = (b.p_RS - a.p_RS) / span_s;
     const Eigen::Vector3d turning =
         LogRotation((b.q_RS * a.q_RS.conjugate()).toRotationMatrix()) / span_s;
-    em.samples[i].value.p_RS += delay.value_s * speed;
+    const double delay_s = delay.At(measured[i].t_ns), sd_s = delay.SdAt(measured[i].t_ns);
+    em.samples[i].value.p_RS += delay_s * speed;
     em.samples[i].value.q_RS =
-        Eigen::Quaterniond(ExpRotation(delay.value_s * turning)) * measured[i].value.q_RS;
-    speed2 += speed.squaredNorm() / static_cast<double>(measured.size());
-    turning2 += turning.squaredNorm() / static_cast<double>(measured.size());
+        Eigen::Quaterniond(ExpRotation(delay_s * turning)) * measured[i].value.q_RS;
+    off2_m2 += sd_s * sd_s * speed.squaredNorm() / static_cast<double>(measured.size());
+    turn2_rad2 += sd_s * sd_s * turning.squaredNorm() / static_cast<double>(measured.size());
   }
   // A stream has one noise: that of the mean speed, shared by the axes.
-  em.position_noise_m = std::hypot(em.position_noise_m, delay.sd_s * std::sqrt(speed2 / 3.0));
-  em.orientation_noise_rad =
-      std::hypot(em.orientation_noise_rad, delay.sd_s * std::sqrt(turning2 / 3.0));
+  em.position_noise_m = std::hypot(em.position_noise_m, std::sqrt(off2_m2 / 3.0));
+  em.orientation_noise_rad = std::hypot(em.orientation_noise_rad, std::sqrt(turn2_rad2 / 3.0));
 }
 
 void MoveAlongPath(VisionStream& vision, const Delay& delay) {
@@ -77,27 +91,31 @@ void MoveAlongPath(VisionStream& vision, const Delay& delay) {
     const TipObservation &a = measured[before].value, &b = measured[after].value;
     TipObservation& tip = vision.tips[i].value;
     const Eigen::Vector3d speed = (b.p_RE - a.p_RE) / span_s;
-    tip.p_RE += delay.value_s * speed;
-    tip.covariance_m2 += delay.sd_s * delay.sd_s * speed * speed.transpose();
+    const double delay_s = delay.At(measured[i].t_ns), sd_s = delay.SdAt(measured[i].t_ns);
+    tip.p_RE += delay_s * speed;
+    tip.covariance_m2 += sd_s * sd_s * speed * speed.transpose();
     if (tip.d_RE && a.d_RE && b.d_RE)
-      tip.d_RE = (*tip.d_RE + delay.value_s / span_s * (*b.d_RE - *a.d_RE)).normalized();
+      tip.d_RE = (*tip.d_RE + delay_s / span_s * (*b.d_RE - *a.d_RE)).normalized();
   }
 }
 
 }  // namespace
 
 Recording WithoutLatency(Recording recording, const ExtendedModel& model, const EffectMakers& own) {
-  const Delay em = DelayBy(model.effects, sample_input::kEmDelay, own);
-  const Delay camera = DelayBy(model.effects, sample_input::kCameraDelay, own);
-  const Delay em_within = DelayBy(model.within_tolerance, sample_input::kEmDelay, own);
-  const Delay camera_within = DelayBy(model.within_tolerance, sample_input::kCameraDelay, own);
+  const auto by = [&](const std::vector<EffectFit>& effects, int delay_input) {
+    return DelayBy(effects, delay_input, model.start_ns, own);
+  };
+  const Delay em = by(model.effects, sample_input::kEmDelay);
+  const Delay camera = by(model.effects, sample_input::kCameraDelay);
+  const Delay em_within = by(model.within_tolerance, sample_input::kEmDelay);
+  const Delay camera_within = by(model.within_tolerance, sample_input::kCameraDelay);
   for (auto* stream : {&recording.em0, &recording.em1}) {
     if (!*stream) continue;
-    MoveStamps((*stream)->samples, em.value_s);
+    MoveStamps((*stream)->samples, em);
     MoveAlongPath(**stream, em_within);
   }
   if (recording.vision0) {
-    MoveStamps(recording.vision0->tips, camera.value_s);
+    MoveStamps(recording.vision0->tips, camera);
     MoveAlongPath(*recording.vision0, camera_within);
   }
   return recording;

@@ -177,8 +177,8 @@ void Replay::FixNoiseModel() {
 
 /// Mean of the tip's force before the sensors say anything of it.
 Eigen::Vector3d Replay::MeanForce(std::size_t k) const {
-  if (samples_.has_load) return samples_.samples[k].f_tip_N;
-  return replayed_[k].inputs.segment<3>(sample_input::kForce);
+  const Eigen::Vector3d mean_N = replayed_[k].inputs.segment<3>(sample_input::kForce);
+  return samples_.has_load ? Eigen::Vector3d(samples_.samples[k].f_tip_N + mean_N) : mean_N;
 }
 
 /// Covariance of the tip's force.

@@ -109,6 +109,8 @@ double Replay::ApplyEffects(const Eigen::VectorXd& theta) {
       InputChange input(theta.data() + block.first, block.first, sample.inputs, sample.columns);
       block.effect->Apply(theta.data() + block.first, now, memory[b], input);
     }
+    if (samples_.has_load)  // what the load cell misreads
+      sample.f_tip_N = samples_.samples[k].f_tip_N + sample.inputs.segment<3>(sample_input::kForce);
     const double by = std::abs(sample.inputs[sample_input::kPortFriction] - friction);
     sample.stale = by > 0.2 * kSameFriction;
     change = std::max(change, by);
@@ -234,12 +236,16 @@ void Replay::CompareSamples() {
       sample.compared =
           Compare(samples_, sample.measured, sample.inputs, ForceOnTip(sample.f_tip_N, expected_N),
                   WithRate(k), ExpectedDerivatives(k));
-      for (int i = 0; i < 4; ++i) {  // a gain acts on the moment, which comes of the force too
+      // A gain acts on the moment, which comes of the force too.
+      const Eigen::Vector4d bends = Around(k, [&](std::size_t j) -> Eigen::Vector4d {
+        return replayed_[j].solved.at.segment<4>(place::kMoments);
+      });
+      for (int i = 0; i < 4; ++i) {
         if (!sample.measured.Has(row::kStrain + i)) continue;
-        const auto moment = Around(k, [&](std::size_t j) -> Eigen::Matrix<double, 1, 1> {
-          return replayed_[j].solved.at.segment<1>(place::kMoments + i);
-        });
-        sample.compared.by_inputs(row::kStrain + i, sample_input::kStrainGain + i) = moment[0];
+        auto by = sample.compared.by_inputs.row(row::kStrain + i);
+        by[sample_input::kStrainGain + i] = bends[i];
+        for (int j = 0; j < 4; ++j)
+          if (j != i) by[StrainCross(i, j)] = bends[j];
       }
     }
   });

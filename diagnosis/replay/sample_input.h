@@ -23,15 +23,27 @@ inline constexpr int kCameraShift = kCameraTurn + 3;  ///< of the camera
 inline constexpr int kLogFocal = kCameraShift + 3;    ///< of the true focal length over calibrated
 /// The turn of a pose by a changed focal length, over the tangent of the pose's angle off the axis.
 inline constexpr int kFocalTurn = kLogFocal + 1;
-inline constexpr int kTagOffset = kFocalTurn + 1;      ///< in E, of the tags against their mount
+/// The lens's k1 beyond its calibration; beside it what that does to the depth of a pose, and by
+/// what it turns the pose, in proportion to r^2 as k1 does.
+inline constexpr int kLensRadial = kFocalTurn + 1;
+inline constexpr int kLensDepth = kLensRadial + 1;
+inline constexpr int kLensTurn = kLensDepth + 1;
+inline constexpr int kTagOffset = kLensTurn + 1;       ///< in E, of the tags against their mount
 inline constexpr int kStrainGain = kTagOffset + 3;     ///< per gage, less one
 inline constexpr int kStrainOffset = kStrainGain + 4;  ///< per gage, Nm
-inline constexpr int kEmTurn = kStrainOffset + 4;      ///< EM frame in R about the centre, rad
-inline constexpr int kEmShift = kEmTurn + 3;           ///< EM frame in R
-inline constexpr int kVisionTurn = kEmShift + 3;       ///< vision's frame in R about the centre
+/// What a gage reads of another's moment: the off-diagonal entries, row by row.
+inline constexpr int kStrainCross = kStrainOffset + 4;
+inline constexpr int kEmTurn = kStrainCross + 12;  ///< EM frame in R about the centre, rad
+inline constexpr int kEmShift = kEmTurn + 3;       ///< EM frame in R
+inline constexpr int kVisionTurn = kEmShift + 3;   ///< vision's frame in R about the centre
 inline constexpr int kVisionShift = kVisionTurn + 3;
 inline constexpr int kCount = kVisionShift + 3;
 }  // namespace sample_input
+
+/// The input by which gage `gage` reads the moment of another gage.
+constexpr int StrainCross(int gage, int other) {
+  return sample_input::kStrainCross + 3 * gage + other - (other > gage ? 1 : 0);
+}
 
 using SampleInputs = Eigen::Matrix<double, sample_input::kCount, 1>;
 

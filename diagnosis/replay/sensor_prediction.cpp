@@ -10,16 +10,6 @@ namespace {
 using namespace sample_input;
 using Three = Eigen::Matrix<double, 3, sample_input::kCount>;
 
-/// J with Exp(w + dw) = Exp(J dw) Exp(w) to first order.
-Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
-  const double angle = w.norm();
-  const Eigen::Matrix3d W = Skew(w);
-  if (angle < 1e-4) return Eigen::Matrix3d::Identity() + 0.5 * W + W * W / 6.0;
-  const double square = angle * angle;
-  return Eigen::Matrix3d::Identity() + (1.0 - std::cos(angle)) / square * W +
-         (angle - std::sin(angle)) / (square * angle) * W * W;
-}
-
 /// A predicted vector and its derivatives.
 struct Predicted {
   Eigen::Vector3d v;
@@ -100,12 +90,36 @@ Predicted TrueTip(const SampleInputs& u, const ForceOnTip& f_tip, const TimedGeo
   return p;
 }
 
+/// The line of sight is displaced by 1 + k1 r^2, and the tip seems nearer by the depth's k1 r^2: to
+/// first order, about the camera.
+void ThroughLens(const Pose& T_RC, const SampleInputs& u, Predicted& p) {
+  const Eigen::Vector3d axis = T_RC.R.col(2);
+  const double depth = axis.dot(p.v);
+  const Eigen::Vector3d across = p.v - depth * axis;
+  const Eigen::RowVector3d by_depth = axis.transpose();
+  const double r2 = across.squaredNorm() / (depth * depth);
+  // Of r2 by the place: across and depth are at a right angle.
+  const Eigen::RowVector3d dr2 =
+      2.0 / (depth * depth) * across.transpose() - 2.0 * r2 / depth * by_depth;
+  const double sideways = u[kLensRadial] - u[kLensDepth], nearer = u[kLensDepth];
+  const Eigen::Matrix3d by_p =
+      Eigen::Matrix3d::Identity() +
+      sideways * (r2 * (Eigen::Matrix3d::Identity() - axis * by_depth) + across * dr2) -
+      nearer * axis * (r2 * by_depth + depth * dr2);
+  const Eigen::Vector3d seen = p.v + r2 * (sideways * across - nearer * depth * axis);
+  p.d = (by_p * p.d).eval();
+  p.d.col(kLensRadial) += r2 * across;
+  p.d.col(kLensDepth) -= r2 * p.v;
+  p.v = seen;
+}
+
 /// What a camera that is not where it was registered, with another focal length, makes of it.
 Predicted SeenTip(const SampleSet& samples, const SampleInputs& u, Predicted p) {
   const Eigen::Vector3d p_RC = samples.has_camera ? samples.T_RC.p : samples.centre;
   p.v -= p_RC;
   p.Shift(u, kCameraShift, -1.0);
   p.Turn(u, kCameraTurn, -1.0);
+  if (samples.has_camera) ThroughLens(samples.T_RC, u, p);
   if (samples.has_camera) {  // tags look larger by the focal scale, so they seem nearer
     const Eigen::Vector3d axis = samples.T_RC.R.col(2);
     const double shrink = std::exp(-u[kLogFocal]);
@@ -121,23 +135,34 @@ Predicted SeenTip(const SampleSet& samples, const SampleInputs& u, Predicted p) 
   return p;
 }
 
-/// A pose from tags keeps its attitude to the line of sight, which a changed focal length moves
-/// away from the axis (to first order).
-void TurnByFocal(const SampleSet& samples, const SampleInputs& u, const Predicted& p_RE,
+/// A pose from tags keeps its attitude to the line of sight, which a changed focal length or lens
+/// moves away from the axis (to first order).
+void TurnBySight(const SampleSet& samples, const SampleInputs& u, const Predicted& p_RE,
                  Predicted& d) {
   const Eigen::Matrix3d& R_RC = samples.T_RC.R;
   const Eigen::Vector3d p_C = R_RC.transpose() * (p_RE.v - samples.T_RC.p);
-  const double x = p_C.x() / p_C.z(), y = p_C.y() / p_C.z();
+  const double x = p_C.x() / p_C.z(), y = p_C.y() / p_C.z(), r2 = x * x + y * y;
   const Eigen::Vector3d axis = R_RC * Eigen::Vector3d(-y, x, 0.0), turned = axis.cross(d.v);
   Eigen::Matrix3d by_p_C;
   by_p_C << 0, -1, y, 1, 0, -x, 0, 0, 0;
-  const Three d_axis = R_RC * (by_p_C / p_C.z()) * R_RC.transpose() * p_RE.d;
-  d.d += (u[kFocalTurn] * (Skew(axis) * d.d - Skew(d.v) * d_axis)).eval();
+  const Eigen::RowVector3d r2_by_p_C = 2.0 * Eigen::RowVector3d(x, y, -r2);
+  const Three d_p_C = R_RC.transpose() * p_RE.d / p_C.z(), d_axis = R_RC * by_p_C * d_p_C;
+  const double turn = u[kFocalTurn] + u[kLensTurn] * r2;
+  d.d += (turn * (Skew(axis) * d.d - Skew(d.v) * d_axis)).eval();
+  d.d += u[kLensTurn] * turned * (r2_by_p_C * d_p_C);
   d.d.col(kFocalTurn) += turned;
-  d.v += u[kFocalTurn] * turned;
+  d.d.col(kLensTurn) += r2 * turned;
+  d.v += turn * turned;
 }
 
 }  // namespace
+
+Eigen::Matrix4d StrainBridge(const SampleInputs& u) {
+  Eigen::Matrix4d bridge = Eigen::Matrix4d::Identity();
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) bridge(i, j) += u[i == j ? kStrainGain + i : StrainCross(i, j)];
+  return bridge;
+}
 
 SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const SampleInputs& u,
                        const ForceOnTip& f_tip, const TimedGeometry& geometry,
@@ -160,14 +185,18 @@ SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const
     d.Turn(u, kEmTurn, 1.0);
     AddDirection(z.d_em, d, row::kEmDirection, out);
   }
+  const Eigen::Matrix4d bridge = StrainBridge(u);
+  const Eigen::Vector4d bends = gages.at.segment<4>(place::kMoments);
   for (int i = 0; i < 4; ++i) {
     if (!z.Has(row::kStrain + i)) continue;
-    const double gain = 1.0 + u[kStrainGain + i], moment = gages.at[place::kMoments + i];
     const int r = row::kStrain + i;
-    out.residual[r] = z.moments_Nm[i] - gain * moment - u[kStrainOffset + i];
-    out.by_inputs.row(r).head<rod_input::kCount>() = gain * by_inputs.row(place::kMoments + i);
-    out.by_inputs(r, kStrainGain + i) = moment;
+    out.residual[r] = z.moments_Nm[i] - bridge.row(i).dot(bends) - u[kStrainOffset + i];
+    out.by_inputs.row(r).head<rod_input::kCount>() =
+        bridge.row(i) * by_inputs.middleRows<4>(place::kMoments);
+    out.by_inputs(r, kStrainGain + i) = bends[i];
     out.by_inputs(r, kStrainOffset + i) = 1.0;
+    for (int j = 0; j < 4; ++j)
+      if (j != i) out.by_inputs(r, StrainCross(i, j)) = bends[j];
   }
   if (z.Has(row::kTipPosition))
     AddVector(z.p_RE, SeenTip(samples, u, TrueTip(u, f_tip, tip, by_inputs)), row::kTipPosition,
@@ -175,7 +204,7 @@ SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const
   if (z.Has(row::kTipDirection)) {
     Predicted d = SeenByCamera(tip, by_inputs, place::kTipTangent);
     d.Turn(u, kCameraTurn, -1.0);
-    if (samples.has_camera) TurnByFocal(samples, u, SeenByCamera(tip, by_inputs, place::kTip), d);
+    if (samples.has_camera) TurnBySight(samples, u, SeenByCamera(tip, by_inputs, place::kTip), d);
     d.Turn(u, kVisionTurn, 1.0);
     AddDirection(z.d_tip, d, row::kTipDirection, out);
   }

@@ -24,6 +24,9 @@ struct SampleResidual {
   RowsByInputs by_inputs = RowsByInputs::Zero();
 };
 
+/// What each gage (row) reads of each moment (column).
+Eigen::Matrix4d StrainBridge(const SampleInputs& inputs);
+
 /// The force on the tip. `expected_N` is what other samples say of it: derivatives by the tip's
 /// compliance are taken there, lest the noise of a force found from this very sample looks like
 /// something explained.

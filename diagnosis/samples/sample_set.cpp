@@ -252,6 +252,29 @@ class Builder {
       set_.samples[k].f_tip_N = smoothed.value[k];
       set_.samples[k].force_noise_N = set_.noise.force_N;
     }
+    for (std::size_t k = 0; k < set_.samples.size(); ++k)
+      set_.samples[k].f_around_N = LoadAround(k);
+  }
+
+  /// From near and far neighbours on both sides, so that the load's curvature cancels; itself at
+  /// the ends and where samples are apart in time.
+  Eigen::Vector3d LoadAround(std::size_t k) const {
+    constexpr std::size_t kNear = 9, kFar = 18, kEach = 4;  // samples; nearer ones share its noise
+    const auto& samples = set_.samples;
+    const std::size_t reach = kFar + kEach - 1;
+    if (!set_.resolved_in_time || k < reach || k + reach >= samples.size())
+      return samples[k].f_tip_N;
+    Eigen::Vector3d mean[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    double squares[2] = {0.0, 0.0};
+    for (std::size_t i = 0; i < kEach; ++i) {
+      for (const int which : {0, 1}) {
+        const std::size_t by = (which == 0 ? kNear : kFar) + i;
+        mean[which] += (samples[k - by].f_tip_N + samples[k + by].f_tip_N) / (2.0 * kEach);
+        squares[which] += static_cast<double>(by * by);
+      }
+    }
+    const double ratio = squares[1] / squares[0];
+    return (ratio * mean[0] - mean[1]) / (ratio - 1.0);
   }
 
   /// Play and friction remember what came before the recording, and what late sensors say of its

@@ -35,6 +35,9 @@ struct DiagnosisSample {
   Eigen::Vector3d d_port = Eigen::Vector3d::UnitX();
   Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();  ///< where the load is known
   double force_noise_N = 0.0;                         ///< of f_tip_N, per axis
+  /// The same as the samples around say, whose noise is another: what a load cell misreads goes
+  /// with the force, and must not look like its noise.
+  Eigen::Vector3d f_around_N = Eigen::Vector3d::Zero();
   /// When sensors spoke, less t_s: EM, strain, vision, the port's sensor.
   double dt_em_s = 0.0, dt_strain_s = 0.0, dt_tip_s = 0.0, dt_port_s = 0.0;
 
@@ -67,6 +70,17 @@ struct SampleSet {
   bool resolved_in_time = true;                      ///< the motion from sample to sample is smooth
   std::vector<DiagnosisSample> samples;
   std::vector<std::string> warnings;
+
+  /// Returns whether a load cell reads more than its noise: of noise no scale can be told.
+  bool LoadStandsOut() const {
+    constexpr double kOverNoise = 10.0;
+    double force2 = 0.0, noise2 = 0.0;
+    for (const DiagnosisSample& sample : samples) {
+      force2 += sample.f_tip_N.squaredNorm();
+      noise2 += 3.0 * sample.force_noise_N * sample.force_noise_N;
+    }
+    return has_load && force2 > kOverNoise * kOverNoise * noise2;
+  }
 
   double Duration() const {
     return samples.empty() ? 0.0 : samples.back().t_s - samples.front().t_s;

@@ -39,15 +39,13 @@ Eigen::VectorXd Plausible(Eigen::VectorXd mode, const ParameterLayout& layout) {
   return mode;
 }
 
-/// Scans the parameters that call for it in round `round`: all in the first one, after that those
-/// of effects that are not fitted anyway.
-/// Returns whether there was any.
-bool Scan(Replay& replay, ParameterLayout& layout, const Hypothesis& hypothesis, int round) {
+/// Scans the parameters that call for it, but those of effects that are fitted anyway. Returns
+/// whether there was any.
+bool Scan(Replay& replay, ParameterLayout& layout, const Hypothesis& hypothesis) {
   bool any = false;
   for (const int block : layout.ScannedBlocks()) {
     const auto& present = hypothesis.effects;
-    const bool fitted = std::find(present.begin(), present.end(), block) != present.end();
-    if (round > 0 && fitted) continue;
+    if (std::find(present.begin(), present.end(), block) != present.end()) continue;
     ScanAgain(replay, layout, block);
     any = true;
   }
@@ -137,7 +135,7 @@ HypothesisFit FitHypothesis(Replay& replay, ParameterLayout& layout, const Hypot
   fit.hypothesis = hypothesis;
   std::optional<LinearProblem> here;
   for (int round = 0; round < fit_options.rounds; ++round) {
-    const bool scan = round < fit_options.scans && Scan(replay, layout, hypothesis, round);
+    const bool scan = round > 0 && round < fit_options.scans && Scan(replay, layout, hypothesis);
     if (scan || !here) here = ProblemHere(replay, fit_options.basis, options);
     const bool far = fit_options.scans > 0 && round == 0;
     const Rows may_miss =

@@ -68,7 +68,7 @@ struct FitOptions {
   const Eigen::MatrixXd& basis;  ///< of the generic terms
   Rows may_miss = Rows::Zero();
   int rounds = 4;
-  int scans = 0;          ///< first rounds that scan parameters such as a frequency
+  int scans = 0;          ///< rounds, from the second on, that scan parameters such as a frequency
   double worth = -1e300;  ///< log posterior below which, clearly, the fit is given up
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/check.h"
 #include "core/linear_algebra.h"
@@ -13,6 +14,8 @@ namespace {
 
 constexpr double kStep = 0.25;      // of the resolution
 constexpr double kSameValue = 0.6;  // of the resolution
+constexpr int kMostExact = 128;     // of more only those that look best at first sight
+constexpr int kAtATime = 32;        // values, for the sake of large products
 
 ScannedParameter ScannedOf(const Replay& replay, int block) {
   const auto scanned = replay.Layout().Blocks()[block].effect->Scanned(replay.Set());
@@ -37,6 +40,66 @@ Eigen::MatrixXd ByInputs(const Replay& replay, const WhitenedRows& rows,
   return by_inputs;
 }
 
+/// The products of each sample's rows, a column a sample: what a shape, which is one number a
+/// sample, needs of them.
+struct SampleProducts {
+  Eigen::MatrixXd with_X;     ///< B^T X, entry by entry
+  Eigen::MatrixXd with_self;  ///< B^T B
+  Eigen::MatrixXd with_left;  ///< B^T of what is left
+
+  SampleProducts(const WhitenedRows& rows, const Eigen::MatrixXd& B, const Eigen::MatrixXd& X,
+                 const Eigen::VectorXd& left, std::size_t samples) {
+    const Eigen::Index inputs = B.cols(), n = static_cast<Eigen::Index>(samples);
+    with_X.resize(inputs * X.cols(), n);
+    with_self.resize(inputs * inputs, n);
+    with_left.resize(inputs, n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const Eigen::MatrixXd b = B.middleRows(rows.first_row[at], rows.Rows(at));
+      const auto x = X.middleRows(rows.first_row[at], rows.Rows(at));
+      with_X.col(k) = (b.transpose() * x).reshaped();
+      with_self.col(k) = (b.transpose() * b).reshaped();
+      with_left.col(k) = b.transpose() * left.segment(rows.first_row[at], rows.Rows(at));
+    }
+  }
+};
+
+/// The fall of chi-squared by pairs of shapes (a row a sample; first all first ones, then all
+/// second ones) of each input. Many pairs at a time: the products are large. Without `llt`, of
+/// what the other parameters may explain, the shapes count as apart from all of that: a lower
+/// bound.
+std::vector<double> Scores(const SampleProducts& products, const Eigen::MatrixXd& shapes,
+                           const Llt<Eigen::Dynamic>* llt) {
+  const Eigen::Index inputs = products.with_left.rows(), pairs = shapes.cols() / 2;
+  const Eigen::Index parameters = products.with_X.rows() / inputs;
+  const auto first = shapes.leftCols(pairs), second = shapes.rightCols(pairs);
+  Eigen::MatrixXd squares(shapes.rows(), 3 * pairs);
+  squares << first.cwiseAbs2(), first.cwiseProduct(second), second.cwiseAbs2();
+  const Eigen::MatrixXd by_left = products.with_left * shapes;
+  const Eigen::MatrixXd by_self = products.with_self * squares;
+  Eigen::MatrixXd by_X;
+  if (llt != nullptr) by_X = products.with_X * shapes;
+  std::vector<double> scores;
+  for (Eigen::Index c = 0; c < pairs; ++c) {
+    const auto self = [&](Eigen::Index which) {
+      return by_self.col(which * pairs + c).reshaped(inputs, inputs);
+    };
+    Eigen::MatrixXd A(2 * inputs, 2 * inputs);
+    A << self(0), self(1), self(1).transpose(), self(2);
+    if (llt != nullptr) {
+      Eigen::MatrixXd XB(parameters, 2 * inputs);
+      XB << by_X.col(c).reshaped(inputs, parameters).transpose(),
+          by_X.col(pairs + c).reshaped(inputs, parameters).transpose();
+      A -= XB.transpose() * llt->Solve(XB);
+    }
+    A.diagonal().array() += 1e-9 * A.trace() + 1e-12;
+    Eigen::VectorXd b(2 * inputs);
+    b << by_left.col(c), by_left.col(pairs + c);
+    scores.push_back(b.dot(Eigen::VectorXd(Llt(A).Solve(b))));
+  }
+  return scores;
+}
+
 }  // namespace
 
 double BestScannedValue(const Replay& replay, int block) {
@@ -44,8 +107,6 @@ double BestScannedValue(const Replay& replay, int block) {
   const auto& own = replay.Layout().Blocks()[block];
   const WhitenedRows rows = replay.Whiten();
   const SampleSet& set = replay.Set();
-  const auto N = rows.e.size();
-  const int inputs = scanned.inputs;
   const Eigen::MatrixXd by_inputs = ByInputs(replay, rows, scanned);
   // The effect's own parameters at an earlier value are to be found again.
   Eigen::VectorXd sd = replay.Layout().Tolerances();
@@ -59,26 +120,35 @@ double BestScannedValue(const Replay& replay, int block) {
 
   const double step = kStep * scanned.resolution;
   const int count = std::max(2, int((scanned.highest - scanned.lowest) / step));
-  std::vector<double> score(count, 0.0);
-  tbb::parallel_for(0, count, [&](int candidate) {
-    const double value = scanned.lowest + candidate * step;
-    Eigen::MatrixXd B(N, 2 * inputs);
-    for (std::size_t k = 0; k < set.samples.size(); ++k) {
-      const Instant now{set, k, set.samples[k].t_s};
-      const Eigen::Vector2d shapes = own.effect->ScanShapes(value, now);
-      const auto block_rows = by_inputs.middleRows(rows.first_row[k], rows.Rows(k));
-      auto moved = B.middleRows(rows.first_row[k], rows.Rows(k));
-      moved.leftCols(inputs) = shapes[0] * block_rows;
-      moved.rightCols(inputs) = shapes[1] * block_rows;
-    }
-    const Eigen::MatrixXd XB = X.transpose() * B;
-    Eigen::MatrixXd A = B.transpose() * B - XB.transpose() * llt.Solve(XB);
-    A.diagonal().array() += 1e-9 * A.trace() + 1e-12;
-    const Eigen::VectorXd b = B.transpose() * left;
-    score[candidate] = b.dot(Eigen::VectorXd(Llt(A).Solve(b)));
-  });
+  const SampleProducts products(rows, by_inputs, X, left, set.samples.size());
+  const auto scores = [&](const std::vector<int>& candidates, const Llt<Eigen::Dynamic>* others) {
+    std::vector<double> found(candidates.size(), 0.0);
+    const int wanted = static_cast<int>(candidates.size());
+    tbb::parallel_for(0, (wanted + kAtATime - 1) / kAtATime, [&](int chunk) {
+      const int from = chunk * kAtATime, pairs = std::min(kAtATime, wanted - from);
+      Eigen::MatrixXd shapes(static_cast<Eigen::Index>(set.samples.size()), 2 * pairs);
+      for (int c = 0; c < pairs; ++c) {
+        const double value = scanned.lowest + candidates[from + c] * step;
+        for (std::size_t k = 0; k < set.samples.size(); ++k) {
+          const Eigen::Vector2d both = own.effect->ScanShapes(value, {set, k, set.samples[k].t_s});
+          shapes(static_cast<Eigen::Index>(k), c) = both[0];
+          shapes(static_cast<Eigen::Index>(k), pairs + c) = both[1];
+        }
+      }
+      std::ranges::copy(Scores(products, shapes, others), found.begin() + from);
+    });
+    return found;
+  };
+  std::vector<int> candidates(count);
+  std::iota(candidates.begin(), candidates.end(), 0);
+  if (count > kMostExact) {
+    const std::vector<double> apart = scores(candidates, nullptr);
+    std::ranges::stable_sort(candidates, [&](int a, int b) { return apart[a] > apart[b]; });
+    candidates.resize(kMostExact);
+  }
+  const std::vector<double> score = scores(candidates, &llt);
   const auto best = std::max_element(score.begin(), score.end()) - score.begin();
-  return scanned.lowest + double(best) * step;
+  return scanned.lowest + candidates[best] * step;
 }
 
 void ScanAgain(Replay& replay, ParameterLayout& layout, int block) {

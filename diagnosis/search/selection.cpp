@@ -7,17 +7,19 @@
 #include "diagnosis/evidence/generic_basis.h"
 #include "diagnosis/samples/noise_level.h"
 #include "diagnosis/search/hypothesis_fit.h"
+#include "diagnosis/search/parameter_scan.h"
 
 namespace flextip::diagnosis {
 namespace {
 
-constexpr std::size_t kLeaders = 3;  // fitted from the base simulation
-constexpr double kClearly = 30.0;    // log odds, seen from there, that a leader is ahead by
-constexpr int kFirstRounds = 6;      // of the fit from the base simulation
-constexpr int kScans = 3;            // of them, with a scan of parameters such as a frequency
-constexpr int kFitRounds = 4;        // of a fit from where another hypothesis fits
+constexpr std::size_t kLeaders = 5;   // fitted from the base simulation
+constexpr double kClearly = 60.0;     // log odds, seen from there, that a leader is ahead by
+constexpr double kClearlyPart = 0.1;  // or that part of what it gains: the farther, the less linear
+constexpr int kFirstRounds = 6;       // of the fit from the base simulation
+constexpr int kScans = 3;  // of them, before the second and third of which frequencies are scanned
+constexpr int kFitRounds = 4;  // of a fit from where another hypothesis fits
 constexpr int kMostFits = 12;
-constexpr int kFreshFits = 3;          // from the base, where nothing explains the recording
+constexpr int kFreshFits = 6;          // from the base, where nothing explains the recording
 constexpr double kRival = 2.0;         // log odds below the best that are worth a fit
 constexpr double kNearRest = 3.0;      // distance, in standard deviations
 constexpr double kUnexplained = 10.0;  // log odds of something unknown
@@ -31,6 +33,7 @@ class Search {
     replay_.Evaluate(Eigen::VectorXd::Zero(layout_.Size()));
     LeaveOutFarSamples();
     replay_.FixNoiseModel();
+    for (const int block : layout_.ScannedBlocks()) ScanAgain(replay_, layout_, block);
     base_ = PlaceOf(replay_);
     basis_ = GenericBasis(replay_);
     LinearProblem base = ProblemHere(replay_, basis_, options_);
@@ -57,8 +60,13 @@ class Search {
  private:
   /// The base is far from any answer: a few that look best from there are followed.
   void FitLeadersFromBase(const Weighing& first) {
+    const double best = first.scored[0].log_posterior;
+    double gain = 0.0;
+    for (const auto& s : first.scored)
+      if (s.weighed.hypothesis == Hypothesis{}) gain = best - s.log_posterior;
+    const double clearly = std::max(kClearly, kClearlyPart * gain);
     for (std::size_t i = 0; i < kLeaders && i < first.scored.size(); ++i)
-      if (first.scored[i].log_posterior > first.scored[0].log_posterior - kClearly)
+      if (first.scored[i].log_posterior > best - clearly)
         FitFromBase(first.scored[i].weighed.hypothesis);
     if (Tried({}) == nullptr) FitFromBase({});
   }
@@ -140,11 +148,11 @@ class Search {
     }
   }
 
-  /// One of a pair may do, with the rest of the world elsewhere than where the pair fits. One that
-  /// was fitted and fell short of its promise may have stopped on its way to where the pair is.
+  /// One of a pair may do, or none, with the rest of the world elsewhere than where the best fits.
+  /// A part that was fitted and fell short of its promise may have stopped on its way to there.
   void FitPartsOfBest() {
-    const Hypothesis pair = best_.hypothesis;
-    if (pair.effects.size() < 2) return;
+    const Hypothesis whole = best_.hypothesis;
+    if (whole.effects.empty()) return;
     const Place place = best_.place;
     GoTo(replay_, layout_, place);
     const Weighing weighing =
@@ -152,9 +160,11 @@ class Search {
               KnownHypotheses(layout_.EffectCount(), false), options_, may_miss_);
     for (const auto& s : weighing.scored) {
       const Hypothesis& part = s.weighed.hypothesis;
-      if (part.effects.size() != 1 ||
-          std::count(pair.effects.begin(), pair.effects.end(), part.effects[0]) == 0)
-        continue;
+      const bool is_part = part.effects.size() + 1 == whole.effects.size() &&
+                           std::ranges::all_of(part.effects, [&](int effect) {
+                             return std::ranges::find(whole.effects, effect) != whole.effects.end();
+                           });
+      if (!is_part) continue;
       const HypothesisFit* tried = Tried(part);
       if (tried != nullptr && tried->log_posterior > s.log_posterior + weighing.log_none - kRival)
         continue;

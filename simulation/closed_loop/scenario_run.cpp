@@ -47,8 +47,14 @@ void UseModel(const diagnosis::ExtendedModel& model, Scenario& scenario) {
 
 Laparoscope LaparoscopeOf(const Scenario& scenario) {
   const LoopSetup& loop = scenario.loop;
-  return Laparoscope(TrueCamera(loop.base.cam0->calibration, loop.sensor_effects),
-                     TrueCollar(*loop.base.tags0, loop.sensor_effects), scenario.laparoscope);
+  const SensorEffects& effects = loop.sensor_effects;
+  const bool drifts = !effects.camera_drift_rad_s.isZero(0) || !effects.camera_drift_m_s.isZero(0);
+  if (drifts || effects.camera_clock_rate != 0.0) {
+    throw InputError(
+        "effects camera_drift and camera_clock are not rendered: expected a run without --render");
+  }
+  return Laparoscope(TrueCamera(loop.base.cam0->calibration, effects),
+                     TrueCollar(*loop.base.tags0, effects), scenario.laparoscope);
 }
 
 LoopResult RunController(const Scenario& scenario, ControllerKind kind,

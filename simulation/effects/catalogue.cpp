@@ -22,10 +22,21 @@ Eigen::Matrix3d MatrixByRows(Values values) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
 }
 
-constexpr double kZeros[9] = {}, kOnes[4] = {1.0, 1.0, 1.0, 1.0};
-constexpr double kBreath_hz[1] = {0.25}, kAxisX[3] = {1.0, 0.0, 0.0};
+constexpr double kZeros[12] = {}, kOnes[4] = {1.0, 1.0, 1.0, 1.0};
+constexpr double kBreath_hz[1] = {0.25}, kMotor_hz[1] = {5.0}, kAxisX[3] = {1.0, 0.0, 0.0};
+constexpr double kPulley_m[1] = {0.02};
 constexpr Values Zeros(std::size_t count) { return Values(kZeros).first(count); }
 constexpr Values Ones(std::size_t count) { return Values(kOnes).first(count); }
+
+/// The off-diagonal entries, row by row.
+Eigen::Matrix4d OffDiagonal(Values values) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
+  std::size_t next = 0;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      if (i != j) matrix(i, j) = values[next++];
+  return matrix;
+}
 
 constexpr EffectParameter kCatalogue[] = {
     {"stiffness", "scale", Ones(1),
@@ -80,6 +91,38 @@ constexpr EffectParameter kCatalogue[] = {
      [](Values v, InstrumentEffects& e) { e.sensors.strain_gain = Vector<4>(v); }},
     {"strain_drift", "rate_Nm_s", Zeros(4),
      [](Values v, InstrumentEffects& e) { e.sensors.strain_drift_Nm_s = Vector<4>(v); }},
+    {"gage_rotation", "angle_rad", Zeros(1),
+     [](Values v, InstrumentEffects& e) { e.sensors.gage_rotation_rad = v[0]; }},
+    {"strain_crosstalk", "matrix", Zeros(12),
+     [](Values v, InstrumentEffects& e) { e.sensors.strain_crosstalk = OffDiagonal(v); }},
+    {"wrist_scale", "scale", Ones(1),
+     [](Values v, InstrumentEffects& e) { e.plant.wrist_reading.scale = v[0]; }},
+    {"encoder_eccentricity", "amplitude_m", Zeros(1),
+     [](Values v, InstrumentEffects& e) { e.plant.wrist_reading.eccentricity_m = v[0]; }},
+    {"encoder_eccentricity", "wavelength_m", kPulley_m,
+     [](Values v, InstrumentEffects& e) { e.plant.wrist_reading.wavelength_m = v[0]; }},
+    {"encoder_eccentricity", "phase_rad", Zeros(1),
+     [](Values v, InstrumentEffects& e) { e.plant.wrist_reading.phase_rad = v[0]; }},
+    {"em_clock", "rate", Zeros(1),
+     [](Values v, InstrumentEffects& e) { e.sensors.em_clock_rate = v[0]; }},
+    {"camera_clock", "rate", Zeros(1),
+     [](Values v, InstrumentEffects& e) { e.sensors.camera_clock_rate = v[0]; }},
+    {"load_scale", "scale", Ones(1),
+     [](Values v, InstrumentEffects& e) { e.sensors.load_scale = v[0]; }},
+    {"load_rotation", "rotation_rad", Zeros(3),
+     [](Values v, InstrumentEffects& e) { e.sensors.load_rotation_rad = Vector<3>(v); }},
+    {"lens_radial", "k1", Zeros(1),
+     [](Values v, InstrumentEffects& e) { e.sensors.lens_k1 = v[0]; }},
+    {"camera_drift", "rotation_rate_rad_s", Zeros(3),
+     [](Values v, InstrumentEffects& e) { e.sensors.camera_drift_rad_s = Vector<3>(v); }},
+    {"camera_drift", "translation_rate_m_s", Zeros(3),
+     [](Values v, InstrumentEffects& e) { e.sensors.camera_drift_m_s = Vector<3>(v); }},
+    {"em_interference", "amplitude_m", Zeros(3),
+     [](Values v, InstrumentEffects& e) { e.sensors.em_interference.amplitude_m = Vector<3>(v); }},
+    {"em_interference", "frequency_hz", kMotor_hz,
+     [](Values v, InstrumentEffects& e) { e.sensors.em_interference.frequency_hz = v[0]; }},
+    {"em_interference", "phase_rad", Zeros(1),
+     [](Values v, InstrumentEffects& e) { e.sensors.em_interference.phase_rad = v[0]; }},
 };
 
 const EffectParameter* Find(std::string_view effect, std::string_view parameter) {

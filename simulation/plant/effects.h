@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
 #include <vector>
 
 namespace flextip::simulation {
@@ -38,6 +39,14 @@ struct ShaftTissue {
   double time_constant_s = 1.0;
 };
 
+/// How the encoders misread the wrist (wrist_reading.h).
+struct WristReading {
+  double scale = 1.0;  ///< of a displacement from `about_m`, as measured over the true one
+  std::optional<Eigen::Vector3d> about_m;  ///< empty: the first place that the plant is at
+  /// A pulley off its centre: along the shaft, a sine of the distance from wrist to port.
+  double eccentricity_m = 0.0, wavelength_m = 0.02, phase_rad = 0.0;
+};
+
 struct PlantEffects {
   double stiffness_scale = 1.0;
   double length_delta_m = 0.0;
@@ -54,6 +63,7 @@ struct PlantEffects {
   double wrist_compliance_m_N = 0.0;
   double tip_compliance_m_N = 0.0;  ///< the tip E moves by this times its force; the shaft does not
   double backlash_m = 0.0;          ///< play per axis between measured and true wrist
+  WristReading wrist_reading;
 
   // Not in the catalogue.
   double taper = 0.0;  ///< stiffness times 1 + taper (1 - 2 s / L)

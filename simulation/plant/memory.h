@@ -30,7 +30,8 @@ struct TissueElement {
 };
 
 struct PlantMemory {
-  std::optional<double> t_s;  ///< of the last equilibrium
+  std::optional<double> t_s;                  ///< of the last equilibrium
+  std::optional<Eigen::Vector3d> p_RW_first;  ///< as measured
   PlayOperator backlash;
   std::optional<FrictionMemory> friction;
   std::vector<TissueElement> tissue;  ///< empty before the first

@@ -10,6 +10,7 @@
 #include "simulation/plant/chain.h"
 #include "simulation/plant/friction.h"
 #include "simulation/plant/tissue.h"
+#include "simulation/plant/wrist_reading.h"
 
 namespace flextip::simulation {
 namespace {
@@ -163,7 +164,11 @@ PlantShape Plant::Solve(const Eigen::Vector3d& p_RW, double t_s) {
   Call call;
   call.memory = memory_;
   call.p_RW_measured = p_RW;
-  call.p_RW = call.memory.backlash.Update(p_RW, setup_.effects.backlash_m);
+  const WristReading& reading = setup_.effects.wrist_reading;
+  if (!call.memory.p_RW_first) call.memory.p_RW_first = p_RW;
+  const Eigen::Vector3d& about = reading.about_m ? *reading.about_m : *call.memory.p_RW_first;
+  call.p_RW = call.memory.backlash.Update(WristOfReading(p_RW, about, setup_.p_RP, reading),
+                                          setup_.effects.backlash_m);
   call.t_s = t_s;
   call.dt_s = memory_.t_s ? t_s - *memory_.t_s : 0.0;
   call.memory.t_s = t_s;

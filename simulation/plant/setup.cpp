@@ -21,7 +21,8 @@ bool AreFinite(const PlantEffects& e) {
       e.port_play_m + e.port_friction.coefficient + e.port_friction.grip_from_m +
       e.port_friction.grip_to_m + e.port_friction.grip_force_N + e.port_stiffness_Nm_rad +
       e.wrist_compliance_m_N + e.tip_compliance_m_N + e.backlash_m + e.taper +
-      e.second_contact.s_from_tip_m + e.second_contact.stiffness_N_m +
+      e.wrist_reading.scale + e.wrist_reading.eccentricity_m + e.wrist_reading.wavelength_m +
+      e.wrist_reading.phase_rad + e.second_contact.s_from_tip_m + e.second_contact.stiffness_N_m +
       e.shaft_tissue.stiffness_N_m2 + e.shaft_tissue.time_constant_s;
   return std::isfinite(scalars) && e.curvature_1_m.allFinite() && e.port_offset_m.allFinite() &&
          e.port_motion.amplitude_m.allFinite() && e.port_rest_axis.allFinite() &&
@@ -61,6 +62,13 @@ const char* WhatIsWrong(const PlantSetup& setup) {
   if (!(units.length_m > 0) || !(units.stiffness_Nm2 > 0) ||
       !std::isfinite(units.length_m * units.stiffness_Nm2)) {
     return "length or bending stiffness is not positive";
+  }
+  const WristReading& reading = effects.wrist_reading;
+  if (!(reading.scale > 0) || !(reading.wavelength_m > 0)) {
+    return "the scale of the wrist's reading or its pulley's wavelength is not positive";
+  }
+  if (!(2.0 * M_PI * std::abs(reading.eccentricity_m) < reading.wavelength_m)) {
+    return "the pulley's eccentricity is not small against its wavelength";
   }
   if (!(setup.torsion > 0)) return "the torsional stiffness is not positive";
   if (AnyNegative(effects)) return "a compliance, stiffness, play or friction is negative";

@@ -17,9 +17,16 @@ std::array<Eigen::Vector3d, 8> CollarPoints() {
   return points;
 }
 
-/// The pose whose projections with focal length 1 are nearest to those of `T_CE` with `scale`, by
-/// Gauss-Newton from the first-order answer.
-Pose SolveBack(const Pose& T_CE, double scale) {
+/// The image of a direction by a lens of focal length `scale` that distorts by `k1` beyond its
+/// calibration.
+Eigen::Vector2d Image(const Eigen::Vector3d& seen, double scale, double k1) {
+  const Eigen::Vector2d at = seen.head<2>() / seen.z();
+  return scale * (1.0 + k1 * at.squaredNorm()) * at;
+}
+
+/// The pose whose projections with focal length 1 are nearest to those of `T_CE` by the true lens,
+/// by Gauss-Newton from the first-order answer.
+Pose SolveBack(const Pose& T_CE, double scale, double k1) {
   const auto points = CollarPoints();
   Pose pose = T_CE;
   pose.p.z() /= scale;
@@ -30,7 +37,7 @@ Pose SolveBack(const Pose& T_CE, double scale) {
       const Eigen::Vector3d seen = T_CE * point;
       const Eigen::Vector3d turned = pose.R * point, x = turned + pose.p;
       const Eigen::Vector2d residual =
-          scale * seen.head<2>() / seen.z() - Eigen::Vector2d(x.head<2>() / x.z());
+          Image(seen, scale, k1) - Eigen::Vector2d(x.head<2>() / x.z());
       Eigen::Matrix<double, 2, 3> by_x;
       by_x << 1, 0, -x.x() / x.z(), 0, 1, -x.y() / x.z();
       by_x /= x.z();
@@ -49,13 +56,14 @@ Pose SolveBack(const Pose& T_CE, double scale) {
 
 }  // namespace
 
-Pose SeenTip(const Pose& T_RE, const Pose& T_RC, const SensorEffects& effects) {
+Pose SeenTip(const Pose& T_RE, const Pose& T_RC, const SensorEffects& effects, double t_s) {
   const Pose tags{T_RE.R, T_RE * effects.tag_offset_m};
-  const Pose true_camera{ExpRotation(effects.hand_eye_rotation_rad) * T_RC.R,
-                         T_RC.p + effects.hand_eye_translation_m};
+  const Pose true_camera{
+      ExpRotation(effects.hand_eye_rotation_rad + t_s * effects.camera_drift_rad_s) * T_RC.R,
+      T_RC.p + effects.hand_eye_translation_m + t_s * effects.camera_drift_m_s};
   const Pose T_CE = true_camera.Inverse() * tags;
-  if (effects.focal_scale == 1.0) return T_RC * T_CE;
-  return T_RC * SolveBack(T_CE, effects.focal_scale);
+  if (effects.focal_scale == 1.0 && effects.lens_k1 == 0.0) return T_RC * T_CE;
+  return T_RC * SolveBack(T_CE, effects.focal_scale, effects.lens_k1);
 }
 
 CameraCalibration TrueCamera(const CameraCalibration& registered, const SensorEffects& effects) {
@@ -64,6 +72,7 @@ CameraCalibration TrueCamera(const CameraCalibration& registered, const SensorEf
   camera.T_RC.p += effects.hand_eye_translation_m;
   camera.fu_px *= effects.focal_scale;
   camera.fv_px *= effects.focal_scale;
+  if (!camera.distortion_coefficients.empty()) camera.distortion_coefficients[0] += effects.lens_k1;
   return camera;
 }
 

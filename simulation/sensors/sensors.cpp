@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/rotation.h"
 #include "simulation/sensors/camera_view.h"
@@ -24,6 +25,19 @@ Stream& Get(std::optional<Stream>& in_recording, const Stream& setup) {
 }
 
 TimeNs Nanoseconds(double t_s) { return std::llround(t_s * 1e9); }
+
+double SinceStart_s(TimeNs t_ns) { return 1e-9 * static_cast<double>(t_ns - kSimulationStart_ns); }
+
+/// The stamp that a clock with a rate of its own gives to `t_ns`.
+TimeNs StampOf(TimeNs t_ns, double rate) {
+  return t_ns - Nanoseconds(SinceStart_s(t_ns) * rate / (1.0 + rate));
+}
+
+Eigen::Vector3d Swing(const Interference& motor, TimeNs t_ns) {
+  if (motor.amplitude_m.isZero(0.0)) return Eigen::Vector3d::Zero();
+  const double turns = motor.frequency_hz * SinceStart_s(t_ns);
+  return std::sin(2.0 * std::numbers::pi * turns + motor.phase_rad) * motor.amplitude_m;
+}
 
 }  // namespace
 
@@ -103,7 +117,9 @@ void Sensors::Sample(const PlantShape& shape, TimeNs t_ns, Recording& recording)
   }
   if (setup_.load && load_.Due(setup_.load->rate_hz, t_ns)) {
     LoadStream& stream = Get(recording.load0, *setup_.load);
-    stream.f_tip_N.push_back({t_ns, shape.f_tip_N + load_.noise.Vector(stream.force_noise_N)});
+    const Eigen::Vector3d read_N =
+        effects_.load_scale * (ExpRotation(effects_.load_rotation_rad) * shape.f_tip_N);
+    stream.f_tip_N.push_back({t_ns, read_N + load_.noise.Vector(stream.force_noise_N)});
   }
   if (setup_.tip && tip_.Due(setup_.tip->rate_hz, t_ns)) {
     SampleTip(tip_history_.At(t_ns - Nanoseconds(effects_.camera_latency_s)), t_ns, recording);
@@ -145,23 +161,28 @@ void Sensors::SampleEm(const Pose& T_RS, TimeNs t_ns, const EmStream& setup, Cha
                        std::optional<EmStream>& stream) {
   EmSample sample;
   sample.p_RS = T_RS.p + em_field_.Bias(T_RS.p) + effects_.em_offset_m +
+                Swing(effects_.em_interference, t_ns) +
                 channel.noise.Vector(setup.position_noise_m);
   const Eigen::Vector3d turn = channel.noise.Vector(setup.orientation_noise_rad, 1);
   sample.q_RS = Pose{ExpRotation(turn) * T_RS.R, T_RS.p}.Quaternion();
-  Get(stream, setup).samples.push_back({t_ns, sample});
+  Get(stream, setup).samples.push_back({StampOf(t_ns, effects_.em_clock_rate), sample});
 }
 
 void Sensors::SampleStrain(const PlantShape& shape, TimeNs t_ns, Recording& recording) {
   StrainStream& stream = Get(recording.strain0, *setup_.strain);
-  Eigen::Vector4d moments;
+  Eigen::Vector4d bends, noise;
+  const Eigen::Matrix3d gages =
+      ExpRotation(effects_.gage_rotation_rad * Eigen::Vector3d::UnitX()).transpose();
   for (int i = 0; i < 2; ++i) {
     const double s = stream.station_from_wrist_m[i];
     const Eigen::Vector3d local = shape.Frame(s).R.transpose() * shape.Moment(s);
-    const Eigen::Vector3d noise = strain_.noise.Vector(stream.moment_noise_Nm, i);
-    moments.segment<2>(2 * i) =
-        effects_.strain_gain.segment<2>(2 * i).cwiseProduct(local.tail<2>()) + noise.head<2>();
+    bends.segment<2>(2 * i) = (gages * local).tail<2>();
+    noise.segment<2>(2 * i) = strain_.noise.Vector(stream.moment_noise_Nm, i).head<2>();
   }
-  moments += 1e-9 * static_cast<double>(t_ns - kSimulationStart_ns) * effects_.strain_drift_Nm_s;
+  Eigen::Vector4d moments = effects_.strain_gain.cwiseProduct(bends);
+  moments += effects_.strain_crosstalk * bends;
+  moments += noise;
+  moments += SinceStart_s(t_ns) * effects_.strain_drift_Nm_s;
   const double limit = effects_.strain_limit_Nm;
   moments = moments.cwiseMax(-limit).cwiseMin(limit);
   stream.moments_Nm.push_back({t_ns, moments});
@@ -179,7 +200,7 @@ void Sensors::SampleTip(const Pose& T_RE, TimeNs t_ns, Recording& recording) {
   const Eigen::Matrix3d square_root =
       setup.across_noise_m * Eigen::Matrix3d::Identity() +
       (setup.depth_noise_m - setup.across_noise_m) * depth * depth.transpose();
-  const Pose seen = SeenTip(T_RE, setup.T_RC, effects_);
+  const Pose seen = SeenTip(T_RE, setup.T_RC, effects_, SinceStart_s(t_ns));
   TipObservation tip;
   tip.status = TipStatus::kOk;
   // A recording keeps one half of it: the loop must have the same numbers.
@@ -187,7 +208,7 @@ void Sensors::SampleTip(const Pose& T_RE, TimeNs t_ns, Recording& recording) {
   tip.covariance_m2 = squared.selfadjointView<Eigen::Upper>();
   tip.p_RE = seen.p + square_root * tip_.noise.Vector(1.0);
   tip.d_RE = ExpRotation(tip_.noise.Vector(setup.direction_noise_rad, 1)) * seen.R.col(0);
-  recording.vision0->tips.push_back({t_ns, tip});
+  recording.vision0->tips.push_back({StampOf(t_ns, effects_.camera_clock_rate), tip});
 }
 
 }  // namespace flextip::simulation

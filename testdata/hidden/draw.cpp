@@ -65,6 +65,22 @@ constexpr Row kRows[] = {
     {"strain_drift", "rate_Nm_s", 0.00002, -0.002, 0.002, Form::kGages},
 };
 
+/// Drawn after all of the above, which stays as it was without them.
+constexpr Row kLaterRows[] = {
+    {"gage_rotation", "angle_rad", 0.005, -0.3, 0.3, Form::kSigned},
+    {"strain_crosstalk", "matrix", 0.01, 0.0, 0.3, Form::kEntries},
+    {"wrist_scale", "scale", 0.001, -0.04, 0.04, Form::kSigned},
+    {"encoder_eccentricity", "amplitude_m", 0.00005, 0.0, 0.0015, Form::kPositive},
+    {"em_clock", "rate", 0.00001, -0.0005, 0.0005, Form::kSigned},
+    {"camera_clock", "rate", 0.00001, -0.0005, 0.0005, Form::kSigned},
+    {"load_scale", "scale", 0.01, -0.3, 0.3, Form::kSigned},
+    {"load_rotation", "rotation_rad", 0.005, 0.0, 0.25, Form::kAny},
+    {"lens_radial", "k1", 0.005, -0.25, 0.25, Form::kSigned},
+    {"camera_drift", "rotation_rate_rad_s", 0.00001, 0.0, 0.0005, Form::kAny},
+    {"camera_drift", "translation_rate_m_s", 0.000002, 0.0, 0.0001, Form::kAny},
+    {"em_interference", "amplitude_m", 0.00005, 0.0, 0.003, Form::kAny},
+};
+
 double Uniform(Rng& rng, double from, double to) {
   return std::uniform_real_distribution<double>(from, to)(rng);
 }
@@ -152,6 +168,14 @@ void DrawOthers(const EffectDraw& draw, Rng& rng, HiddenLabel& label) {
   label.parameters["port_moment"]["rest_axis"] = Values(axis);
 }
 
+void DrawLaterOthers(Rng& rng, HiddenLabel& label) {
+  label.parameters["encoder_eccentricity"]["wavelength_m"] = {Uniform(rng, 0.015, 0.06)};
+  label.parameters["encoder_eccentricity"]["phase_rad"] = {
+      Uniform(rng, 0.0, 2.0 * std::numbers::pi)};
+  label.parameters["em_interference"]["frequency_hz"] = {Uniform(rng, 1.5, 12.0)};
+  label.parameters["em_interference"]["phase_rad"] = {Uniform(rng, 0.0, 2.0 * std::numbers::pi)};
+}
+
 bool Has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -168,6 +192,16 @@ void CheckNames(const std::vector<std::string>& names) {
 
 }  // namespace
 
+std::string SensorOf(const std::string& effect) {
+  if (effect.starts_with("em_")) return "em0";
+  if (effect.starts_with("strain_") || effect == "gage_rotation") return "strain0";
+  if (effect.starts_with("load_")) return "load0";
+  const bool camera = Has({"camera_latency", "camera_clock", "camera_drift", "hand_eye",
+                           "focal_length", "lens_radial", "tag_offset"},
+                          effect);
+  return camera ? "vision0" : "";
+}
+
 const std::vector<std::string>& OtherForms() {
   static const std::vector<std::string> names = {"port_grip", "taper", "shaft_tissue",
                                                  "second_contact", "strain_clip"};
@@ -178,7 +212,7 @@ HiddenLabel DrawEffects(const EffectDraw& draw, Rng& rng) {
   CheckNames(draw.present);
   HiddenLabel label;
   label.present = draw.present;
-  for (const Row& row : kRows) {
+  const auto draw_row = [&](const Row& row) {
     // A seed of its own: the others do not change with what is present, nor with draws thrown away.
     Rng own(rng());
     const bool present = Has(draw.present, row.effect);
@@ -192,8 +226,11 @@ HiddenLabel DrawEffects(const EffectDraw& draw, Rng& rng) {
     }
     for (int i = 0; i < row.Count(); ++i) deviation[i] += row.Neutral()[i];
     label.parameters[row.effect][row.parameter] = Values(deviation);
-  }
+  };
+  for (const Row& row : kRows) draw_row(row);
   DrawOthers(draw, rng, label);
+  for (const Row& row : kLaterRows) draw_row(row);
+  DrawLaterOthers(rng, label);
   return label;
 }
 

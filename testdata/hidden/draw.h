@@ -24,6 +24,9 @@ struct HiddenLabel {
 /// they need of the scene is set with it (hidden_recording.h).
 const std::vector<std::string>& OtherForms();
 
+/// Returns the sensor without which an effect is nowhere to be seen; empty: there is no such one.
+std::string SensorOf(const std::string& effect);
+
 struct EffectDraw {
   std::vector<std::string> present = {};  ///< throws InputError for a name that is neither
   EffectSize size = EffectSize::kPlain;

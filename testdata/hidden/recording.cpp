@@ -53,11 +53,8 @@ void CheckOptions(const HiddenOptions& options) {
 
 /// Whether the sensor an effect acts on alone is there.
 bool CanShow(const std::string& effect, const HiddenOptions& options) {
-  const auto left_out = [&](const char* sensor) { return Has(options.left_out, sensor); };
-  if (effect.starts_with("em_")) return !left_out("em0");
-  if (effect.starts_with("strain_")) return !left_out("strain0");
-  const bool camera = Has({"camera_latency", "hand_eye", "focal_length", "tag_offset"}, effect);
-  return !camera || !left_out("vision0");
+  const std::string sensor = SensorOf(effect);
+  return sensor == "load0" ? options.with_load : !Has(options.left_out, sensor);
 }
 
 std::vector<std::string> PresentEffects(const HiddenOptions& options, Rng& rng) {
@@ -198,6 +195,7 @@ std::optional<HiddenRecording> Attempt(const HiddenOptions& options, std::uint64
   draw.mean_axis = scene.motion_setup.axis;
   hidden.label = DrawEffects(draw, effect_rng);
   simulation::PlantEffects effects = simulation::EffectsOf(hidden.label.parameters).plant;
+  effects.wrist_reading.about_m = scene.Motion().At(0.0);  // where the recording begins
   effects.port_motion.second_harmonic = Uniform(form_rng, 0.1, 0.2);
   for (const std::string& form : draw.present) AddShaftForm(form, scene, form_rng, effects);
 

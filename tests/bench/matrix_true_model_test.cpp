@@ -46,11 +46,12 @@ TEST(TrueModel, KnowsWhatTheLabelNamesAndWhatNot) {
   EXPECT_EQ(unnamed_of("em_distortion"), 3);  // where it is zero
   EXPECT_EQ(unnamed_of("backlash"), 3);       // where in the play it began
   EXPECT_EQ(unnamed_of("focal_length"), 1);   // the turn beside it
+  EXPECT_EQ(unnamed_of("lens_radial"), 2);    // depth and turn beside it
   EXPECT_EQ(unnamed_of("port_moment"), 0);
   EXPECT_EQ(unnamed_of("stiffness"), 0);
   int nuisance = 0;
   for (const auto& block : truth.layout.Blocks()) nuisance += block.nuisance ? block.size : 0;
-  EXPECT_EQ(int(truth.parameters.unnamed.size()), 6 + 3 + 3 + 1 + nuisance);
+  EXPECT_EQ(int(truth.parameters.unnamed.size()), 6 + 3 + 3 + 1 + 2 + nuisance);
   EXPECT_GT(nuisance, 0);
   ASSERT_EQ(truth.present.size(), 1u);
   EXPECT_EQ(truth.layout.Blocks()[truth.present[0]].effect->Name(), "port_motion");

@@ -153,7 +153,7 @@ INSTANTIATE_TEST_SUITE_P(
                    {"camera_latency", "precurvature"}},
         HiddenCase{"healthy_with_load", {}, kPlain, true, 109, {"none"}},
         HiddenCase{"healthy_without_load", {}, kPlain, false, 110, {"none"}},
-        HiddenCase{"taper", {"taper"}, kPlain, true, 111, {"unknown"}},
+        HiddenCase{"taper", {"taper"}, kPlain, true, 603, {"unknown"}},
         HiddenCase{"strain_clip", {"strain_clip"}, kPlain, true, 112, {"unknown"}}),
     [](const auto& test) { return std::string(test.param.name); });
 

@@ -133,7 +133,8 @@ TEST(ExtendedEffect, ReportedParametersHoldTheFittedOnes) {
     const auto effect = diagnosis::MakeEffect(name);
     Eigen::VectorXd theta(effect->Parameters(diagnosis::SampleSet{}).size());
     for (double& value : theta) value = (x += 0.003);
-    if (name == "port_motion") theta.segment<3>(3) = 0.7 * theta.head<3>();  // one phase for all
+    if (name == "port_motion" || name == "em_interference")
+      theta.segment<3>(3) = 0.7 * theta.head<3>();  // one phase for all
     const Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(theta.size(), theta.size());
     std::vector<std::vector<double>> values;
     for (const auto& parameter : effect->Report(theta, covariance)) {
@@ -202,6 +203,19 @@ TEST(WithoutLatency, MovesStampsBeyondTolerance) {
   EXPECT_EQ(moved.wrist0->samples[0].t_ns, 100);
   EXPECT_EQ(moved.em0->samples[0].t_ns, 1'000'000'000);
   EXPECT_EQ(moved.vision0->tips[0].t_ns, 980'000'000);
+}
+
+TEST(WithoutLatency, TakesAClocksOwnRateOff) {
+  constexpr TimeNs kStart_ns = 5'000'000'000;
+  Recording recording;
+  recording.em0.emplace().samples = {{kStart_ns, {}}, {kStart_ns + 20'000'000'000, {}}};
+  diagnosis::ExtendedModel model;
+  model.start_ns = kStart_ns;
+  model.effects = {{"em_clock", {{"rate", {0.0002}, {}}}}};
+  const Recording moved = diagnosis::WithoutLatency(recording, model);
+  // What is stamped t was taken at t + rate (t - t0).
+  EXPECT_EQ(moved.em0->samples[0].t_ns, kStart_ns);
+  EXPECT_EQ(moved.em0->samples[1].t_ns, kStart_ns + 20'004'000'000);
 }
 
 // Sensors that move along x at 0.1 m/s and turn about z at 0.5 rad/s, stamped 2 +- 1 ms late.

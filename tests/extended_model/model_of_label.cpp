@@ -23,8 +23,11 @@ diagnosis::ExtendedModel ModelOfLabel(const hidden::HiddenRecording& hidden) {
     diagnosis::EffectFit fit{name, diagnosis::ParametersOf(*diagnosis::MakeEffect(name))};
     const simulation::EffectParameters& label = hidden.label.parameters.at(name);
     for (diagnosis::ReportedParameter& parameter : fit.parameters) {
-      // A pose found from tags keeps its attitude to the line of sight, which the scale moves.
-      if (parameter.name == "turn") parameter.value[0] = std::log(label.at("scale").at(0));
+      // A pose found from tags keeps its attitude to the line of sight, which scale or lens moves.
+      if (name == "focal_length" && parameter.name == "turn")
+        parameter.value[0] = std::log(label.at("scale").at(0));
+      if (name == "lens_radial" && parameter.name != "k1")
+        parameter.value[0] = (parameter.name == "depth" ? 2.0 : 1.0) * label.at("k1").at(0);
       if (!label.contains(parameter.name)) continue;  // none in the simulation
       parameter.value = label.at(parameter.name);
       // The label's mass is beyond the nominal one.
