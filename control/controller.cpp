@@ -108,8 +108,9 @@ Eigen::Vector3d LeadByPlay(const Eigen::Vector3d& step, const ShaftModel& model)
   Eigen::Vector3d lead = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
     if (std::abs(step[i]) <= kSmall * play) continue;
-    // wrist_shift is true less measured: at the end of the play it is half of it behind.
-    const double offset = model.wrist_shift_m[i] + std::copysign(0.5 * play, step[i]);
+    // True less measured by the play: at its end it is half of it behind.
+    const double by_play_m = model.wrist_shift_m[i] - model.wrist_misread_m[i];
+    const double offset = by_play_m + std::copysign(0.5 * play, step[i]);
     lead[i] = kCrossed * offset;
   }
   return step + lead;

@@ -52,6 +52,7 @@ void VisitState(ShaftChange& change, StateText& state) {
   state(change.length_delta_m);
   state(change.weight_N_m);
   state(change.wrist_shift_m);
+  state(change.wrist_misread_m);
   state(change.port_shift_m);
   state(change.effects);
   state(change.tip_compliance_m_N);
@@ -73,6 +74,7 @@ void VisitState(ShaftModel& model, StateText& state) {
   state(model.effects);
   state(model.tip_compliance_m_N);
   state(model.wrist_shift_m);
+  state(model.wrist_misread_m);
   state(model.wrist_play_m);
   BeamFit& beam = model.beam;
   state(beam.status);

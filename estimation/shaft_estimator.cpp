@@ -66,6 +66,7 @@ ShaftModel StraightModel(const EstimatorOptions& options, const ShaftChange& cha
   model.effects = change.effects;
   model.tip_compliance_m_N = change.tip_compliance_m_N;
   model.wrist_shift_m = change.wrist_shift_m;
+  model.wrist_misread_m = change.wrist_misread_m;
   model.wrist_play_m = change.wrist_play_m;
   model.beam.status = BeamStatus::kStraight;
   return model;

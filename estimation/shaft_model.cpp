@@ -60,7 +60,8 @@ bool IsPlausible(const ShaftModel& model) {
          IsSmall(model.tissue_stiffness_N_m, kStiffestTissue_N_m) &&
          IsPlausible(model.effects, L, unit_N) &&
          IsWithin(model.tip_compliance_m_N, -kMostCompliance_m_N, kMostCompliance_m_N) &&
-         IsSmall(model.wrist_shift_m, L) && IsWithin(model.wrist_play_m, 0.0, L) &&
+         IsSmall(model.wrist_shift_m, L) && IsSmall(model.wrist_misread_m, L) &&
+         IsWithin(model.wrist_play_m, 0.0, L) &&
          (!model.beam.IsUsable() || IsPlausible(model.beam, L));
 }
 

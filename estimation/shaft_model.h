@@ -20,7 +20,8 @@ struct ShaftModel {
   // Of a found model (ShaftChange); for the rod.
   RodEffects effects;
   double tip_compliance_m_N = 0.0;
-  Eigen::Vector3d wrist_shift_m = Eigen::Vector3d::Zero();  ///< true less measured wrist
+  Eigen::Vector3d wrist_shift_m = Eigen::Vector3d::Zero();    ///< true less measured wrist
+  Eigen::Vector3d wrist_misread_m = Eigen::Vector3d::Zero();  ///< of that, what is no play
   double wrist_play_m = 0.0;
   BeamFit beam;  ///< the thesis's parameters (flexion)
 };

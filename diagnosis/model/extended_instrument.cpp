@@ -120,7 +120,10 @@ void ExtendedInstrument::Apply(Acting& acting, double s_port_free_m, double ds_p
   const Instant now{set_, 0, set_.samples[0].t_s, s_port_free_m, ds_port_dfriction_m};
   columns_.clear();
   InputChange change(acting.theta.data(), 0, inputs_, columns_);
+  const Eigen::Vector3d before_m = inputs_.segment<3>(kWrist);
   acting.effect->Apply(acting.theta.data(), now, acting.memory, change);
+  if (acting.effect->WristPlay(acting.theta) == 0.0)
+    shaft_.wrist_misread_m += inputs_.segment<3>(kWrist) - before_m;
   if (acting.spread.size() == 0) return;
   for (const InputChange::Column& column : columns_)
     spread_.row(column.input) += column.value * acting.spread.row(column.parameter);
@@ -143,6 +146,7 @@ void ExtendedInstrument::Advance(TimeNs t_ns, const Measurements& measured,
   if (!measured.p_RW.allFinite()) return;
   SetSample(t_ns, measured, f_tip_N);
   inputs_.setZero();
+  shaft_.wrist_misread_m.setZero();
   spread_.setZero();
   for (Acting& acting : acting_)
     if (!acting.effect->NeedsPortPlace()) Apply(acting, 0.0, 0.0);

@@ -112,11 +112,16 @@ TEST(Controller, JacobianOfAShaftWithEffectsByDifferences) {
 /// by the play is there after two steps, the one that does not know of it is still crossing it.
 TEST(Controller, LeadsByThePlayOfTheWrist) {
   constexpr double kPlay_m = 0.001;
-  for (const bool knows : {true, false}) {
+  // The encoders may misread the wrist besides: that is no play to cross.
+  const Eigen::Vector3d misread_m(0.0012, -0.0007, 0.0009), none_m(0.0, 0.0, 0.0);
+  for (const auto& [knows, off_m] :
+       {std::pair(true, none_m), std::pair(true, misread_m), std::pair(false, none_m)}) {
     ControlInput input = Chapter4Input();
+    input.model.wrist_misread_m = off_m;
     const Eigen::Vector3d start = input.p_RE_measured;
     TipController controller(Options(ControllerKind::kRodTrack));
     Eigen::Vector3d wrist = input.p_RW;  // the true one
+    input.p_RW -= off_m;
     double worst_m = 0.0;
     for (int i = 0; i < 40; ++i) {
       input.p_RE_desired = start + Eigen::Vector3d(0.0, 0.0, (i / 10) % 2 == 0 ? 0.0005 : 0.0);
@@ -125,7 +130,8 @@ TEST(Controller, LeadsByThePlayOfTheWrist) {
           knows ? Eigen::Vector3d(wrist - input.p_RW) : Eigen::Vector3d(0, 0, 0);
       input.p_RW = controller.Step(input).p_RW_command;
       const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * kPlay_m);
-      wrist = wrist.cwiseMax(input.p_RW - half).cwiseMin(input.p_RW + half);
+      const Eigen::Vector3d driver = input.p_RW + off_m;
+      wrist = wrist.cwiseMax(driver - half).cwiseMin(driver + half);
       input.p_RE_measured =
           RodSolver()
               .Solve({0.6, 0.304, wrist, input.model.p_RP, input.model.f_tip_N, {0, 0, 0}})

@@ -70,8 +70,8 @@ void AddNumbersOf(ShaftModel& m, std::vector<double*>& numbers) {
     numbers.push_back(number);
   }
   for (Eigen::Vector3d* v :
-       {&m.p_RP, &m.weight_N_m, &m.f_tip_N, &m.wrist_shift_m, &m.effects.y_wrist,
-        &m.effects.port_couple_Nm, &m.effects.q_inside_N_m}) {
+       {&m.p_RP, &m.weight_N_m, &m.f_tip_N, &m.wrist_shift_m, &m.wrist_misread_m,
+        &m.effects.y_wrist, &m.effects.port_couple_Nm, &m.effects.q_inside_N_m}) {
     AddNumbers(*v, numbers);
   }
   AddNumbers(m.effects.curvature_1_m, numbers);

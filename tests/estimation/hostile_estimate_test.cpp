@@ -59,8 +59,9 @@ void AddNumbersOf(ShaftChange& c, std::vector<double*>& numbers) {
                     &c.effects.port_friction}) {
     numbers.push_back(n);
   }
-  for (Eigen::Vector3d* v : {&c.weight_N_m, &c.wrist_shift_m, &c.port_shift_m, &c.effects.y_wrist,
-                             &c.effects.port_couple_Nm, &c.effects.q_inside_N_m}) {
+  for (Eigen::Vector3d* v :
+       {&c.weight_N_m, &c.wrist_shift_m, &c.wrist_misread_m, &c.port_shift_m, &c.effects.y_wrist,
+        &c.effects.port_couple_Nm, &c.effects.q_inside_N_m}) {
     AddNumbers(*v, numbers);
   }
   AddNumbers(c.effects.curvature_1_m, numbers);

@@ -54,7 +54,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"port_offset", kCalculate, 0.6}, Case{"port_moment", kCalculate, 0.35},
                     Case{"shaft_load", kCalculate, 0.6}, Case{"backlash", kTrack, 0.6},
                     Case{"em_distortion", kTrack, 0.7}, Case{"hand_eye", kTrack, 0.2},
-                    Case{"focal_length", kTrack, 0.4}, Case{"tag_offset", kTrack, 0.3}),
+                    Case{"focal_length", kTrack, 0.4}, Case{"tag_offset", kTrack, 0.3},
+
+                    Case{"encoder_eccentricity", kCalculate, 0.95},
+                    Case{"em_interference", kTrack, 0.95}),
     [](const auto& tested) { return std::string(tested.param.effect); });
 
 /// Sensors without noise leave the first fit, which has no past, a narrow valley to go along.
