@@ -48,8 +48,7 @@ bool KnowsEffects(const std::string& path) {
 
 /// Returns the names of the effects, as their files give them.
 std::set<std::string> EffectNames(const SourceTree& tree) {
-  static const std::regex name(
-      R"re((?:Name\(\) const override \{ return |\w+Effect\()"(\w+)")re");
+  static const std::regex name(R"re((?:Name\(\) const override \{ return |\w+Effect\()"(\w+)")re");
   std::set<std::string> names;
   for (const auto& [path, text] : tree) {
     if (!path.starts_with("diagnosis/effects/")) continue;
