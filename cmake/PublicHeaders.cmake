@@ -77,6 +77,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   diagnosis/model/effect.h
   diagnosis/model/extended_instrument.h
   diagnosis/model/extended_model.h
+  diagnosis/planning/plan.h
   diagnosis/model/latency.h
   diagnosis/replay/sample_input.h
   diagnosis/samples/sample_set.h

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "diagnosis/evidence/probabilities.h"
 #include "diagnosis/heldout.h"
+#include "diagnosis/planning/next_motion.h"
 #include "diagnosis/search/ambiguity.h"
 #include "diagnosis/signature.h"
 
@@ -142,9 +143,7 @@ void DescribeParameters(const Work& work, const Selection& selection,
   }
 }
 
-void DescribeAmbiguity(const Work& work, const Selection& selection,
-                       const WeighedHypothesis& weighed, DiagnosisResult& result) {
-  const Ambiguity ambiguity = FindAmbiguity(work.extended, work.layout, selection, weighed);
+void DescribeAmbiguity(const Work& work, const Ambiguity& ambiguity, DiagnosisResult& result) {
   for (const auto& group : ambiguity.groups) {
     std::vector<std::string> names;
     names.reserve(group.size());
@@ -215,6 +214,7 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
   RequireKnown(options);
   DiagnosisResult result;
   Work work(recording, name, options);
+  if (options.plan) RequireUsable(*options.plan, work.samples, name);
   ReplayBase(work, name);
   result.signatures = FindSignatures(work.base);
   const SelectionOptions selection_options;
@@ -233,7 +233,14 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
   if (!result.IsAdequate()) result.warnings.push_back(MemoryWarning(selection.memory));
   const WeighedHypothesis& known = selection.BestKnown();
   DescribeParameters(work, selection, known, result);
-  if (NamesEffects(result.verdict)) DescribeAmbiguity(work, selection, known, result);
+  Ambiguity ambiguity;
+  if (NamesEffects(result.verdict))
+    ambiguity = FindAmbiguity(work.extended, work.layout, selection, known);
+  DescribeAmbiguity(work, ambiguity, result);
+  if (options.plan) {
+    result.plan =
+        PlanNextMotion(work.extended, work.layout, selection, ambiguity.groups, *options.plan);
+  }
   work.base.TakeSettings(work.extended);
   if (options.measure_gain) {
     const HeldOut heldout = MeasureHeldOut(work.base, work.extended, selection, known);

@@ -5,19 +5,22 @@
 #include <Eigen/Dense>
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "diagnosis/evidence/residual_memory.h"
 #include "diagnosis/model/effect.h"
+#include "diagnosis/planning/plan.h"
 #include "recording/recording.h"
 
 namespace flextip::diagnosis {
 
 struct DiagnoseOptions {
-  std::vector<std::string> without;  ///< effects left out of the catalogue
-  EffectMakers own_effects = {};     ///< of the user's own, judged like those of the catalogue
-  bool measure_gain = true;          ///< fits on parts of the recording, judged on the rest
+  std::vector<std::string> without;     ///< effects left out of the catalogue
+  EffectMakers own_effects = {};        ///< of the user's own, judged like those of the catalogue
+  bool measure_gain = true;             ///< fits on parts of the recording, judged on the rest
+  std::optional<MotionLimits> plan = {};  ///< the next motion is planned within these
 };
 
 /// Effects together, in alphabetical order; {"none"} and {"unknown"} are answers too.
@@ -85,6 +88,7 @@ struct DiagnosisResult {
   std::vector<std::vector<std::string>> indistinguishable;  ///< one group for each verdict
   std::string separating_motion;  ///< the motion that would tell a group apart; empty: none needed
   double separating_motion_score = 0.0;
+  std::optional<NextMotion> plan;           ///< where one was asked for
   std::vector<EffectFit> parameters;        ///< of the verdict's effects
   std::vector<EffectFit> within_tolerance;  ///< of all others, as far as the data moved them
   Eigen::MatrixXd covariance;  ///< of the verdict's parameters as listed, all numbers in order
@@ -110,8 +114,8 @@ struct DiagnosisResult {
   bool IsAdequate() const;
 };
 
-/// Throws InputError where nothing can be judged (sample_set.h) and for names in `without` that
-/// no effect has; `name` is the recording's in messages.
+/// Throws InputError where nothing can be judged (sample_set.h), for names in `without` that no
+/// effect has and for limits of a plan that leave no motion; `name` is the recording's in messages.
 DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                          const DiagnoseOptions& options = {});
 

@@ -59,7 +59,10 @@ void SayNext(const DiagnosisResult& result, Judgement& judged) {
   judged.next = gain ? "let the estimator use the model" : "keep the base simulation";
   judged.command = gain ? "flextip estimate RECORDING --model RESULT/model.yaml -o RESULT-estimate"
                         : "flextip estimate RECORDING -o RESULT-estimate";
-  if (!result.separating_motion.empty()) {
+  if (result.plan && !result.plan->places_m.empty()) {
+    judged.next = fmt::format("run the planned motion, motion.yaml in the result; until then {}",
+                              judged.next);
+  } else if (!result.separating_motion.empty()) {
     judged.next = fmt::format("to tell the alternatives apart, record {}; until then {}",
                               result.separating_motion, judged.next);
   }

@@ -14,10 +14,12 @@
 #include "apps/common/input/recording_input.h"
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
+#include "apps/diagnose/motion_options.h"
 #include "apps/diagnose/result_files.h"
 #include "diagnosis/diagnose.h"
 #include "diagnosis/judge_diagnosis.h"
 #include "diagnosis/model/extended_model.h"
+#include "diagnosis/planning/motion_file.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
 #include "simulation/closed_loop/gain.h"
@@ -28,6 +30,7 @@ namespace {
 struct Options {
   RecordingInput input;
   std::vector<std::string> without;
+  MotionOptions plan;
   bool no_closed_loop = false, force = false;
 };
 
@@ -54,8 +57,9 @@ void Run(const Options& options, bool quiet) {
       {.force = options.force, .inputs = options.input.Files(), .paths = options.input.Paths()});
   output.Warn(read.warnings);
   output.Beware(FindingsJson(read.findings));
-  const diagnosis::DiagnosisResult result = diagnosis::Diagnose(
-      recording, options.input.recording.string(), {.without = options.without});
+  const diagnosis::DiagnosisResult result =
+      diagnosis::Diagnose(recording, options.input.recording.string(),
+                          {.without = options.without, .plan = options.plan.Limits()});
   output.Warn(result.warnings);
   const diagnosis::ExtendedModel model = diagnosis::FromResult(result);
   std::optional<simulation::ClosedLoopGain> gain;
@@ -64,6 +68,8 @@ void Run(const Options& options, bool quiet) {
   WriteTextFile(output.folder() / "diagnosis.json", DiagnosisJson(result, gain ? &*gain : nullptr));
   WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result.residuals));
   diagnosis::WriteModel(output.folder() / "model.yaml", model);
+  if (result.plan && !result.plan->places_m.empty())
+    diagnosis::WriteMotion(output.folder() / "motion.yaml", *result.plan);
   nlohmann::json summary = {
       {"verdicts", result.verdict},    {"samples", result.samples},
       {"fits", result.fits},           {"probability", result.probabilities.front().probability},
@@ -97,8 +103,11 @@ void AddDiagnose(CLI::App& app, AppContext& context) {
   command->add_flag("--no-closed-loop", options->no_closed_loop,
                     "Do not run the controllers with and without the model on a simulated plant "
                     "that has what was found");
+  AddMotionOptions(*command, options->plan);
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
-  command->footer("Example:\n  flextip diagnose recording -o diagnosis\n");
+  command->footer(
+      "Example:\n  flextip diagnose recording -o diagnosis\n"
+      "  flextip diagnose recording --plan-motion --plan-speed 0.05 -o diagnosis\n");
   OnRun(*command, context, [options, &context] { Run(*options, context.quiet); });
 }
 

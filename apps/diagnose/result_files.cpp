@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "diagnosis/model/catalogue.h"
+#include "diagnosis/planning/motion_file.h"
 #include "diagnosis/replay/sample_input.h"
 #include "recording/text/csv.h"
 
@@ -74,6 +75,22 @@ Json Summaries(const DiagnosisResult& result) {
   return json;
 }
 
+/// A number, or null where there is none.
+Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json PlanOf(const NextMotion& plan) {
+  Json json = {
+      {"needed", plan.needed},           {"rivals", plan.rivals},
+      {"text", Sentence(plan)},          {"file", plan.places_m.empty() ? "" : "motion.yaml"},
+      {"seconds", plan.seconds},         {"seconds_to_certain", OrNull(plan.seconds_to_certain)},
+      {"probability", plan.probability}, {"least_sure", plan.least_sure},
+      {"tip_speed_m_s", plan.speed_m_s}, {"hung_weight_N", plan.load_N}};
+  json["library"] = {{"motion", plan.library_motion},
+                     {"seconds_to_certain", OrNull(plan.library_seconds_to_certain)},
+                     {"probability", plan.library_probability}};
+  return json;
+}
+
 nlohmann::json Deviations(double max_m, double rms_m) {
   return {{"max_deviation_m", max_m}, {"rms_deviation_m", rms_m}};
 }
@@ -97,6 +114,7 @@ std::string DiagnosisJson(const DiagnosisResult& result, const simulation::Close
   json["indistinguishable"] = result.indistinguishable;
   json["separating_motion"] = result.separating_motion;
   json["separating_motion_score"] = result.separating_motion_score;
+  if (result.plan) json["planned_motion"] = PlanOf(*result.plan);
   json["parameters"] = known ? Fits(result.parameters) : Json::object();
   json["within_tolerance"] = Fits(result.within_tolerance);
   json["base"] = Score(result.base);

@@ -156,6 +156,8 @@ void ReadVerdict(const Json& json, DiagnosedResult& result) {
     result.indistinguishable.push_back(group.get<std::vector<std::string>>());
   }
   result.separating_motion = TextIn(json, "separating_motion");
+  if (const auto plan = json.find("planned_motion"); plan != json.end())
+    result.planned_motion = TextIn(*plan, "text");
 }
 
 void ReadSignatures(const Json& json, DiagnosedResult& result) {

@@ -49,6 +49,7 @@ struct DiagnosedResult {
   std::vector<std::string> credible_set;                      ///< names as in probabilities
   std::vector<std::vector<std::string>> indistinguishable;    ///< one group for each verdict
   std::string separating_motion;
+  std::string planned_motion;  ///< a sentence; empty: none was asked for
   std::vector<DiagnosedParameter> parameters, within_tolerance;
   DiagnosedScore base, extended;
   std::optional<double> heldout_error_ratio, tip_error_ratio;

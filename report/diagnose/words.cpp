@@ -228,6 +228,7 @@ std::string Advice(const DiagnosedResult& result) {
   } else if (alike) {
     advice = "No motion is known that would tell them apart.";
   }
+  if (!result.planned_motion.empty()) advice += (advice.empty() ? "" : " ") + result.planned_motion;
   return advice;
 }
 
