@@ -21,6 +21,7 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddExport(app, context);
   AddImport(app, context);
   AddMap(app, context);
+  AddPredict(app, context);
   AddReplay(app, context);
   AddReport(app, context);
   AddReproduce(app, context);

@@ -79,8 +79,10 @@ set(FLEXTIP_PUBLIC_HEADERS
   diagnosis/model/extended_model.h
   diagnosis/planning/plan.h
   diagnosis/model/latency.h
+  diagnosis/prediction/predict.h
   diagnosis/replay/sample_input.h
   diagnosis/samples/sample_set.h
+  diagnosis/several/diagnose_several.h
   estimation/instrument_model.h
   estimation/watch/instrument_watch.h
   estimation/measurements.h

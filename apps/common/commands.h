@@ -50,6 +50,7 @@ void AddEstimate(CLI::App& app, AppContext& context);
 void AddExport(CLI::App& app, AppContext& context);
 void AddImport(CLI::App& app, AppContext& context);
 void AddMap(CLI::App& app, AppContext& context);
+void AddPredict(CLI::App& app, AppContext& context);
 void AddReplay(CLI::App& app, AppContext& context);
 void AddReport(CLI::App& app, AppContext& context);
 void AddReproduce(CLI::App& app, AppContext& context);

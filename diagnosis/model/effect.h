@@ -116,6 +116,18 @@ class Effect {
   virtual double ScanCentre() const { return 0.0; }
   virtual void SetScanCentre(double /*value*/) {}
 
+  /// Returns the fitted parameters that are each recording's own: a rate of drift, a phase, where
+  /// a play stood. All others are the instrument's and the room's.
+  virtual std::vector<int> OwnParameters() const { return {}; }
+  /// Returns those of them that are a state, which a prediction finds again.
+  virtual std::vector<int> StateParameters() const { return {}; }
+  /// Returns whether the effect has a phase, which a prediction finds again.
+  virtual bool HasPhase() const { return false; }
+  /// Returns theta with the phase turned by `turn_rad`.
+  virtual Eigen::VectorXd TurnPhase(const Eigen::VectorXd& theta, double /*turn_rad*/) const {
+    return theta;
+  }
+
   /// Returns whether Apply needs the port's place in `Instant`.
   virtual bool NeedsPortPlace() const { return false; }
   /// Returns the input by which the first parameter delays a sensor (kEmDelay, kCameraDelay), or

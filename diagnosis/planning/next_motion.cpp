@@ -249,10 +249,16 @@ void RequireUsable(const MotionLimits& limits, const SampleSet& recorded, const 
   }
 }
 
-NextMotion PlanNextMotion(const Replay& replay, const ParameterLayout& layout,
-                          const Selection& selection, const std::vector<std::vector<int>>& groups,
+NextMotion PlanNextMotion(const Replay& replay, const Selection& selection,
+                          const std::vector<std::vector<std::string>>& groups,
                           const MotionLimits& limits) {
-  const Rivals rivals(selection, layout, groups);
+  const ParameterLayout& layout = replay.Layout();
+  std::vector<std::vector<int>> blocks;
+  for (const auto& group : groups) {
+    blocks.emplace_back();
+    for (const std::string& name : group) blocks.back().push_back(layout.Find(name));
+  }
+  const Rivals rivals(selection, layout, blocks);
   NextMotion plan;
   for (const Rival& rival : rivals.All())
     plan.rivals.push_back(VerdictOf(rival.hypothesis, layout));

@@ -16,8 +16,8 @@ void RequireUsable(const MotionLimits& limits, const SampleSet& recorded, const 
 /// Plans for what `selection` leaves in the lead (rivals.h) and for `groups` of effects that look
 /// alike, at the point where `replay` stands. The same recording and
 /// limits give the same plan.
-NextMotion PlanNextMotion(const Replay& replay, const ParameterLayout& layout,
-                          const Selection& selection, const std::vector<std::vector<int>>& groups,
+NextMotion PlanNextMotion(const Replay& replay, const Selection& selection,
+                          const std::vector<std::vector<std::string>>& groups,
                           const MotionLimits& limits = {});
 
 }  // namespace flextip::diagnosis

@@ -177,11 +177,11 @@ TimedGeometry Replay::WithRate(std::size_t k) const {
   return timed;
 }
 
-void Replay::TakeSettings(const Replay& other) {
-  noise_scale_ = other.noise_scale_;
-  along_prior_ = other.along_prior_;
-  input_noise_ = other.input_noise_;
-  left_out_ = other.left_out_;
+void Replay::Use(const Settings& settings) {
+  noise_scale_ = settings.noise_scale;
+  along_prior_ = settings.along_prior;
+  input_noise_ = settings.input_noise;
+  left_out_ = settings.left_out;
 }
 
 void Replay::LeaveOut(const std::vector<std::size_t>& samples) {

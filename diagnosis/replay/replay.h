@@ -108,9 +108,17 @@ class Replay {
   /// around, without the noise of a sample's own force; or the sample's own, as differences have
   /// them.
   void TakeOwnDerivatives(bool own) { own_derivatives_ = own; }
-  /// Noise factors, what FixNoiseModel set and samples left out, as another replay of the same
-  /// samples has them.
-  void TakeSettings(const Replay& other);
+  /// Noise factors, what FixNoiseModel set and samples left out.
+  struct Settings {
+    std::array<double, kChannelCount> noise_scale{};
+    double along_prior = 1.0;
+    std::vector<Eigen::Matrix<double, row::kCount, 6>> input_noise = {};
+    std::vector<bool> left_out = {};
+  };
+  Settings SettingsNow() const { return {noise_scale_, along_prior_, input_noise_, left_out_}; }
+  void Use(const Settings& settings);
+  /// As another replay of the same samples has them.
+  void TakeSettings(const Replay& other) { Use(other.SettingsNow()); }
 
   /// Standard deviation of each row's own noise in sample `k` (the diagonal).
   Rows RowNoise(std::size_t k) const;

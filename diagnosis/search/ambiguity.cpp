@@ -105,7 +105,8 @@ double Separation(const LinearProblem& problem, const ParameterLayout& layout,
 }
 
 Ambiguity FindAmbiguity(const Replay& replay, const ParameterLayout& layout,
-                        const Selection& selection, const WeighedHypothesis& weighed) {
+                        const Selection& selection, const WeighedHypothesis& weighed,
+                        bool find_motion) {
   Ambiguity ambiguity;
   bool any = false;
   for (const int effect : weighed.hypothesis.effects) {
@@ -113,7 +114,7 @@ Ambiguity FindAmbiguity(const Replay& replay, const ParameterLayout& layout,
         AlikeTo(effect, selection.problem, layout, selection, replay.Theta(), weighed));
     any = any || ambiguity.groups.back().size() > 1;
   }
-  if (any) FindMotion(replay, layout, weighed, ambiguity);
+  if (any && find_motion) FindMotion(replay, layout, weighed, ambiguity);
   return ambiguity;
 }
 

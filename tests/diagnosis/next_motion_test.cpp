@@ -86,8 +86,7 @@ TEST(PlanNextMotion, KeepsTheLimits) {
   ParameterLayout layout(recorded, MakeCatalogue(recorded));
   Replay replay(recorded, layout);
   Selection selection = Select(replay, layout);
-  const std::vector<std::vector<int>> groups{{layout.Find("tag_offset"), layout.Find("hand_eye")}};
-  const NextMotion plan = PlanNextMotion(replay, layout, selection, groups, limits);
+  const NextMotion plan = PlanNextMotion(replay, selection, {{"tag_offset", "hand_eye"}}, limits);
   ASSERT_TRUE(plan.needed);
   ASSERT_GE(plan.rivals.size(), 2u);
   ASSERT_GE(plan.places_m.size(), 2u);
