@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "diagnosis/discovery/refit.h"
 #include "diagnosis/evidence/probabilities.h"
 #include "diagnosis/heldout.h"
 #include "diagnosis/search/ambiguity.h"
@@ -92,10 +93,12 @@ Eigen::MatrixXd ReportedCovariance(const ParameterLayout& layout, const std::vec
   return J * covariance.topLeftCorner(theta.size(), theta.size()) * J.transpose();
 }
 
-/// Of the effects that are not `present`, those that act on sensors' readings or places alone.
-std::vector<int> SensorBlocks(const Work& work, const std::vector<int>& present) {
+/// Of the first `effects` that are not `present`, those that act on sensors' readings or places
+/// alone.
+std::vector<int> SensorBlocks(const Replay& extended, int effects,
+                              const std::vector<int>& present) {
   std::set<int> sensors, others;
-  for (const ReplayedSample& sample : work.extended.Samples()) {
+  for (const ReplayedSample& sample : extended.Samples()) {
     for (const InputChange::Column& column : sample.columns) {
       const bool reading = column.input > sample_input::kTipCompliance &&
                            column.input != sample_input::kEmDelay &&
@@ -105,8 +108,8 @@ std::vector<int> SensorBlocks(const Work& work, const std::vector<int>& present)
     }
   }
   std::vector<int> blocks;
-  for (int b = 0; b < work.layout.EffectCount(); ++b) {
-    const auto& block = work.layout.Blocks()[b];
+  for (int b = 0; b < effects; ++b) {
+    const auto& block = extended.Layout().Blocks()[b];
     bool alone = std::find(present.begin(), present.end(), b) == present.end();
     for (int j = block.first; j < block.first + block.size; ++j)
       alone = alone && sensors.contains(j) && !others.contains(j);
@@ -115,29 +118,31 @@ std::vector<int> SensorBlocks(const Work& work, const std::vector<int>& present)
   return blocks;
 }
 
-/// The catalogue's best answer, whatever the verdict: what the extended model is made of.
-void DescribeParameters(const Work& work, const Selection& selection,
+/// The catalogue's best answer, whatever the verdict: what the extended model is made of. The first
+/// `effects` of the layout are the catalogue's.
+void DescribeParameters(const Replay& extended, int effects, const Selection& selection,
                         const WeighedHypothesis& weighed, DiagnosisResult& result) {
-  const Evidence evidence(selection.problem.total, work.layout, selection.generic_sd,
+  const ParameterLayout& layout = extended.Layout();
+  const Evidence evidence(selection.problem.total, layout, selection.generic_sd,
                           {.unknown_sd = {}});
   const Eigen::MatrixXd covariance = evidence.Covariance(weighed);
-  Eigen::VectorXd theta = work.extended.Theta();
-  for (int j = 0; j < work.layout.Size(); ++j)  // within tolerance the fit does not mind the sign
-    if (work.layout.Parameter(j).positive) theta[j] = std::max(0.0, theta[j]);
-  result.covariance =
-      ReportedCovariance(work.layout, weighed.hypothesis.effects, theta, covariance);
-  const std::vector<int> sensors = SensorBlocks(work, weighed.hypothesis.effects);
-  result.sensor_tolerance.covariance = ReportedCovariance(work.layout, sensors, theta, covariance);
+  Eigen::VectorXd theta = extended.Theta();
+  for (int j = 0; j < layout.Size(); ++j)  // within tolerance the fit does not mind the sign
+    if (layout.Parameter(j).positive) theta[j] = std::max(0.0, theta[j]);
+  std::vector<int> named = weighed.hypothesis.effects;
+  std::erase_if(named, [&](int b) { return b >= effects; });
+  result.covariance = ReportedCovariance(layout, named, theta, covariance);
+  const std::vector<int> sensors = SensorBlocks(extended, effects, named);
+  result.sensor_tolerance.covariance = ReportedCovariance(layout, sensors, theta, covariance);
   for (const int b : sensors)
-    result.sensor_tolerance.effects.push_back(work.layout.Blocks()[b].effect->Name());
-  for (int b = 0; b < work.layout.EffectCount(); ++b) {
-    const auto& block = work.layout.Blocks()[b];
+    result.sensor_tolerance.effects.push_back(layout.Blocks()[b].effect->Name());
+  for (int b = 0; b < effects; ++b) {
+    const auto& block = layout.Blocks()[b];
     EffectFit fit{
         block.effect->Name(),
         block.effect->Report(theta.segment(block.first, block.size),
                              covariance.block(block.first, block.first, block.size, block.size))};
-    const auto& present = weighed.hypothesis.effects;
-    const bool is_present = std::find(present.begin(), present.end(), b) != present.end();
+    const bool is_present = std::find(named.begin(), named.end(), b) != named.end();
     (is_present ? result.parameters : result.within_tolerance).push_back(std::move(fit));
   }
 }
@@ -153,6 +158,29 @@ void DescribeAmbiguity(const Work& work, const Selection& selection,
   }
   result.separating_motion = ambiguity.separating_motion;
   result.separating_motion_score = ambiguity.separating_score;
+}
+
+/// The terms that no effect explains, beside the answer's effects; where the answer is unknown,
+/// beside those of the catalogue's best or beside none, whichever leaves less to explain.
+std::unique_ptr<TermModel> FindTerms(const Work& work, const Selection& selection,
+                                     const WeighedHypothesis& known, const Verdict& verdict,
+                                     const DiagnoseOptions& options) {
+  const auto sd = [&](const WeighedHypothesis& weighed) {
+    return work.layout.Widened(weighed.hypothesis.effects, weighed.scales);
+  };
+  TermSearch search = SearchTerms(work.extended, sd(known));
+  std::vector<int> effects = known.hypothesis.effects;
+  const Replay* from = &work.extended;
+  if (verdict == Verdict{"unknown"} && !effects.empty()) {
+    const TermSearch bare = SearchTerms(work.base, sd({}));
+    if (!bare.terms.empty() && (search.terms.empty() || LogOdds(bare, search) > 0.0)) {
+      search = bare;
+      effects.clear();
+      from = &work.base;
+    }
+  }
+  if (search.terms.empty()) return {};
+  return FitTerms(work.base, *from, selection, effects, search.terms, options);
 }
 
 void DescribeRecording(const Work& work, const Selection& selection, const Recording& recording,
@@ -232,16 +260,23 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
   result.verdict = probabilities.hypotheses.front().verdict;
   if (!result.IsAdequate()) result.warnings.push_back(MemoryWarning(selection.memory));
   const WeighedHypothesis& known = selection.BestKnown();
-  DescribeParameters(work, selection, known, result);
   if (NamesEffects(result.verdict)) DescribeAmbiguity(work, selection, known, result);
   work.base.TakeSettings(work.extended);
+  std::unique_ptr<TermModel> terms;
+  if (options.discover) terms = FindTerms(work, selection, known, result.verdict, options);
+  const Replay& base = terms ? terms->base : work.base;
+  const Replay& extended = terms ? terms->extended : work.extended;
+  const Selection& chosen = terms ? terms->selection : selection;
+  const WeighedHypothesis& model = terms ? terms->weighed : known;
+  if (terms) result.discovered = DescribeTerms(*terms, options.measure_gain);
+  DescribeParameters(extended, work.layout.EffectCount(), chosen, model, result);
   if (options.measure_gain) {
-    const HeldOut heldout = MeasureHeldOut(work.base, work.extended, selection, known);
+    const HeldOut heldout = MeasureHeldOut(base, extended, chosen, model);
     result.base = heldout.base;
     result.extended = heldout.extended;
     result.gain = heldout.gain;
   }
-  result.residuals = MakeResidualTable(work.base, work.extended);
+  result.residuals = MakeResidualTable(base, extended);
   DescribeRecording(work, selection, recording, result);
   return result;
 }

@@ -74,6 +74,46 @@ Json Summaries(const DiagnosisResult& result) {
   return json;
 }
 
+Json TermNameJson(const TermName& name) {
+  return {{"channel", name.channel}, {"depends_on", name.depends_on}, {"form", name.form}};
+}
+
+/// A list, not an object of pairs, where there are two numbers.
+Json List(const Eigen::VectorXd& values) {
+  Json json = Json::array();
+  for (const double value : values) json.push_back(value);
+  return json;
+}
+
+/// What was found that has no name.
+Json DiscoveredJson(const std::vector<Discovered>& terms) {
+  Json json = Json::array();
+  for (const Discovered& one : terms) {
+    Json term = {
+        {"channel", one.name.channel}, {"direction", List(one.direction)}, {"frame", one.frame}};
+    term["depends_on"] = one.name.depends_on;
+    term["form"] = one.name.form;
+    term["parameters"] = Json::object();
+    for (const ReportedParameter& p : one.parameters)
+      term["parameters"][p.name] = {{"value", Value(p.value)}, {"sd", Value(p.sd)}};
+    term["text"] = one.text;
+    term["false_discovery"] = one.false_discovery;
+    term["stability"] = one.stability;
+    if (one.gain.measured)
+      term["gain"] = {{"heldout_error_ratio", one.gain.heldout_error_ratio},
+                      {"tip_error_ratio", one.gain.tip_error_ratio}};
+    term["region"] = {{"largest", one.region.largest},
+                      {"part_of_samples", one.region.part},
+                      {"insertion_depth_m", {one.region.depth_low_m, one.region.depth_high_m}},
+                      {"p_RE_low_m", List(one.region.p_RE_low)},
+                      {"p_RE_high_m", List(one.region.p_RE_high)}};
+    term["could_be"] = Json::array();
+    for (const TermName& other : one.could_be) term["could_be"].push_back(TermNameJson(other));
+    json.push_back(std::move(term));
+  }
+  return json;
+}
+
 nlohmann::json Deviations(double max_m, double rms_m) {
   return {{"max_deviation_m", max_m}, {"rms_deviation_m", rms_m}};
 }
@@ -99,6 +139,7 @@ std::string DiagnosisJson(const DiagnosisResult& result, const simulation::Close
   json["separating_motion_score"] = result.separating_motion_score;
   json["parameters"] = known ? Fits(result.parameters) : Json::object();
   json["within_tolerance"] = Fits(result.within_tolerance);
+  json["discovered"] = DiscoveredJson(result.discovered);
   json["base"] = Score(result.base);
   json["extended"] = Score(result.extended);
   if (result.gain.measured)
