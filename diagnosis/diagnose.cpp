@@ -160,27 +160,22 @@ void DescribeAmbiguity(const Work& work, const Selection& selection,
   result.separating_motion_score = ambiguity.separating_score;
 }
 
-/// The terms that no effect explains, beside the answer's effects; where the answer is unknown,
-/// beside those of the catalogue's best or beside none, whichever leaves less to explain.
-std::unique_ptr<TermModel> FindTerms(const Work& work, const Selection& selection,
-                                     const WeighedHypothesis& known, const Verdict& verdict,
-                                     const DiagnoseOptions& options) {
-  const auto sd = [&](const WeighedHypothesis& weighed) {
-    return work.layout.Widened(weighed.hypothesis.effects, weighed.scales);
-  };
-  TermSearch search = SearchTerms(work.extended, sd(known));
-  std::vector<int> effects = known.hypothesis.effects;
-  const Replay* from = &work.extended;
-  if (verdict == Verdict{"unknown"} && !effects.empty()) {
-    const TermSearch bare = SearchTerms(work.base, sd({}));
-    if (!bare.terms.empty() && (search.terms.empty() || LogOdds(bare, search) > 0.0)) {
-      search = bare;
-      effects.clear();
-      from = &work.base;
-    }
-  }
-  if (search.terms.empty()) return {};
-  return FitTerms(work.base, *from, selection, effects, search.terms, options);
+/// Terms without a name explain the recording better than any effect: what the answer keeps of the
+/// known causes is what it keeps where none of them is adequate.
+void TurnUnknown(DiagnosisResult& result) {
+  if (result.verdict == Verdict{"unknown"}) return;
+  const double kept = ProbabilityOptions().inadequate_known;
+  double known = 0.0;
+  for (const auto& h : result.probabilities)
+    if (h.verdict != Verdict{"unknown"}) known += h.probability;
+  const double factor = known > kept ? kept / known : 1.0;
+  for (auto& h : result.probabilities)
+    h.probability = h.verdict == Verdict{"unknown"} ? 1.0 - factor * known : factor * h.probability;
+  for (auto& [effect, presence] : result.presence) presence *= factor;
+  std::stable_sort(result.probabilities.begin(), result.probabilities.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  result.verdict = {"unknown"};
+  result.credible_set = {{"unknown"}};
 }
 
 void DescribeRecording(const Work& work, const Selection& selection, const Recording& recording,
@@ -260,14 +255,15 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
   result.verdict = probabilities.hypotheses.front().verdict;
   if (!result.IsAdequate()) result.warnings.push_back(MemoryWarning(selection.memory));
   const WeighedHypothesis& known = selection.BestKnown();
-  if (NamesEffects(result.verdict)) DescribeAmbiguity(work, selection, known, result);
   work.base.TakeSettings(work.extended);
   std::unique_ptr<TermModel> terms;
-  if (options.discover) terms = FindTerms(work, selection, known, result.verdict, options);
+  if (options.discover) terms = FindTerms(work.base, work.extended, selection, known, options);
+  if (terms && !NamesEffects(terms->Named())) TurnUnknown(result);
   const Replay& base = terms ? terms->base : work.base;
   const Replay& extended = terms ? terms->extended : work.extended;
   const Selection& chosen = terms ? terms->selection : selection;
   const WeighedHypothesis& model = terms ? terms->weighed : known;
+  if (NamesEffects(result.verdict)) DescribeAmbiguity(work, selection, known, result);
   if (terms) result.discovered = DescribeTerms(*terms, options.measure_gain);
   DescribeParameters(extended, work.layout.EffectCount(), chosen, model, result);
   if (options.measure_gain) {

@@ -86,6 +86,12 @@ struct TermRegion {
   Eigen::Vector3d p_RE_low = Eigen::Vector3d::Zero(), p_RE_high = Eigen::Vector3d::Zero();
 };
 
+/// A term drawn along its direction against its variable, sample by sample: what it says, and what
+/// the sensors say of it with all else as fitted.
+struct TermPicture {
+  std::vector<double> variable, term, measured;
+};
+
 /// A term that the residuals hold and that no effect of the catalogue explains.
 struct Discovered {
   Term term;
@@ -99,6 +105,7 @@ struct Discovered {
   double stability = 0.0;  ///< part of resamplings in which the channel stays the same
   std::vector<TermName> could_be;  ///< what the recording cannot tell from it
   TermRegion region;
+  TermPicture picture;
   Gain gain;  ///< over the same model without the term
 };
 

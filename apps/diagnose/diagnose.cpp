@@ -63,6 +63,8 @@ void Run(const Options& options, bool quiet) {
     gain = MeasureGain(recording, model, output);
   WriteTextFile(output.folder() / "diagnosis.json", DiagnosisJson(result, gain ? &*gain : nullptr));
   WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result.residuals));
+  if (!result.discovered.empty())
+    WriteTextFile(output.folder() / "discovered.csv", DiscoveredCsv(result.discovered));
   diagnosis::WriteModel(output.folder() / "model.yaml", model);
   nlohmann::json summary = {
       {"verdicts", result.verdict},    {"samples", result.samples},

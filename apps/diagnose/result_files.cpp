@@ -1,5 +1,8 @@
 #include "apps/diagnose/result_files.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "diagnosis/model/catalogue.h"
@@ -181,6 +184,33 @@ std::string ResidualsCsv(const ResidualTable& residuals) {
         csv.Add(residuals.rows[k][c], 6);
       } else {
         csv.AddEmpty();
+      }
+    }
+    csv.EndRow();
+  }
+  return csv.TakeText();
+}
+
+std::string DiscoveredCsv(const std::vector<Discovered>& terms) {
+  constexpr std::size_t kMostRows = 1000;
+  if (terms.empty()) return "";
+  std::vector<std::string> columns;
+  std::size_t rows = 0;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    for (const char* what : {"variable", "measured", "term"})
+      columns.push_back(fmt::format("{}.{}", i + 1, what));
+    rows = std::max(rows, terms[i].picture.variable.size());
+  }
+  CsvWriter csv(columns);
+  const std::size_t stride = 1 + rows / kMostRows;
+  for (std::size_t k = 0; k < rows; k += stride) {
+    for (const Discovered& one : terms) {
+      for (const auto* values : {&one.picture.variable, &one.picture.measured, &one.picture.term}) {
+        if (k < values->size()) {
+          csv.Add((*values)[k], 6);
+        } else {
+          csv.AddEmpty();
+        }
       }
     }
     csv.EndRow();

@@ -18,16 +18,55 @@ constexpr int kRefinements = 14;
 constexpr double kScanned = 15.0;     // twice the log of how many waves were tried
 constexpr double kLastResort = 30.0;  // a smooth form must be better than a simple one by so much
 
+/// Series of waves in ascending frequency: each from the last by a turn of every sample's phase.
+class WaveWalk {
+ public:
+  TermSeries Next(const Term& wave, const std::vector<TermState>& states) {
+    const double by = wave.at[0] - last_;
+    if (wave.variable != variable_ || std::abs(by - step_) > 1e-9 * step_ ||
+        count_++ % kTurns == 0) {
+      const bool near = wave.variable == variable_ && by > 0.0;
+      series_ = SeriesOf(wave, states);
+      if (near && std::abs(by - step_) > 1e-9 * step_) {
+        Term turn = wave;
+        turn.at[0] = step_ = by;
+        turn_ = SeriesOf(turn, states);
+      }
+      variable_ = wave.variable;
+    } else {  // columns: sines of each input, then cosines
+      const Eigen::Index n = series_.cols() / 2;
+      const auto s = series_.leftCols(n).array(), c = series_.rightCols(n).array();
+      const auto ds = turn_.leftCols(n).array(), dc = turn_.rightCols(n).array();
+      TermSeries next(series_.rows(), 2 * n);
+      next << s * dc + c * ds, c * dc - s * ds;
+      series_ = std::move(next);
+    }
+    last_ = wave.at[0];
+    return series_;
+  }
+
+ private:
+  static constexpr int kTurns = 200;
+  TermSeries series_, turn_;
+  TermVariable variable_ = TermVariable::kPreviousSamples;
+  double last_ = 0.0, step_ = 0.0;
+  int count_ = 0;
+};
+
 /// The best of each kind, of one target.
 std::vector<Candidate> BestOfKinds(const TargetScan& scan, TermTarget target,
-                                   const std::vector<TermState>& states, const SampleSet& set) {
+                                   const std::vector<TermState>& states, const SampleSet& set,
+                                   bool waves_only) {
   struct Rough {
     Term term;
     double gain;
   };
   std::map<std::pair<TermShape, TermVariable>, std::vector<Rough>> kinds;
+  WaveWalk walk;
   for (Term& term : Library(target, states, set)) {
-    const TermSeries series = SeriesOf(term, states);
+    if (waves_only && term.shape != TermShape::kPeriodic) continue;
+    const TermSeries series =
+        term.shape == TermShape::kPeriodic ? walk.Next(term, states) : SeriesOf(term, states);
     auto& kind = kinds[{term.shape, term.variable}];
     kind.push_back({std::move(term), 0.0});
     kind.back().gain = scan.LeastGain(kind.back().term, series);
@@ -122,16 +161,16 @@ double Criterion(const Candidate& candidate, double variance, double samples) {
   return candidate.gain / variance - complexity;
 }
 
-std::vector<Candidate> FindCandidates(const WeightedProblem& weighted,
-                                      const StatesByTarget& states) {
+std::vector<Candidate> FindCandidates(const WeightedProblem& weighted, const StatesByTarget& states,
+                                      bool waves_only) {
   std::vector<TermTarget> targets;
   for (const auto& [target, of_target] : states) targets.push_back(target);
   std::vector<std::unique_ptr<TargetScan>> scans(targets.size());
   std::vector<std::vector<Candidate>> by_target(targets.size());
   tbb::parallel_for(std::size_t{0}, targets.size(), [&](std::size_t i) {
     scans[i] = std::make_unique<TargetScan>(weighted, targets[i]);
-    by_target[i] =
-        BestOfKinds(*scans[i], targets[i], states.at(targets[i]), weighted.problem.Of().Set());
+    by_target[i] = BestOfKinds(*scans[i], targets[i], states.at(targets[i]),
+                               weighted.problem.Of().Set(), waves_only);
   });
   std::vector<Candidate> all;
   for (auto& some : by_target)

@@ -20,8 +20,9 @@ using StatesByTarget = std::map<TermTarget, std::vector<TermState>>;
 /// Returns one candidate of each target, shape and variable that may matter, best first. A gain
 /// counts in the variance that the best candidate leaves, at least the noise's; each number found
 /// costs the logarithm of the samples.
-std::vector<Candidate> FindCandidates(const WeightedProblem& weighted,
-                                      const StatesByTarget& states);
+/// `waves_only`: periodic ones alone.
+std::vector<Candidate> FindCandidates(const WeightedProblem& weighted, const StatesByTarget& states,
+                                      bool waves_only = false);
 
 /// The variance (of whitened rows) that the best leaves, at least one.
 double VarianceLeft(const WeightedProblem& weighted, double gain);

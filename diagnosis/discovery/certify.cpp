@@ -1,8 +1,11 @@
 #include "diagnosis/discovery/certify.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+
+#include "diagnosis/evidence/residual_memory.h"
 
 namespace flextip::diagnosis {
 namespace {
@@ -71,6 +74,33 @@ double FalseDiscovery(const ResidualProblem& problem, const Term& term,
   // A prediction that is more than twice too large makes things worse.
   if (slope < 0.5) return 1.0;
   return StudentTail(sum / std::sqrt(std::max(scatter, squares)), squares * squares / fourth - 1.0);
+}
+
+double SamplesAsOne(const ResidualProblem& problem, const Term& term,
+                    const StatesByTarget& states) {
+  ResidualProblem with = problem;
+  const Eigen::MatrixXd moved = problem.Moved(term, SeriesOf(term, states.at(term.target)), true);
+  with.Free(moved);
+  const WeightedProblem all(with, std::vector<double>(std::size_t(with.Blocks()), 1.0));
+  const Eigen::VectorXd x = Llt(all.information).Solve(all.right);
+  const Eigen::VectorXd left = with.Left() - with.Derivatives() * x;
+  const Eigen::VectorXd by = with.Derivatives().rightCols(moved.cols()) * x.tail(moved.cols());
+  std::array<std::vector<double>, row::kCount> series;
+  std::array<double, row::kCount> energy{};
+  for (std::size_t k = 0; k < with.Of().Samples().size(); ++k) {
+    for (std::size_t i = 0; i < with.RowsOf(k).size(); ++i) {
+      const auto at = with.FirstRowOfSample(k) + Eigen::Index(i);
+      const auto r = static_cast<std::size_t>(with.RowsOf(k)[i]);
+      series[r].push_back(left[at]);
+      energy[r] += by[at] * by[at];
+    }
+  }
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t r = 0; r < series.size(); ++r) {
+    sum += energy[r] * MemoryOfSeries(series[r]).SamplesAsOne();
+    weights += energy[r];
+  }
+  return weights > 0.0 ? sum / weights : 1.0;
 }
 
 double Stability(const ResidualProblem& problem, const std::vector<Candidate>& leaders,

@@ -14,6 +14,10 @@ namespace flextip::diagnosis {
 double FalseDiscovery(const ResidualProblem& problem, const Term& term,
                       const std::vector<double>& seen, const std::vector<double>& unseen);
 
+/// How many samples count as one in what is left once the model has the term too, in the rows that
+/// the term moves: slow noise looks like a term, and leaves as slow a rest.
+double SamplesAsOne(const ResidualProblem& problem, const Term& term, const StatesByTarget& states);
+
 /// The part of `bags` resamplings of the blocks in which the first of `leaders` (or one of its
 /// target, shape and variable) stays the best of them.
 double Stability(const ResidualProblem& problem, const std::vector<Candidate>& leaders,

@@ -13,9 +13,11 @@ struct DiscoverOptions {
   int most_terms = 3;
   double most_false = 0.005;  ///< of a term: the probability that it is none
   double worth = 12.0;        ///< twice the log odds of the best form against no term
-  /// Of the base's squared residual, that a term must take off: less does not matter.
+  /// Of what the base within its tolerances leaves, squared: less does not matter.
   double least_part = 0.01;
-  double alike = 9.0;  ///< twice the log odds within which forms cannot be told apart
+  double least_tolerances = 3.0;  ///< half of a term's range, in the target's tolerances
+  bool waves_only = false;        ///< periodic terms alone
+  double alike = 9.0;             ///< twice the log odds within which forms cannot be told apart
   int bags = 8;
 };
 
@@ -34,8 +36,9 @@ struct TermSearch {
 };
 
 /// Searches about the point where `replay` stands, its parameters with the priors `prior_sd`.
+/// `before`: terms that are known already; they count with the model.
 TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
-                       const DiscoverOptions& options = {});
+                       const std::vector<FoundTerm>& before, const DiscoverOptions& options = {});
 
 /// Twice the log odds of one search's model over another's of the same measurements. What the
 /// better one leaves beyond the noise counts as noise.

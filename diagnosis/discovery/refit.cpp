@@ -18,7 +18,7 @@
 namespace flextip::diagnosis {
 namespace {
 
-constexpr int kRounds = 4;
+constexpr int kRounds = 5, kScans = 3;  // with the terms the effects' own swings show anew
 
 /// What a right form may miss of each row, as the selection had it.
 Rows MayMissOf(const Selection& selection) {
@@ -99,13 +99,116 @@ TermRegion RegionOf(const Term& term, const Replay& replay) {
   return region;
 }
 
+/// What the term's variable is on the picture's axis.
+double AxisOf(const Term& term, const TermState& state, Eigen::Index input) {
+  switch (term.variable) {
+    case TermVariable::kOwnValue:
+      return state.own[input];
+    case TermVariable::kPosition:
+      if (term.shape == TermShape::kInversePower)
+        return (state.position - Eigen::Vector3d(term.at[0], term.at[1], term.at[2])).norm();
+      return state.position[std::min<Eigen::Index>(input, 2)];
+    case TermVariable::kOrientation:
+      return state.orientation[std::min<Eigen::Index>(input, 2)];
+    case TermVariable::kImagePosition:
+      return state.image[std::min<Eigen::Index>(input, 1)];
+    default:
+      return state.scalar[static_cast<std::size_t>(term.variable)];
+  }
+}
+
+TermPicture PictureOf(const Term& term, const Replay& replay) {
+  const ResidualProblem problem(replay, replay.Layout().Tolerances(), 1);
+  const std::vector<TermState> states = StatesOf(replay, term.target);
+  Eigen::VectorXd direction = DirectionOf(term);
+  Eigen::Index main = 0;
+  direction.cwiseAbs().maxCoeff(&main);
+  if (term.IsByInput()) direction = Eigen::VectorXd::Unit(term.Inputs(), main);
+  const Eigen::VectorXd by = problem.ByTarget(term.target) * direction;
+  const Eigen::VectorXd left = problem.LeftHere();
+  TermPicture picture;
+  EffectMemory memory{};
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const TermColumns columns = ColumnsAt(term, states[k], memory);
+    const int first = problem.FirstRowOfSample(k), count = problem.FirstRowOfSample(k + 1) - first;
+    const double squares = by.segment(first, count).squaredNorm();
+    if (count == 0 || !(squares > 0.0)) continue;
+    double value = term.offset.size() > 0 ? direction.dot(term.offset) : 0.0;
+    for (Eigen::Index i = 0; i < direction.size(); ++i)
+      value += direction[i] * term.amplitude.row(i).dot(columns.row(i));
+    picture.variable.push_back(AxisOf(term, states[k], main));
+    picture.term.push_back(value);
+    picture.measured.push_back(value +
+                               by.segment(first, count).dot(left.segment(first, count)) / squares);
+  }
+  return picture;
+}
+
 std::vector<TermName> NamesOf(const std::vector<Candidate>& rivals) {
   std::vector<TermName> names;
   for (const Candidate& rival : rivals) names.push_back(NameOf(rival.term));
   return names;
 }
 
+constexpr double kNoisier = 1.15;  // times the data sheets' noise: something fast may be in it
+constexpr double kBetter = 20.0;   // twice the log odds by which terms alone must beat the effects
+
+/// Swings that are fast enough pass for noise: looked for in the stated noise.
+std::vector<FoundTerm> FindFast(Replay& best, const Eigen::VectorXd& prior_sd) {
+  const auto measured = best.NoiseScales();
+  if (*std::max_element(measured.begin(), measured.end()) < kNoisier) return {};
+  std::array<double, kChannelCount> stated;
+  stated.fill(1.0);
+  best.SetNoiseScale(stated);
+  const TermSearch search = SearchTerms(best, prior_sd, {}, {.most_terms = 2, .waves_only = true});
+  best.SetNoiseScale(measured);
+  return search.terms;
+}
+
 }  // namespace
+
+Verdict TermModel::Named() const {
+  Verdict names;
+  for (const int b : weighed.hypothesis.effects)
+    if (b < first_term) names.push_back(layout.Blocks()[b].effect->Name());
+  return names.empty() ? Verdict{"none"} : names;
+}
+
+std::unique_ptr<TermModel> FindTerms(const Replay& base, Replay& best, const Selection& selection,
+                                     const WeighedHypothesis& known,
+                                     const DiagnoseOptions& options) {
+  const ParameterLayout& layout = best.Layout();
+  const auto sd = [&](const WeighedHypothesis& weighed) {
+    return layout.Widened(weighed.hypothesis.effects, weighed.scales);
+  };
+  std::vector<FoundTerm> fast = FindFast(best, sd(known));
+  Replay bare_base = base;
+  bare_base.Evaluate(base.Theta());  // with the frequencies that were found since
+  if (!fast.empty()) {
+    const auto model = FitTerms(base, best, selection, known.hypothesis.effects, fast, options);
+    if (model) {
+      best.SetNoiseScale(model->extended.NoiseScales());
+      bare_base.SetNoiseScale(model->extended.NoiseScales());
+    } else {
+      fast.clear();
+    }
+  }
+  TermSearch search = SearchTerms(best, sd(known), fast);
+  std::vector<int> effects = known.hypothesis.effects;
+  const Replay* from = &best;
+  if (!effects.empty()) {
+    const TermSearch bare = SearchTerms(bare_base, sd({}), fast);
+    if (!bare.terms.empty() && LogOdds(bare, search) > kBetter) {
+      search = bare;
+      effects.clear();
+      from = &bare_base;
+    }
+  }
+  std::vector<FoundTerm> found = fast;
+  found.insert(found.end(), search.terms.begin(), search.terms.end());
+  if (found.empty()) return {};
+  return FitTerms(base, *from, selection, effects, found, options);
+}
 
 TermName NameOf(const Term& term) {
   TermName name{InfoOf(term.target).channel, {}, Name(FormOf(term))};
@@ -148,9 +251,11 @@ std::unique_ptr<TermModel> FitTerms(const Replay& base, const Replay& from,
   Eigen::MatrixXd basis;
   for (int twice = 0; twice < 2; ++twice) {  // with the terms the noise is known better
     basis = GenericBasis(replay);
-    const HypothesisFit fit =
-        FitHypothesis(replay, model->layout, hypothesis, {},
-                      {.basis = basis, .may_miss = may_miss, .rounds = kRounds});
+    const HypothesisFit fit = FitHypothesis(replay, model->layout, hypothesis, {},
+                                            {.basis = basis,
+                                             .may_miss = may_miss,
+                                             .rounds = kRounds,
+                                             .scans = twice == 0 ? kScans : 0});
     GoTo(replay, model->layout, fit.place);
     if (twice == 1) break;
     replay.SetNoiseScale(NoiseScale(replay));
@@ -184,12 +289,13 @@ std::vector<Discovered> DescribeTerms(const TermModel& model, bool measure_gain)
     one.direction = DirectionOf(one.term);
     one.parameters =
         TermParameters(one.term, covariance.block(block.first, block.first, block.size, block.size),
-                     model.found[i].at_sd);
+                       model.found[i].at_sd);
     one.text = TextOf(one.term);
     one.false_discovery = model.found[i].false_discovery;
     one.stability = model.found[i].stability;
     one.could_be = NamesOf(model.found[i].rivals);
     one.region = RegionOf(one.term, model.extended);
+    one.picture = PictureOf(one.term, model.extended);
     if (measure_gain) {
       Hypothesis rest = model.weighed.hypothesis;
       std::erase(rest.effects, block_index);

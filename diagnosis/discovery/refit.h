@@ -20,10 +20,20 @@ struct TermModel {
   Selection selection;        ///< the problem about the fit
   WeighedHypothesis weighed;  ///< the effects and the terms
 
+  /// The effects' names; {"none"} where there are terms alone.
+  Verdict Named() const;
+
   TermModel(const SampleSet& samples, Catalogue catalogue, int terms);
   TermModel(const TermModel&) = delete;
   TermModel& operator=(const TermModel&) = delete;
 };
+
+/// The terms that no effect explains: beside the effects of `known`, the catalogue's best, or,
+/// where that leaves less to explain, beside none. `base` stands at the base simulation, `best`
+/// where `known` fits. Null where there is no such term.
+std::unique_ptr<TermModel> FindTerms(const Replay& base, Replay& best, const Selection& selection,
+                                     const WeighedHypothesis& known,
+                                     const DiagnoseOptions& options);
 
 /// Fits `effects` (blocks of `from`'s layout) and `found` from where `from` stands; `base` stands
 /// at the base simulation. Null where the instrument has no equilibrium there.

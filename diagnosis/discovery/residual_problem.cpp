@@ -39,10 +39,12 @@ ResidualProblem::ResidualProblem(const Replay& replay, const Eigen::VectorXd& pr
   const Eigen::VectorXd z = rows_.e + rows_.X * replay.Theta();
   X_.resize(rows, prior_sd.size());
   z_.resize(rows);
+  here_.resize(rows);
   for (std::size_t k = 0; k < n; ++k) {
     const auto count = static_cast<Eigen::Index>(rows_.rows[k].size());
     X_.middleRows(sample_row_[k], count) =
         rows_.X.middleRows(rows_.first_row[k], count) * prior_sd.asDiagonal();
+    here_.segment(sample_row_[k], count) = rows_.e.segment(rows_.first_row[k], count);
     z_.segment(sample_row_[k], count) = z.segment(rows_.first_row[k], count);
   }
   for (int b = 0; b <= blocks; ++b)

@@ -36,10 +36,13 @@ class ResidualProblem {
   /// Of the samples of a block: the first row, and one past the last.
   int FirstRow(int block) const { return first_row_[static_cast<std::size_t>(block)]; }
   const Eigen::MatrixXd& Derivatives() const { return X_; }  ///< in prior deviations
-  const Eigen::VectorXd& Left() const { return z_; }
+  const Eigen::VectorXd& Left() const { return z_; }         ///< measured less base
+  Eigen::VectorXd LeftHere() const { return here_; }         ///< less what the replay stands at
   const Eigen::MatrixXd& Squares(int block) const {
     return squares_[static_cast<std::size_t>(block)];
   }
+  /// The measured rows of a sample.
+  const std::vector<int>& RowsOf(std::size_t k) const { return rows_.rows[k]; }
   int FirstRowOfSample(std::size_t k) const { return sample_row_[k]; }
   int BlockOf(std::size_t k) const;
 
@@ -51,7 +54,7 @@ class ResidualProblem {
   std::vector<int> sample_row_, first_row_;
   std::vector<std::vector<int>> used_rows_;
   Eigen::MatrixXd X_;
-  Eigen::VectorXd z_;
+  Eigen::VectorXd z_, here_;
   std::vector<Eigen::MatrixXd> squares_;  ///< X' X by block
   int samples_used_ = 0;
 };

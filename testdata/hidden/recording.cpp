@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "recording/recording_writer.h"
 #include "simulation/plant/plant.h"
+#include "testdata/hidden/forms.h"
 
 namespace flextip::hidden {
 namespace {
@@ -90,7 +91,7 @@ simulation::PlantSetup MakePlantSetup(const HiddenScene& scene,
 
 /// Empty where the plant loses its equilibrium, or bends as no instrument is bent.
 std::optional<Run> RunPlant(const HiddenScene& scene, const simulation::PlantSetup& setup,
-                            const HiddenOptions& options) {
+                            const std::vector<HiddenForm>& forms, const HiddenOptions& options) {
   simulation::Plant plant(setup, {options.links_per_side, options.links_per_side});
   const WristCourse motion = scene.Motion();
   Run run;
@@ -100,6 +101,12 @@ std::optional<Run> RunPlant(const HiddenScene& scene, const simulation::PlantSet
     const double t = tick / options.tick_rate_hz;
     plant.SetLoad(scene.load.At(t));
     plant.SetRoll(scene.RollAt(t));
+    for (const HiddenForm& form : forms) {
+      if (!form.IsOfPlant()) continue;
+      simulation::PlantEffects effects;
+      form.ActOnPlant(t, setup.effects, effects);
+      plant.SetEffects(effects);
+    }
     run.t_s.push_back(t);
     run.shapes.push_back(plant.Solve(motion.At(t), t));
     const simulation::PlantShape& shape = run.shapes.back();
@@ -199,7 +206,10 @@ std::optional<HiddenRecording> Attempt(const HiddenOptions& options, std::uint64
   effects.port_motion.second_harmonic = Uniform(form_rng, 0.1, 0.2);
   for (const std::string& form : draw.present) AddShaftForm(form, scene, form_rng, effects);
 
-  const std::optional<Run> run = RunPlant(scene, MakePlantSetup(scene, effects), options);
+  std::vector<HiddenForm> forms;
+  for (const std::string& form : draw.present)
+    if (Has(LaterForms(), form)) forms.emplace_back(form, scene, form_rng);
+  const std::optional<Run> run = RunPlant(scene, MakePlantSetup(scene, effects), forms, options);
   if (!run) return {};
   const simulation::SensorEffects sensor_effects =
       MakeSensorEffects(hidden.label, scene, *run, options, sensor_rng);
@@ -210,6 +220,7 @@ std::optional<HiddenRecording> Attempt(const HiddenOptions& options, std::uint64
   hidden.recording.cam0->comment = "laparoscope";
   hidden.recording.cam0->calibration = scene.camera;
   SampleRun(*run, scene, sensor_effects, sensor_rng(), hidden);
+  for (const HiddenForm& form : forms) form.ActOnReadings(hidden.recording);
   LeaveOut(options, hidden.recording);
   return hidden;
 }

@@ -8,19 +8,19 @@ namespace {
 using namespace sample_input;
 
 constexpr TermTargetInfo kTargets[kTermTargets] = {
-    {"em0_position_m", "the EM position", kEmOffset, 3, 1.0, "m", "R"},
-    {"em0_orientation_rad", "the EM orientation", kEmReadTurn, 3, 1.0, "rad", "R"},
-    {"strain0_moment_Nm", "the strain reading", kStrainOffset, 4, 1.0, "Nm", "gages"},
-    {"vision0_position_m", "the seen tip position", kVisionShift, 3, 1.0, "m", "R"},
-    {"vision0_direction_rad", "the seen direction", kTipReadTurn, 3, 1.0, "rad", "R"},
-    {"wrist0_orientation_rad", "the wrist's orientation", kWristReadTurn, 3, 1.0, "rad", "R"},
-    {"wrist0_position_m", "the wrist's position", kWrist, 3, -1.0, "m", "R"},
-    {"load0_force_N", "the load cell", kForce, 3, -1.0, "N", "R"},
-    {"port_position_m", "the port", kPort, 3, 1.0, "m", "R"},
-    {"stiffness", "the stiffness (its logarithm)", kStiffness, 1, 1.0, "", "shaft"},
-    {"port_friction", "the friction of the port", kPortFriction, 1, 1.0, "", "shaft"},
-    {"shaft_load_N_m", "a load along the shaft beyond the port", kInside, 3, 1.0, "N_m", "R"},
-    {"curvature_1_m", "the shaft's own curvature", kCurvature, 2, 1.0, "1_m", "instrument"},
+    {"em0_position_m", "the EM position", kEmOffset, 3, 1.0, 1e-4, "m", "R"},
+    {"em0_orientation_rad", "the EM orientation", kEmReadTurn, 3, 1.0, 1e-3, "rad", "R"},
+    {"strain0_moment_Nm", "the strain reading", kStrainOffset, 4, 1.0, 1e-3, "Nm", "gages"},
+    {"vision0_position_m", "the seen tip position", kVisionShift, 3, 1.0, 2e-4, "m", "R"},
+    {"vision0_direction_rad", "the seen direction", kTipReadTurn, 3, 1.0, 1e-3, "rad", "R"},
+    {"wrist0_orientation_rad", "the wrist's orientation", kWristReadTurn, 3, 1.0, 1e-3, "rad", "R"},
+    {"wrist0_position_m", "the wrist's position", kWrist, 3, -1.0, 1e-4, "m", "R"},
+    {"load0_force_N", "the load cell", kForce, 3, -1.0, 5e-3, "N", "R"},
+    {"port_position_m", "the port", kPort, 3, 1.0, 1e-4, "m", "R"},
+    {"stiffness", "the stiffness (its logarithm)", kStiffness, 1, 1.0, 0.02, "", "shaft"},
+    {"port_friction", "the friction of the port", kPortFriction, 1, 1.0, 0.03, "", "shaft"},
+    {"shaft_load_N_m", "a load along the shaft beyond the port", kInside, 3, 1.0, 0.02, "N_m", "R"},
+    {"curvature_1_m", "the shaft's own curvature", kCurvature, 2, 1.0, 0.003, "1_m", "instrument"},
 };
 
 constexpr const char* kVariableNames[kTermVariables] = {

@@ -36,6 +36,7 @@ struct TermTargetInfo {
   int first_input;      ///< of sample_input
   int inputs;           ///< 1 to 4
   double sign;          ///< -1 where the input is the truth less the reading
+  double tolerance;     ///< what is no matter, in the target's unit
   const char* unit;     ///< suffix of a parameter's name, "m"; empty: none
   const char* frame;    ///< "R", or whose numbers these are
 };

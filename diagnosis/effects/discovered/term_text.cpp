@@ -168,7 +168,7 @@ Eigen::VectorXd DirectionOf(const Term& term) {
 }
 
 std::vector<ReportedParameter> TermParameters(const Term& term, const Eigen::MatrixXd& covariance,
-                                            const std::vector<double>& at_sd) {
+                                              const std::vector<double>& at_sd) {
   const Numbers found = Amplitudes(term);
   const Eigen::Index amplitudes = term.amplitude.size(), n = amplitudes + term.offset.size();
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(Eigen::Index(found.values.size()), n);

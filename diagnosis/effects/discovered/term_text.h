@@ -18,8 +18,8 @@ Eigen::VectorXd DirectionOf(const Term& term);
 /// phase_rad and so on; deviations by `covariance` of what DiscoveredTerm fits and by `at_sd` of
 /// the shape's parameters (both may be empty: zero).
 std::vector<ReportedParameter> TermParameters(const Term& term,
-                                            const Eigen::MatrixXd& covariance = {},
-                                            const std::vector<double>& at_sd = {});
+                                              const Eigen::MatrixXd& covariance = {},
+                                              const std::vector<double>& at_sd = {});
 
 /// Returns a sentence without its full stop: "the EM position swings by 0.82 mm at 1.312 Hz".
 std::string TextOf(const Term& term);
