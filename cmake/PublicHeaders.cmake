@@ -70,6 +70,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   core/tip_observation.h
   core/version.h
   diagnosis/diagnose.h
+  diagnosis/effects/discovered/term.h
   diagnosis/effects/periodic.h
   diagnosis/evidence/residual_memory.h
   diagnosis/judge_diagnosis.h

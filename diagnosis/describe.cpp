@@ -48,8 +48,10 @@ Eigen::MatrixXd ReportedCovariance(const ParameterLayout& layout, const std::vec
   return J * covariance.topLeftCorner(theta.size(), theta.size()) * J.transpose();
 }
 
-/// Of the effects that are not `present`, those that act on sensors' readings or places alone.
-std::vector<int> SensorBlocks(const Replay& extended, const std::vector<int>& present) {
+/// Of the first `effects` that are not `present`, those that act on sensors' readings or places
+/// alone.
+std::vector<int> SensorBlocks(const Replay& extended, int effects,
+                              const std::vector<int>& present) {
   std::set<int> sensors, others;
   for (const ReplayedSample& sample : extended.Samples()) {
     for (const InputChange::Column& column : sample.columns) {
@@ -61,7 +63,7 @@ std::vector<int> SensorBlocks(const Replay& extended, const std::vector<int>& pr
     }
   }
   std::vector<int> blocks;
-  for (int b = 0; b < extended.Layout().EffectCount(); ++b) {
+  for (int b = 0; b < effects; ++b) {
     const auto& block = extended.Layout().Blocks()[b];
     bool alone = std::find(present.begin(), present.end(), b) == present.end();
     for (int j = block.first; j < block.first + block.size; ++j)
@@ -84,27 +86,30 @@ std::string MemoryWarning(const ResidualMemory& memory) {
 }
 
 void DescribeParameters(const Replay& extended, const Selection& selection,
-                        const WeighedHypothesis& weighed, DiagnosisResult& result) {
+                        const WeighedHypothesis& weighed, DiagnosisResult& result,
+                        std::optional<int> effects) {
   const ParameterLayout& layout = extended.Layout();
+  const int known = effects.value_or(layout.EffectCount());
   const Evidence evidence(selection.problem.total, layout, selection.generic_sd,
                           {.unknown_sd = {}});
   const Eigen::MatrixXd covariance = evidence.Covariance(weighed);
   Eigen::VectorXd theta = extended.Theta();
   for (int j = 0; j < layout.Size(); ++j)  // within tolerance the fit does not mind the sign
     if (layout.Parameter(j).positive) theta[j] = std::max(0.0, theta[j]);
-  result.covariance = ReportedCovariance(layout, weighed.hypothesis.effects, theta, covariance);
-  const std::vector<int> sensors = SensorBlocks(extended, weighed.hypothesis.effects);
+  std::vector<int> named = weighed.hypothesis.effects;
+  std::erase_if(named, [&](int b) { return b >= known; });
+  result.covariance = ReportedCovariance(layout, named, theta, covariance);
+  const std::vector<int> sensors = SensorBlocks(extended, known, named);
   result.sensor_tolerance.covariance = ReportedCovariance(layout, sensors, theta, covariance);
   for (const int b : sensors)
     result.sensor_tolerance.effects.push_back(layout.Blocks()[b].effect->Name());
-  for (int b = 0; b < layout.EffectCount(); ++b) {
+  for (int b = 0; b < known; ++b) {
     const auto& block = layout.Blocks()[b];
     EffectFit fit{
         block.effect->Name(),
         block.effect->Report(theta.segment(block.first, block.size),
                              covariance.block(block.first, block.first, block.size, block.size))};
-    const auto& present = weighed.hypothesis.effects;
-    const bool is_present = std::find(present.begin(), present.end(), b) != present.end();
+    const bool is_present = std::find(named.begin(), named.end(), b) != named.end();
     (is_present ? result.parameters : result.within_tolerance).push_back(std::move(fit));
   }
 }

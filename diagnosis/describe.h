@@ -1,6 +1,7 @@
 // A selection in the words of a result.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "diagnosis/diagnose.h"
@@ -12,9 +13,11 @@ namespace flextip::diagnosis {
 std::string MemoryWarning(const ResidualMemory& memory);
 
 /// Sets the parameters of `weighed`, with the others within tolerance: what the extended model is
-/// made of. `extended` stands at the best point of `selection`.
+/// made of. `extended` stands at the best point of `selection`; the first `effects` of its layout,
+/// or all, are the catalogue's.
 void DescribeParameters(const Replay& extended, const Selection& selection,
-                        const WeighedHypothesis& weighed, DiagnosisResult& result);
+                        const WeighedHypothesis& weighed, DiagnosisResult& result,
+                        std::optional<int> effects = {});
 
 /// Sets what cannot be told apart and, with `find_motion`, the motion that would tell it.
 void DescribeAmbiguity(const Replay& extended, const Selection& selection,

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "diagnosis/describe.h"
+#include "diagnosis/discovery/refit.h"
 #include "diagnosis/evidence/probabilities.h"
 #include "diagnosis/heldout.h"
 #include "diagnosis/model/catalogue.h"
@@ -27,6 +28,24 @@ struct Work {
         base(samples, layout),
         extended(samples, layout) {}
 };
+
+/// Terms without a name explain the recording better than any effect: what the answer keeps of the
+/// known causes is what it keeps where none of them is adequate.
+void TurnUnknown(DiagnosisResult& result) {
+  if (result.verdict == Verdict{"unknown"}) return;
+  const double kept = ProbabilityOptions().inadequate_known;
+  double known = 0.0;
+  for (const auto& h : result.probabilities)
+    if (h.verdict != Verdict{"unknown"}) known += h.probability;
+  const double factor = known > kept ? kept / known : 1.0;
+  for (auto& h : result.probabilities)
+    h.probability = h.verdict == Verdict{"unknown"} ? 1.0 - factor * known : factor * h.probability;
+  for (auto& [effect, presence] : result.presence) presence *= factor;
+  std::stable_sort(result.probabilities.begin(), result.probabilities.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  result.verdict = {"unknown"};
+  result.credible_set = {{"unknown"}};
+}
 
 }  // namespace
 
@@ -71,19 +90,27 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
   result.verdict = probabilities.hypotheses.front().verdict;
   if (!result.IsAdequate()) result.warnings.push_back(MemoryWarning(selection.memory));
   const WeighedHypothesis& known = selection.BestKnown();
-  DescribeParameters(work.extended, selection, known, result);
+  work.base.TakeSettings(work.extended);
+  std::unique_ptr<TermModel> terms;
+  if (options.discover) terms = FindTerms(work.base, work.extended, selection, known, options);
+  if (terms && !NamesEffects(terms->Named())) TurnUnknown(result);
+  const Replay& base = terms ? terms->base : work.base;
+  const Replay& extended = terms ? terms->extended : work.extended;
+  const Selection& chosen = terms ? terms->selection : selection;
+  const WeighedHypothesis& model = terms ? terms->weighed : known;
   if (NamesEffects(result.verdict))
     DescribeAmbiguity(work.extended, selection, known, true, result);
   if (options.plan)
     result.plan = PlanNextMotion(work.extended, selection, result.indistinguishable, *options.plan);
-  work.base.TakeSettings(work.extended);
+  if (terms) result.discovered = DescribeTerms(*terms, options.measure_gain);
+  DescribeParameters(extended, chosen, model, result, work.layout.EffectCount());
   if (options.measure_gain) {
-    const HeldOut heldout = MeasureHeldOut(work.base, work.extended, selection, known);
+    const HeldOut heldout = MeasureHeldOut(base, extended, chosen, model);
     result.base = heldout.base;
     result.extended = heldout.extended;
     result.gain = heldout.gain;
   }
-  result.residuals = MakeResidualTable(work.base, work.extended);
+  result.residuals = MakeResidualTable(base, extended);
   DescribeRecording(work.extended, selection, recording.wrist0->samples.front().t_ns, result);
   return result;
 }

@@ -67,6 +67,8 @@ void Run(const Options& options, bool quiet) {
     gain = MeasureGain(recording, model, output);
   WriteTextFile(output.folder() / "diagnosis.json", DiagnosisJson(result, gain ? &*gain : nullptr));
   WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result.residuals));
+  if (!result.discovered.empty())
+    WriteTextFile(output.folder() / "discovered.csv", DiscoveredCsv(result.discovered));
   diagnosis::WriteModel(output.folder() / "model.yaml", model);
   if (result.plan && !result.plan->places_m.empty())
     diagnosis::WriteMotion(output.folder() / "motion.yaml", *result.plan);

@@ -16,4 +16,8 @@ std::string DiagnosisJson(const diagnosis::DiagnosisResult& result,
 /// Returns residuals.csv: the ResidualTable, six digits a number; an absent measurement is empty.
 std::string ResidualsCsv(const diagnosis::ResidualTable& residuals);
 
+/// Returns discovered.csv: of each term the variable, what the sensors say of it and what it says,
+/// sample by sample, thinned to a thousand; empty without terms.
+std::string DiscoveredCsv(const std::vector<diagnosis::Discovered>& terms);
+
 }  // namespace flextip

@@ -17,6 +17,8 @@
 
 namespace flextip::diagnosis {
 
+struct SolvedSample;
+
 /// One parameter as reported. Some effects are fitted in another form than they are named in.
 struct ReportedParameter {
   std::string name;
@@ -27,10 +29,11 @@ struct ReportedParameter {
 /// The sample on which an effect acts, and the port's place as the last replay found it.
 struct Instant {
   const SampleSet& samples;
-  std::size_t k = 0;                 ///< index of the sample
-  double t_s = 0.0;                  ///< since the recording's start
-  double s_port_free_m = 0.0;        ///< of the port on the shaft if it had no friction
-  double ds_port_dfriction_m = 0.0;  ///< by rod_input::kPortFriction; 0 where not known yet
+  std::size_t k = 0;                     ///< index of the sample
+  double t_s = 0.0;                      ///< since the recording's start
+  double s_port_free_m = 0.0;            ///< of the port on the shaft if it had no friction
+  double ds_port_dfriction_m = 0.0;      ///< by rod_input::kPortFriction; 0 where not known yet
+  const SolvedSample* solved = nullptr;  ///< the shape as last found; null: not known yet
 };
 
 /// The memory of an effect from sample to sample.

@@ -100,7 +100,10 @@ double Replay::ApplyEffects(const Eigen::VectorXd& theta) {
   for (std::size_t k = 0; k < replayed_.size(); ++k) {
     ReplayedSample& sample = replayed_[k];
     Instant now{samples_, k, samples_.samples[k].t_s, s_port_free_m[k], 0.0};
-    if (sample.ok) now.ds_port_dfriction_m = sample.solved.ds_port_dfriction_m;
+    if (sample.ok) {
+      now.ds_port_dfriction_m = sample.solved.ds_port_dfriction_m;
+      now.solved = &sample.solved;
+    }
     const double friction = sample.inputs[sample_input::kPortFriction];
     sample.inputs.setZero();
     sample.columns.clear();

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "report/diagnose/discovered.h"
 #include "report/diagnose/head.h"
 #include "report/diagnose/parts.h"
 #include "report/diagnose/residuals.h"
@@ -262,6 +263,7 @@ void WriteDiagnoseReport(const fs::path& folder) {
     report.AddHeading("Causes");
     AddProbabilities(report, result);
   }
+  AddDiscovered(report, folder, result);
   AddWhatIsWrong(report, result, residuals);
   report.AddHeading(result.Is("none") || result.Is("unknown") ? "How well the models predict"
                                                               : "What the extended model gains");

@@ -55,6 +55,13 @@ simulation::PlantEffects PlantOf(const HiddenLabel& label, const HiddenScene& sc
   return effects;
 }
 
+std::vector<HiddenForm> FormsOf(const HiddenLabel& label, const HiddenScene& place, Rng& form_rng) {
+  std::vector<HiddenForm> forms;
+  for (const std::string& form : label.present)
+    if (Has(LaterForms(), form)) forms.emplace_back(form, place, form_rng);
+  return forms;
+}
+
 }  // namespace
 
 /// One generator for each purpose, from seed and attempt.
@@ -73,6 +80,7 @@ DrawnCase DrawCase(const HiddenOptions& options, std::uint64_t seed, int attempt
   drawn.scene = DrawScene(options.scene, scene_rng);
   drawn.label = LabelOf(options, drawn.scene, effect_rng, PresentEffects(options, choice_rng));
   drawn.plant = PlantOf(drawn.label, drawn.scene, drawn.scene, form_rng);
+  drawn.forms = FormsOf(drawn.label, drawn.scene, form_rng);
   return drawn;
 }
 
@@ -94,6 +102,7 @@ DrawnCase DrawNextCase(const HiddenSeries& series, std::uint64_t seed, const Dra
         Uniform(scene_rng, 0.0, 2.0 * std::numbers::pi)};
   }
   drawn.plant = PlantOf(drawn.label, drawn.scene, first.scene, form_rng);
+  drawn.forms = FormsOf(drawn.label, first.scene, form_rng);
   return drawn;
 }
 

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <random>
+#include <vector>
 
 #include "simulation/plant/effects.h"
+#include "testdata/hidden/forms.h"
 #include "testdata/hidden/recording.h"
 
 namespace flextip::hidden {
@@ -13,6 +15,7 @@ struct DrawnCase {
   HiddenScene scene;
   HiddenLabel label;
   simulation::PlantEffects plant;
+  std::vector<HiddenForm> forms;
   int attempt = 0;
 };
 

@@ -105,6 +105,7 @@ HiddenRecording Sampled(const DrawnCase& drawn, const Run& run,
   hidden.recording.cam0->comment = "laparoscope";
   hidden.recording.cam0->calibration = drawn.scene.camera;
   SampleRun(run, drawn.scene, effects, noise_seed, hidden);
+  for (const HiddenForm& form : drawn.forms) form.ActOnReadings(hidden.recording);
   LeaveOut(options, hidden.recording);
   return hidden;
 }
@@ -118,7 +119,7 @@ struct Made {
 
 std::optional<Made> Attempt(const HiddenOptions& options, std::uint64_t seed, int attempt) {
   const DrawnCase drawn = DrawCase(options, seed, attempt);
-  const std::optional<Run> run = RunPlant(drawn.scene, drawn.plant, options);
+  const std::optional<Run> run = RunPlant(drawn.scene, drawn.plant, drawn.forms, options);
   if (!run) return {};
   Rng sensor_rng = GeneratorFor(seed, attempt, 5);
   const simulation::SensorEffects sensors =
@@ -131,7 +132,7 @@ std::optional<HiddenRecording> AttemptNext(const HiddenSeries& series, std::uint
                                            const Made& first, int index) {
   for (int motion = 0; motion < kMotions; ++motion) {
     const DrawnCase drawn = DrawNextCase(series, seed, first.drawn, index, motion);
-    const std::optional<Run> run = RunPlant(drawn.scene, drawn.plant, series.options);
+    const std::optional<Run> run = RunPlant(drawn.scene, drawn.plant, drawn.forms, series.options);
     if (!run) continue;
     simulation::SensorEffects sensors = simulation::EffectsOf(drawn.label.parameters).sensors;
     sensors.em_centre_m = first.sensors.em_centre_m;  // the room's field stays where it is

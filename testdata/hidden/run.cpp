@@ -24,7 +24,7 @@ simulation::PlantSetup MakePlantSetup(const HiddenScene& scene,
 }  // namespace
 
 std::optional<Run> RunPlant(const HiddenScene& scene, const simulation::PlantEffects& effects,
-                            const HiddenOptions& options) {
+                            const std::vector<HiddenForm>& forms, const HiddenOptions& options) {
   simulation::Plant plant(MakePlantSetup(scene, effects),
                           {options.links_per_side, options.links_per_side});
   const WristCourse motion = scene.Motion();
@@ -35,6 +35,12 @@ std::optional<Run> RunPlant(const HiddenScene& scene, const simulation::PlantEff
     const double t = tick / options.tick_rate_hz;
     plant.SetLoad(scene.load.At(t));
     plant.SetRoll(scene.RollAt(t));
+    for (const HiddenForm& form : forms) {
+      if (!form.IsOfPlant()) continue;
+      simulation::PlantEffects changed;
+      form.ActOnPlant(t, effects, changed);
+      plant.SetEffects(changed);
+    }
     run.t_s.push_back(t);
     run.shapes.push_back(plant.Solve(motion.At(t), t));
     const simulation::PlantShape& shape = run.shapes.back();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simulation/plant/plant.h"
+#include "testdata/hidden/forms.h"
 #include "testdata/hidden/recording.h"
 
 namespace flextip::hidden {
@@ -18,7 +19,7 @@ struct Run {
 
 /// Empty where the plant loses its equilibrium, or bends as no instrument is bent.
 std::optional<Run> RunPlant(const HiddenScene& scene, const simulation::PlantEffects& effects,
-                            const HiddenOptions& options);
+                            const std::vector<HiddenForm>& forms, const HiddenOptions& options);
 
 /// The middle of the places where the EM sensor was while it was recorded.
 Eigen::Vector3d EmCentre(const Run& run, const EmStream& em);
