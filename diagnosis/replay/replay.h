@@ -82,6 +82,10 @@ class Replay {
   /// enters the rows.
   void FixNoiseModel();
 
+  /// Sets, until FixNoiseModel, how wide the prior of an unknown force along the shaft is, in units
+  /// of EI / L^2.
+  void SetAlongPrior(double units) { along_prior_ = units; }
+
   /// `sensors_used`: rows of absent sensors are left out, besides the absent ones.
   WhitenedRows Whiten(const std::bitset<row::kCount>& rows_used = AllRows()) const;
 
@@ -142,6 +146,8 @@ class Replay {
   Eigen::Vector3d ShortStep(std::size_t k, const Eigen::Vector3d& step_N) const;
   void FitForce(std::size_t k, EffectRodSolver& solver);
   std::size_t NextAlike(std::size_t k, int step) const;
+  bool LooksWrong(std::size_t k, std::size_t next) const;
+  void FitBetter(std::size_t k, const Eigen::Vector3d& start_N, EffectRodSolver& solver);
   bool MendForce(std::size_t k);
   bool TryForce(std::size_t k, const Eigen::Vector3d& f_N, EffectRodSolver& solver);
   void CompareSamples();
