@@ -72,6 +72,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   diagnosis/diagnose.h
   diagnosis/effects/discovered/term.h
   diagnosis/effects/periodic.h
+  diagnosis/evidence/priors.h
   diagnosis/evidence/residual_memory.h
   diagnosis/judge_diagnosis.h
   diagnosis/model/catalogue.h
@@ -126,6 +127,8 @@ set(FLEXTIP_PUBLIC_HEADERS
   pipeline/guard/still_pictures.h
   pipeline/guard/tip_range.h
   pipeline/tip_predictor.h
+  recording/arm/arm.h
+  recording/arm/arm_file.h
   recording/calibrations/em_field.h
   recording/calibrations/file.h
   recording/cameras/camera_file.h

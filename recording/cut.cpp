@@ -32,6 +32,11 @@ Recording Cut(const Recording& recording, TimeNs from_ns, TimeNs to_ns) {
   CutStream(cut.strain0, &StrainStream::moments_Nm, from_ns, to_ns);
   CutStream(cut.load0, &LoadStream::f_tip_N, from_ns, to_ns);
   CutStream(cut.vision0, &VisionStream::tips, from_ns, to_ns);
+  CutStream(cut.joints0, &JointStream::q, from_ns, to_ns);
+  CutStream(cut.joints_command0, &JointStream::q, from_ns, to_ns);
+  CutStream(cut.joints_seen0, &JointStream::q, from_ns, to_ns);
+  CutStream(cut.torque0, &TorqueStream::tau, from_ns, to_ns);
+  CutStream(cut.pose0, &PoseStream::samples, from_ns, to_ns);
   DropFrames(cut.cam0);
   DropFrames(cut.cam1);
   return cut;

@@ -17,6 +17,7 @@
 #include "core/tag_collar.h"
 #include "core/time_series.h"
 #include "core/tip_observation.h"
+#include "recording/arm/arm.h"
 
 namespace flextip {
 
@@ -120,7 +121,42 @@ struct VisionStream {
   ClockNoise clock = {};
 };
 
+/// Joints of an arm, one number a joint: as the encoders measured (joints0), as commanded
+/// (joints_command0) or as an outside sensor saw them (joints_seen0).
+struct JointStream {
+  std::string comment;
+  double rate_hz = 0.0;
+  std::vector<JointType> types;
+  std::vector<double> noise;  ///< one a joint, rad or m
+  Series<Eigen::VectorXd> q;
+};
+
+/// Efforts of the joints, the first so many of the arm's.
+struct TorqueStream {
+  std::string comment;
+  double rate_hz = 0.0;
+  std::vector<JointType> types;
+  std::vector<double> noise;  ///< one a joint, Nm or N
+  Series<Eigen::VectorXd> tau;
+};
+
+/// The arm's last link, or a marker on it, by an outside tracker.
+struct PoseSample {
+  Eigen::Vector3d p_RK = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Quaterniond> q_RK;
+};
+struct PoseStream {
+  std::string comment;
+  double rate_hz = 0.0;
+  double position_noise_m = 0.0;
+  double orientation_noise_rad = 0.0;
+  double registration_noise_rad = 0.0;  ///< how well the tracker's frame is known in R
+  double registration_noise_m = 0.0;
+  Series<PoseSample> samples;
+};
+
 struct Recording {
+  bool has_shaft = true;  ///< a shaft through a port; else instrument and port mean nothing
   Instrument instrument;
   Eigen::Vector3d p_RP = Eigen::Vector3d::Zero();  ///< the port as registered
   Eigen::Vector3d gravity_m_s2{0.0, 0.0, -9.81};
@@ -133,6 +169,13 @@ struct Recording {
   std::optional<CameraStream> cam0, cam1;  ///< cam1: a stereo laparoscope's other eye
   std::optional<TagCollar> tags0;
   std::optional<VisionStream> vision0;
+  std::optional<Arm> arm;  ///< there with every stream of joints
+  std::optional<JointStream> joints0, joints_command0, joints_seen0;
+  std::optional<TorqueStream> torque0;
+  std::optional<PoseStream> pose0;
+
+  /// Whether there are joints from which an arm's motion can be told.
+  bool HasArm() const { return joints0 || (joints_command0 && joints_seen0); }
 };
 
 }  // namespace flextip

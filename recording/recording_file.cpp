@@ -47,16 +47,32 @@ std::vector<double> ReadTolerance(const YamlMap& yaml, const std::string& key) {
   return values;
 }
 
+std::string InstrumentText(const Instrument& instrument) {
+  std::string text = "instrument:\n";
+  text += fmt::format("  length_m: {}\n", YamlNumber(instrument.length_m));
+  text += fmt::format("  outer_diameter_m: {}\n", YamlNumber(instrument.outer_diameter_m));
+  text +=
+      fmt::format("  bending_stiffness_Nm2: {}\n", YamlNumber(instrument.bending_stiffness_Nm2));
+  text += fmt::format("  mass_per_length_kg_m: {}\n", YamlNumber(instrument.mass_per_length_kg_m));
+  if (instrument.stiffness_taper != 0) {
+    text += fmt::format("  stiffness_taper: {}\n", YamlNumber(instrument.stiffness_taper));
+  }
+  return text;
+}
+
 }  // namespace
 
-Recording ReadRecordingFile(const std::filesystem::path& file, ReadLog& log) {
+Recording ReadRecordingFile(const std::filesystem::path& file, ReadLog& log, bool may_lack_shaft) {
   const auto yaml = YamlMap::Load(file);
   CheckFormat(yaml);
   Recording recording;
-  recording.instrument = ReadInstrument(yaml.Map("instrument"), log);
-  const auto port = yaml.Map("port");
-  recording.p_RP = port.Vector3("position_m");
-  port.WarnUnknown(log);
+  recording.has_shaft = !may_lack_shaft || yaml.Has("instrument") || yaml.Has("port");
+  if (recording.has_shaft) {
+    recording.instrument = ReadInstrument(yaml.Map("instrument"), log);
+    const auto port = yaml.Map("port");
+    recording.p_RP = port.Vector3("position_m");
+    port.WarnUnknown(log);
+  }
   recording.gravity_m_s2 = yaml.Vector3("gravity_m_s2");
   if (yaml.Has("tolerances")) {
     const auto tolerances = yaml.Map("tolerances");
@@ -70,19 +86,12 @@ Recording ReadRecordingFile(const std::filesystem::path& file, ReadLog& log) {
 }
 
 void WriteRecordingFile(const std::filesystem::path& file, const Recording& recording) {
-  const auto& instrument = recording.instrument;
   const auto vector3 = [](const Eigen::Vector3d& v) { return YamlNumbers({v.x(), v.y(), v.z()}); };
   std::string text = fmt::format("format: {}\nversion: {}\n", kRecordingFormat, kRecordingVersion);
-  text += "instrument:\n";
-  text += fmt::format("  length_m: {}\n", YamlNumber(instrument.length_m));
-  text += fmt::format("  outer_diameter_m: {}\n", YamlNumber(instrument.outer_diameter_m));
-  text +=
-      fmt::format("  bending_stiffness_Nm2: {}\n", YamlNumber(instrument.bending_stiffness_Nm2));
-  text += fmt::format("  mass_per_length_kg_m: {}\n", YamlNumber(instrument.mass_per_length_kg_m));
-  if (instrument.stiffness_taper != 0) {
-    text += fmt::format("  stiffness_taper: {}\n", YamlNumber(instrument.stiffness_taper));
+  if (recording.has_shaft) {
+    text += InstrumentText(recording.instrument);
+    text += fmt::format("port:\n  position_m: {}\n", vector3(recording.p_RP));
   }
-  text += fmt::format("port:\n  position_m: {}\n", vector3(recording.p_RP));
   text += fmt::format("gravity_m_s2: {}\n", vector3(recording.gravity_m_s2));
   text += recording.tolerances.empty() ? "tolerances: {}\n" : "tolerances:\n";
   for (const auto& [key, values] : recording.tolerances) {

@@ -10,9 +10,10 @@
 namespace flextip {
 namespace {
 
-const std::set<std::string> kKnownFolders = {"wrist0", "command0", "em0",   "em1",   "strain0",
-                                             "load0",  "cam0",     "cam1",  "tags0", "vision0",
-                                             "truth0", "session0", "loop0", "stops"};
+const std::set<std::string> kKnownFolders = {
+    "wrist0",  "command0",        "em0",          "em1",     "strain0",  "load0", "cam0",
+    "cam1",    "tags0",           "vision0",      "truth0",  "session0", "loop0", "stops",
+    "joints0", "joints_command0", "joints_seen0", "torque0", "pose0"};
 
 void WarnOfUnknownFolders(const std::filesystem::path& folder, ReadLog& log) {
   std::set<std::string> unknown;
@@ -43,6 +44,26 @@ void ReadStreams(const std::filesystem::path& folder, const ReadOptions& options
   if (has("cam1")) recording.cam1 = ReadCamera(folder / "cam1", options.check_frames, log);
   if (has("tags0")) recording.tags0 = ReadTags(folder / "tags0", log);
   if (has("vision0")) recording.vision0 = ReadVision(folder / "vision0", log);
+  recording.arm = ReadArmOf(folder, log);
+  if (!recording.arm) return;
+  const Arm& arm = *recording.arm;
+  if (has("joints0")) recording.joints0 = ReadJoints(folder / "joints0", arm, log);
+  if (has("joints_command0"))
+    recording.joints_command0 = ReadJoints(folder / "joints_command0", arm, log);
+  if (has("joints_seen0")) recording.joints_seen0 = ReadJoints(folder / "joints_seen0", arm, log);
+  if (has("torque0")) recording.torque0 = ReadTorque(folder / "torque0", arm, log);
+  if (has("pose0")) recording.pose0 = ReadPose(folder / "pose0", log);
+}
+
+/// A shaft may be absent where an arm's joints were recorded and nothing that a shaft needs.
+bool MayLackShaft(const std::filesystem::path& folder) {
+  const auto has = [&](const char* sensor) {
+    return std::filesystem::is_directory(folder / sensor);
+  };
+  if (!has("joints0") && !has("joints_command0")) return false;
+  for (const char* sensor : {"wrist0", "em0", "em1", "strain0", "load0", "vision0"})
+    if (has(sensor)) return false;
+  return true;
 }
 
 }  // namespace
@@ -55,7 +76,7 @@ ReadResult ReadRecording(const std::filesystem::path& folder, const ReadOptions&
   ReadLog log;
   ReadResult result;
   try {
-    result.recording = ReadRecordingFile(folder / "recording.yaml", log);
+    result.recording = ReadRecordingFile(folder / "recording.yaml", log, MayLackShaft(folder));
     ReadStreams(folder, options, result.recording, log);
     WarnOfUnknownFolders(folder, log);
   } catch (const std::filesystem::filesystem_error& problem) {

@@ -14,6 +14,7 @@
 #include "apps/common/input/recording_input.h"
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
+#include "apps/diagnose/arm.h"
 #include "apps/diagnose/motion_options.h"
 #include "apps/diagnose/result_files.h"
 #include "diagnosis/diagnose.h"
@@ -29,6 +30,7 @@ namespace {
 
 struct Options {
   RecordingInput input;
+  std::vector<std::filesystem::path> more;  ///< further recordings, of an arm
   std::vector<std::string> without;
   MotionOptions plan;
   bool no_closed_loop = false, force = false;
@@ -50,6 +52,11 @@ simulation::ClosedLoopGain MeasureGain(const Recording& recording,
 }
 
 void Run(const Options& options, bool quiet) {
+  if (IsArmRecording(options.input.recording) || !options.more.empty()) {
+    ArmRun run{{options.input.recording}, options.input.out, options.without, options.force, quiet};
+    run.recordings.insert(run.recordings.end(), options.more.begin(), options.more.end());
+    return DiagnoseArm(run);
+  }
   const InputRead read = ReadInput(options.input, UseOfDiagnose(), quiet);
   const Recording& recording = read.recording;
   OutputFolder output(
@@ -98,6 +105,8 @@ void AddDiagnose(CLI::App& app, AppContext& context) {
       "diagnose", "What the simulation gets wrong, why, and what an extended model gains");
   auto options = std::make_shared<Options>();
   AddRecordingInput(*command, options->input);
+  command->add_option("more", options->more, "Further recordings of the same arm")
+      ->type_name("RECORDING");
   command
       ->add_option("--without", options->without,
                    "Effects to leave out of the catalogue (once for each)")

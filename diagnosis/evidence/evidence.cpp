@@ -17,10 +17,10 @@ double LogSumExp(const std::vector<double>& x) {
   return largest + std::log(sum);
 }
 
-Evidence::Evidence(const NormalSums& sums, const ParameterLayout& layout,
-                   const Eigen::VectorXd& generic_sd, const EvidenceOptions& options)
-    : sums_(sums), layout_(layout), options_(options), narrow_(sums.g.size()) {
-  narrow_ << layout.Tolerances(), generic_sd;
+Evidence::Evidence(const NormalSums& sums, const Priors& priors, const Eigen::VectorXd& generic_sd,
+                   const EvidenceOptions& options)
+    : sums_(sums), priors_(priors), options_(options), narrow_(sums.g.size()) {
+  narrow_ << priors.Tolerances(), generic_sd;
   std::vector<double> widths{0.0};
   if (generic_sd.size() > 0)
     widths.insert(widths.end(), options.unknown_sd.begin(), options.unknown_sd.end());
@@ -34,7 +34,7 @@ Evidence::Evidence(const NormalSums& sums, const ParameterLayout& layout,
 
 Evidence::Context Evidence::MakeContext(double unknown_sd) const {
   Context context{unknown_sd, narrow_, {}, {}, 0.0};
-  for (int j = layout_.Size(); j < int(narrow_.size()); ++j)
+  for (int j = priors_.Size(); j < int(narrow_.size()); ++j)
     context.sd[j] = std::max(narrow_[j], unknown_sd);
   Eigen::MatrixXd M = context.sd.asDiagonal() * sums_.H * context.sd.asDiagonal();
   M.diagonal().array() += 1.0;
@@ -49,7 +49,7 @@ Evidence::Context Evidence::MakeContext(double unknown_sd) const {
 std::vector<int> Evidence::Subset(const Hypothesis& hypothesis) const {
   std::vector<int> subset;
   for (const int b : hypothesis.effects) {
-    const auto& block = layout_.Blocks()[b];
+    const ParameterSpan& block = priors_.Span(b);
     for (int j = 0; j < block.size; ++j) subset.push_back(block.first + j);
   }
   return subset;
@@ -68,7 +68,7 @@ Evidence::Marginal Evidence::MarginalOf(const Context& context, const std::vecto
 
 Eigen::VectorXd Evidence::WideSd(const std::vector<int>& subset, const Hypothesis& hypothesis,
                                  const std::vector<double>& scales) const {
-  const Eigen::VectorXd sd = layout_.Widened(hypothesis.effects, scales);
+  const Eigen::VectorXd sd = priors_.Widened(hypothesis.effects, scales);
   Eigen::VectorXd wide(Eigen::Index(subset.size()));
   for (std::size_t i = 0; i < subset.size(); ++i)
     wide[Eigen::Index(i)] = sd[subset[i]] / narrow_[subset[i]];
@@ -89,7 +89,7 @@ double Evidence::Change(const Marginal& marginal, const Eigen::VectorXd& wide,
                  marginal.base;
   std::vector<int> positive;
   for (std::size_t i = 0; i < subset.size(); ++i)
-    if (layout_.Parameter(subset[i]).positive) positive.push_back(int(i));
+    if (priors_.Parameter(subset[i]).positive) positive.push_back(int(i));
   if (positive.empty()) return twice;
   const Eigen::MatrixXd C = llt.Inverse();
   twice += 2.0 * (double(positive.size()) * std::log(2.0) + LogPositive(mean, C, positive));
@@ -129,10 +129,10 @@ WeighedHypothesis Evidence::Weigh(const Hypothesis& hypothesis) const {
 
 Eigen::VectorXd Evidence::PriorSd(const WeighedHypothesis& weighed) const {
   Eigen::VectorXd sd = narrow_;
-  sd.head(layout_.Size()) = layout_.Widened(weighed.hypothesis.effects, weighed.scales);
+  sd.head(priors_.Size()) = priors_.Widened(weighed.hypothesis.effects, weighed.scales);
   if (weighed.hypothesis.unknown)
-    sd.tail(sd.size() - layout_.Size()) =
-        sd.tail(sd.size() - layout_.Size()).cwiseMax(weighed.unknown_sd);
+    sd.tail(sd.size() - priors_.Size()) =
+        sd.tail(sd.size() - priors_.Size()).cwiseMax(weighed.unknown_sd);
   return sd;
 }
 
@@ -152,7 +152,7 @@ double Evidence::Merit(const WeighedHypothesis& weighed, const Eigen::VectorXd& 
 Eigen::VectorXd Evidence::Mode(const WeighedHypothesis& weighed, const Eigen::MatrixXd& C) const {
   std::vector<int> positive;
   for (const int j : Subset(weighed.hypothesis))
-    if (layout_.Parameter(j).positive) positive.push_back(j);
+    if (priors_.Parameter(j).positive) positive.push_back(j);
   return PositiveMode(C * sums_.g, C, positive);
 }
 

@@ -5,12 +5,13 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "diagnosis/evidence/linear_problem.h"
+#include "diagnosis/evidence/normal_sums.h"
+#include "diagnosis/evidence/priors.h"
 
 namespace flextip::diagnosis {
 
-/// What is thought present: blocks of the layout (none: within specification), and whether
-/// something is that the catalogue does not hold.
+/// What is thought present: effects by their place in the priors (none: within specification), and
+/// whether something is that the catalogue does not hold.
 struct Hypothesis {
   std::vector<int> effects;
   bool unknown = false;
@@ -32,7 +33,7 @@ struct EvidenceOptions {
 class Evidence {
  public:
   /// `generic_sd`: prior of each generic coefficient while nothing unknown is present.
-  Evidence(const NormalSums& sums, const ParameterLayout& layout, const Eigen::VectorXd& generic_sd,
+  Evidence(const NormalSums& sums, const Priors& priors, const Eigen::VectorXd& generic_sd,
            const EvidenceOptions& options = {});
 
   WeighedHypothesis Weigh(const Hypothesis& hypothesis) const;
@@ -74,7 +75,7 @@ class Evidence {
                          const std::vector<double>& scales) const;
 
   const NormalSums& sums_;
-  const ParameterLayout& layout_;
+  const Priors& priors_;
   EvidenceOptions options_;
   Eigen::VectorXd narrow_;  // prior sd of all unknowns under `none`
   double none_ = 0.0;

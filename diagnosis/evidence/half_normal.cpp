@@ -10,6 +10,8 @@
 namespace flextip::diagnosis {
 namespace {
 
+constexpr std::size_t kFewPositive = 10;  // so many are all tried, at zero or free
+
 constexpr double kFarOut = -12.0;  // from here on the asymptotic series is exact enough
 const double kLogRoot2Pi = 0.5 * std::log(2.0 * std::numbers::pi);
 
@@ -24,6 +26,44 @@ void Truncate(int i, Eigen::VectorXd& mean, Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd along = covariance.col(i) / variance;
   mean += along * shift;
   covariance -= (1.0 - left) * variance * along * along.transpose();
+}
+
+/// The mode with the parameters of `at_zero` held there, and what holds them.
+Eigen::VectorXd ModeHeld(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
+                         const std::vector<int>& at_zero, Eigen::VectorXd& pull) {
+  pull = Llt(Eigen::MatrixXd(covariance(at_zero, at_zero))).Solve(Eigen::VectorXd(mean(at_zero)));
+  Eigen::VectorXd mode = mean - covariance(Eigen::all, at_zero) * pull;
+  for (const int i : at_zero) mode[i] = 0.0;
+  return mode;
+}
+
+/// By an active set (Lawson & Hanson 1974): the most negative is held, who is held against its will
+/// is freed.
+Eigen::VectorXd PositiveModeOfMany(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
+                                   const std::vector<int>& positive) {
+  std::vector<int> at_zero;
+  Eigen::VectorXd mode = mean, pull;
+  for (std::size_t step = 0; step < 4 * positive.size(); ++step) {
+    int worst = -1;
+    for (const int i : positive)
+      if (mode[i] < 0.0 && (worst < 0 || mode[i] / std::sqrt(covariance(i, i)) <
+                                             mode[worst] / std::sqrt(covariance(worst, worst))))
+        worst = i;
+    if (worst >= 0) {
+      at_zero.push_back(worst);
+    } else {
+      // A held one whose pull is upwards would rather be positive.
+      std::size_t freed = at_zero.size();
+      for (std::size_t i = 0; i < at_zero.size(); ++i)
+        if (pull[Eigen::Index(i)] > 0.0) freed = i;
+      if (freed == at_zero.size()) return mode;
+      at_zero.erase(at_zero.begin() + std::ptrdiff_t(freed));
+    }
+    if (at_zero.empty()) return mean;
+    mode = ModeHeld(mean, covariance, at_zero, pull);
+  }
+  for (const int i : positive) mode[i] = std::max(0.0, mode[i]);
+  return mode;
 }
 
 }  // namespace
@@ -56,6 +96,7 @@ double LogPositive(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covarianc
 
 Eigen::VectorXd PositiveMode(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
                              const std::vector<int>& positive) {
+  if (positive.size() > kFewPositive) return PositiveModeOfMany(mean, covariance, positive);
   Eigen::VectorXd best = mean;
   double least = std::numeric_limits<double>::infinity();
   // Each may be at zero or free: few enough to try them all.

@@ -6,22 +6,10 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "diagnosis/evidence/normal_sums.h"
 #include "diagnosis/replay/replay.h"
 
 namespace flextip::diagnosis {
-
-/// Sums over samples for z = X x + noise of unit covariance.
-struct NormalSums {
-  Eigen::MatrixXd H;    ///< X^T X
-  Eigen::VectorXd g;    ///< X^T z
-  double c = 0.0;       ///< z^T z
-  double volume = 0.0;  ///< noise that unknown forces take up, to be put back on c (force_volume.h)
-  long rows = 0;
-
-  explicit NormalSums(Eigen::Index size = 0)
-      : H(Eigen::MatrixXd::Zero(size, size)), g(Eigen::VectorXd::Zero(size)) {}
-  void Add(const NormalSums& other, double weight = 1.0);
-};
 
 /// Unknowns: the layout's parameters (zero is the base simulation), then one generic coefficient
 /// for each measured row and basis function, in standard deviations of that row's noise.

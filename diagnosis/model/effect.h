@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/evidence/priors.h"
 #include "diagnosis/replay/sample_input.h"
 #include "diagnosis/samples/sample_set.h"
 
@@ -67,15 +68,6 @@ class InputChange {
   int first_;
   SampleInputs& inputs_;
   std::vector<Column>& columns_;
-};
-
-/// One fitted parameter. Its prior is normal about zero, which is the base simulation: with
-/// `tolerance` while the effect is not thought present, with `typical` (and a third and three times
-/// of it) while it is.
-struct FitParameter {
-  double tolerance = 0.0;
-  double typical = 0.0;
-  bool positive = false;  ///< a negative value has no meaning
 };
 
 /// A parameter in which the model is far from linear, such as a frequency. The search scans it

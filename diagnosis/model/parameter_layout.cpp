@@ -1,7 +1,5 @@
 #include "diagnosis/model/parameter_layout.h"
 
-#include <algorithm>
-
 #include "diagnosis/effects/mean_load.h"
 #include "diagnosis/effects/registration.h"
 
@@ -17,25 +15,8 @@ ParameterLayout::ParameterLayout(const SampleSet& samples, Catalogue catalogue)
     const auto own = catalogue_[b]->Parameters(samples);
     blocks_.push_back({catalogue_[b].get(), Size(), int(own.size()), b >= effect_count_});
     if (catalogue_[b]->Scanned(samples)) scanned_.push_back(b);
-    parameters_.insert(parameters_.end(), own.begin(), own.end());
+    Append(own);
   }
-  tolerances_.resize(Size());
-  // A parameter said to be known exactly keeps a sliver of freedom, so that no matrix is singular.
-  for (int j = 0; j < Size(); ++j) {
-    tolerances_[j] = std::max(parameters_[j].tolerance, 1e-6 * parameters_[j].typical);
-    if (tolerances_[j] <= 0.0) tolerances_[j] = 1e-12;
-  }
-}
-
-Eigen::VectorXd ParameterLayout::Widened(const std::vector<int>& present,
-                                         const std::vector<double>& scales) const {
-  Eigen::VectorXd sd = tolerances_;
-  for (std::size_t i = 0; i < present.size(); ++i) {
-    const Block& block = blocks_[present[i]];
-    for (int j = block.first; j < block.first + block.size; ++j)
-      sd[j] = std::max(sd[j], scales[i] * parameters_[j].typical);
-  }
-  return sd;
 }
 
 int ParameterLayout::Find(const std::string& effect) const {

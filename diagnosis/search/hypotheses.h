@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnosis/evidence/evidence.h"
+#include "diagnosis/evidence/linear_problem.h"
 
 namespace flextip::diagnosis {
 

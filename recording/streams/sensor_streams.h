@@ -40,6 +40,22 @@ void WriteTags(const std::filesystem::path& folder, const TagCollar& collar);
 VisionStream ReadVision(const std::filesystem::path& folder, ReadLog& log);
 void WriteVision(const std::filesystem::path& folder, const VisionStream& stream);
 
+/// Reads joints0, joints_command0 or joints_seen0. The columns q1 [rad], q2 [rad], q3 [m] ... must
+/// be those of the arm's joints; an absent `joint_noise` is allowed for what was commanded.
+JointStream ReadJoints(const std::filesystem::path& folder, const Arm& arm, ReadLog& log);
+void WriteJoints(const std::filesystem::path& folder, const JointStream& stream);
+
+/// Reads efforts of the arm's first joints, tau1 [Nm], tau2 [Nm], tau3 [N] ...
+TorqueStream ReadTorque(const std::filesystem::path& folder, const Arm& arm, ReadLog& log);
+void WriteTorque(const std::filesystem::path& folder, const TorqueStream& stream);
+
+PoseStream ReadPose(const std::filesystem::path& folder, ReadLog& log);
+void WritePose(const std::filesystem::path& folder, const PoseStream& stream);
+
+/// Reads the arm that a folder's streams of joints name in their sensor.yaml. Throws InputError
+/// where they name different files; nothing where there are none.
+std::optional<Arm> ReadArmOf(const std::filesystem::path& recording, ReadLog& log);
+
 /// Writes parts of a vision table, for rows that come one by one.
 const std::vector<std::string>& VisionColumns();  ///< without the time
 void AddVisionRow(CsvWriter& csv, const Sample<TipObservation>& tip);

@@ -35,6 +35,7 @@ constexpr Quantity kQuantities[] = {
     {"_1_m", {1e5, 1e-9, "1/m"}},
     {"_m_N", {1e3, 1e-15, "m/N"}},
     {"_kg_m", {1e4, 1e-9, "kg/m"}},
+    {"_kg", {1e5, 1e-9, "kg"}},
     {"_rad", {1e4, 1e-12, "rad"}},
     {"_deg", {1e6, 1e-10, "deg"}},
     {"_s", {1e5, 1e-9, "s"}},

@@ -264,6 +264,8 @@ void WriteDiagnoseReport(const fs::path& folder) {
     AddProbabilities(report, result);
   }
   AddDiscovered(report, folder, result);
+  if (fs::exists(folder / "figures.json"))
+    report.AddFigureFile(folder / "figures.json", "Joint by joint");
   AddWhatIsWrong(report, result, residuals);
   report.AddHeading(result.Is("none") || result.Is("unknown") ? "How well the models predict"
                                                               : "What the extended model gains");

@@ -73,5 +73,26 @@ TEST(HalfNormal, ModeIsTheBestPointOfTheQuadrant) {
   }
 }
 
+/// Twelve of them: no better point by any small allowed step.
+TEST(HalfNormal, ModeOfManyIsTheBestPoint) {
+  constexpr int n = 12;
+  Eigen::MatrixXd A(n, n);
+  Eigen::VectorXd mean(n);
+  for (int i = 0; i < n; ++i) {
+    mean[i] = std::sin(3.0 * i + 1.0);
+    for (int j = 0; j < n; ++j) A(i, j) = std::cos(1.7 * i * j + 0.3 * j) + (i == j ? 2.0 : 0.0);
+  }
+  const Eigen::MatrixXd C = A * A.transpose(), H = C.inverse();
+  std::vector<int> positive;
+  for (int i = 0; i < n; ++i) positive.push_back(i);
+  const Eigen::VectorXd mode = PositiveMode(mean, C, positive);
+  EXPECT_GE(mode.minCoeff(), 0.0);
+  const Eigen::VectorXd slope = H * (mode - mean);
+  for (int i = 0; i < n; ++i) {
+    if (mode[i] > 1e-9) EXPECT_NEAR(slope[i], 0.0, 1e-8);
+    EXPECT_GE(slope[i], -1e-8);
+  }
+}
+
 }  // namespace
 }  // namespace flextip::diagnosis

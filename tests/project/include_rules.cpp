@@ -28,7 +28,7 @@ const std::map<std::string, Names>& Arrows() {
       "core",     "kinematics",   "estimation",  "control",    "vision",    "recording",
       "pipeline", "plausibility", "calibration", "simulation", kClosedLoop, "diagnosis",
       "report",   "workspace",    "targets",     "exchange",   "exports",   "batch",
-      "live",     kServe,         "task",        kFaults,      "stops"};
+      "live",     kServe,         "task",        kFaults,      "stops",     "arms"};
   static const std::map<std::string, Names> arrows{
       {"cmake", {}},
       {"core", {}},
@@ -52,6 +52,7 @@ const std::map<std::string, Names>& Arrows() {
        {"core", "recording", "vision", "estimation", "control", "pipeline", "task", "diagnosis",
         "simulation", kFaults, "stops"}},
       {"diagnosis", {"core", "kinematics", "estimation", "recording"}},
+      {"arms", {"core", "recording", "diagnosis"}},
       {"report", {"core", "recording"}},
       {"workspace", {"core", "kinematics", "control", "recording", "report"}},
       {"exports", {"core", "recording", "report", "vision"}},
@@ -84,8 +85,8 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"ros2.h", {"live", "tests"}},
       {"yaml-cpp/", {"recording"}},
       {"tbb/",
-       {"simulation", kClosedLoop, "diagnosis", "workspace", "reproduction", "apps", "bench",
-        "tests"}},
+       {"simulation", kClosedLoop, "diagnosis", "arms", "workspace", "reproduction", "apps",
+        "bench", "tests"}},
       {"geos", {"reproduction"}},
       {"boost/", {"control", "workspace", "reproduction"}},
       {"nlohmann/",

@@ -1,0 +1,85 @@
+#include "arms/diagnose/model_file.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "recording/text/text.h"
+#include "recording/text/yaml_map.h"
+
+namespace flextip::arms {
+namespace {
+
+using diagnosis::EffectFit;
+using diagnosis::ReportedParameter;
+
+constexpr int kArmModelVersion = 1;
+
+std::string ListText(const std::vector<double>& values) {
+  return values.size() == 1 ? YamlNumber(values[0]) : YamlNumbers(values);
+}
+
+std::string SectionText(const std::string& name, const std::vector<EffectFit>& effects,
+                        std::vector<double> ReportedParameter::*what) {
+  if (effects.empty()) return name + ": {}\n";
+  std::string text = name + ":\n";
+  for (const EffectFit& fit : effects) {
+    std::string parameters;
+    for (const ReportedParameter& p : fit.parameters) {
+      if (!parameters.empty()) parameters += ", ";
+      parameters += p.name + ": " + ListText(p.*what);
+    }
+    text += "  " + fit.effect + ": {" + parameters + "}\n";
+  }
+  return text;
+}
+
+std::vector<EffectFit> ReadSection(const YamlMap& top, const std::string& key) {
+  std::vector<EffectFit> effects;
+  if (!top.Has(key)) return effects;
+  const YamlMap section = top.Map(key);
+  for (const std::string& name : section.Keys()) {
+    EffectFit fit{name, {}};
+    const YamlMap map = section.Map(name);
+    for (const std::string& parameter : map.Keys()) {
+      const auto values = map.IsList(parameter) ? map.Numbers(parameter)
+                                                : std::vector<double>{map.Number(parameter)};
+      fit.parameters.push_back({parameter, values, std::vector<double>(values.size(), 0.0)});
+    }
+    effects.push_back(std::move(fit));
+  }
+  return effects;
+}
+
+}  // namespace
+
+std::string ArmModelYaml(const ArmModel& model) {
+  std::string text = fmt::format("format: {}\nversion: {}\n", kArmModelFormat, kArmModelVersion);
+  text += SectionText("effects", model.effects, &ReportedParameter::value);
+  text += SectionText("within_tolerance", model.within_tolerance, &ReportedParameter::value);
+  std::vector<EffectFit> all = model.effects;
+  all.insert(all.end(), model.within_tolerance.begin(), model.within_tolerance.end());
+  text += SectionText("sd", all, &ReportedParameter::sd);
+  text += SectionText("nuisances", model.nuisances, &ReportedParameter::value);
+  text += SectionText("base_nuisances", model.base_nuisances, &ReportedParameter::value);
+  return text;
+}
+
+bool IsArmModel(const std::filesystem::path& file) {
+  const YamlMap top = YamlMap::Load(file);
+  return top.Has("format") && top.Text("format") == kArmModelFormat;
+}
+
+ArmModel ReadArmModel(const std::filesystem::path& file) {
+  const YamlMap top = YamlMap::Load(file);
+  if (const std::string format = top.Text("format"); format != kArmModelFormat) {
+    throw top.Error("format",
+                    fmt::format("found {}, expected {}", Quoted(format), kArmModelFormat));
+  }
+  if (const auto version = top.Integer("version"); version != kArmModelVersion)
+    throw top.Error("version", fmt::format("found {}, expected {}", version, kArmModelVersion));
+  (void)top.Has("sd");
+  return {ReadSection(top, "effects"), ReadSection(top, "within_tolerance"),
+          ReadSection(top, "nuisances"), ReadSection(top, "base_nuisances")};
+}
+
+}  // namespace flextip::arms

@@ -1,0 +1,116 @@
+#include "arms/diagnose/predict.h"
+
+#include <algorithm>
+
+#include "arms/diagnose/describe.h"
+#include "arms/diagnose/heldout.h"
+
+namespace flextip::arms {
+namespace {
+
+using diagnosis::EffectFit;
+
+const EffectFit* FindFit(const std::vector<EffectFit>& fits, const std::string& effect) {
+  for (const EffectFit& fit : fits)
+    if (fit.effect == effect) return &fit;
+  return nullptr;
+}
+
+std::vector<ArmParameter> Parameters(const EffectFit& fit) {
+  std::vector<ArmParameter> parameters;
+  for (const auto& p : fit.parameters) parameters.push_back({p.name, p.value, p.sd});
+  return parameters;
+}
+
+/// The settings of a history: its windows, else its widths, and what is carried.
+Eigen::VectorXd WindowsOf(const EffectFit& fit) {
+  std::map<std::string, std::vector<double>> lists;
+  for (const auto& p : fit.parameters) lists[p.name] = p.value;
+  std::vector<double> settings = lists.contains("window") ? lists["window"] : lists["width"];
+  settings.insert(settings.end(), lists["carried"].begin(), lists["carried"].end());
+  return Eigen::Map<const Eigen::VectorXd>(settings.data(), Eigen::Index(settings.size()));
+}
+
+/// A payload's block is that of its place.
+bool IsOfPlace(const Layout& layout, const Layout::Block& block, const EffectFit& fit) {
+  if (fit.effect != "payload") return true;
+  double wanted = 0.0, own = 0.0;
+  for (const auto& p : fit.parameters)
+    if (p.name == "place") wanted = p.value[0];
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(block.size);
+  for (const auto& p : block.effect->Report(layout.DataOf(block), zero,
+                                            Eigen::MatrixXd::Zero(block.size, block.size)))
+    if (p.name == "place") own = p.value[0];
+  return wanted == own;
+}
+
+}  // namespace
+
+ArmPrediction Predict(const ArmData& data, const ArmModel& model) {
+  const std::vector<ArmData> recordings{data};
+  const Layout layout(recordings, {});
+  Eigen::VectorXd base_theta = Eigen::VectorXd::Zero(layout.Size()), theta = base_theta;
+  ArmPrediction prediction;
+  std::vector<EffectFit> given = model.effects;
+  given.insert(given.end(), model.within_tolerance.begin(), model.within_tolerance.end());
+  for (const EffectFit& fit : model.effects) {
+    const bool shown = std::any_of(
+        layout.Blocks().begin(), layout.Blocks().end(),
+        [&](const auto& block) { return block.effect->Name() == fit.effect && block.in[0]; });
+    if (!shown) prediction.not_shown.push_back(fit.effect);
+  }
+  for (const Layout::Block& block : layout.Blocks()) {
+    const bool nuisance = !block.effect->IsAnswer();
+    const EffectFit* fit = FindFit(nuisance ? model.nuisances : given, block.effect->Name());
+    if (fit != nullptr && IsOfPlace(layout, block, *fit)) {
+      theta.segment(block.first, block.size) = block.effect->FromReported(data, Parameters(*fit));
+      if (!nuisance && !block.effect->OfWindow(data, 0).empty())
+        block.effect->SetWindows(WindowsOf(*fit));
+    }
+    const EffectFit* base = FindFit(model.base_nuisances, block.effect->Name());
+    if (nuisance && base != nullptr)
+      base_theta.segment(block.first, block.size) =
+          block.effect->FromReported(data, Parameters(*base));
+  }
+  Replay replay(layout);
+  const auto residuals = [&](const Eigen::VectorXd& at) {
+    Eigen::VectorXd here = at;
+    replay.Evaluate(here);
+    replay.Register();
+    replay.Evaluate(here);
+    const Noise noise = MeasureNoise(replay, false);
+    // Only what is each recording's own is found again.
+    for (int round = 0; round < 5; ++round) {
+      const Eigen::VectorXd moved = FitOwn(replay, noise);
+      for (const Layout::Block& block : layout.Blocks())
+        if (!block.effect->IsAnswer() && block.effect->OwnInEach())
+          here.segment(block.first, block.size) = moved.segment(block.first, block.size);
+      replay.Evaluate(here);
+    }
+    Residuals all;
+    for (const Channel& channel : replay.Channels()) all.push_back(channel.residual);
+    return all;
+  };
+  const Residuals base = residuals(base_theta), extended = residuals(theta);
+  const Noise noise = MeasureNoise(replay, false);
+  ErrorSums base_sums, sums;
+  for (std::size_t i = 0; i < replay.Channels().size(); ++i) {
+    AddErrors(replay, i, noise[i], base[i], 0, base[i].rows(), base_sums);
+    AddErrors(replay, i, noise[i], extended[i], 0, extended[i].rows(), sums);
+  }
+  for (const auto& [name, unused] : sums.by_name) {
+    prediction.base_rms[name] = base_sums.Rms(name);
+    prediction.extended_rms[name] = sums.Rms(name);
+  }
+  prediction.base_tip_rms_m = base_sums.Tip();
+  prediction.extended_tip_rms_m = sums.Tip();
+  prediction.base_tip_mean_m = base_sums.TipMean();
+  prediction.extended_tip_mean_m = sums.TipMean();
+  if (base_sums.Weighted() > 0.0) prediction.ratio = sums.Weighted() / base_sums.Weighted();
+  if (base_sums.Tip() > 0.0) prediction.tip_ratio = sums.Tip() / base_sums.Tip();
+  prediction.samples = int(data.joints.Rows());
+  FillCurves(replay, base, extended, prediction.curves);
+  return prediction;
+}
+
+}  // namespace flextip::arms

@@ -1,0 +1,289 @@
+// A URDF's chain of joints (wiki.ros.org/urdf/XML). Only elements and attributes are read; texts,
+// comments and declarations are passed over.
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/rotation.h"
+#include "recording/arm/arm_file.h"
+#include "recording/text/text.h"
+
+namespace flextip {
+namespace {
+
+constexpr std::size_t kMostUrdfJoints = 32;
+
+struct Element {
+  std::string name;
+  std::map<std::string, std::string> attributes;
+  std::vector<Element> children;
+  long line = 0;
+
+  const Element* Child(const std::string& child) const {
+    for (const Element& e : children)
+      if (e.name == child) return &e;
+    return nullptr;
+  }
+};
+
+class XmlReader {
+ public:
+  XmlReader(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {}
+
+  Element Read() {
+    Element top;
+    ReadChildren(top, 0);
+    if (top.children.size() != 1) throw Error("expected one element at the top");
+    return top.children.front();
+  }
+
+ private:
+  InputError Error(const std::string& what) const { return InputError::At(file_, Line(), what); }
+  long Line() const {
+    return 1 + std::count(text_.begin(), text_.begin() + std::ptrdiff_t(at_), '\n');
+  }
+
+  bool Skip(const std::string& begin, const std::string& end) {
+    if (text_.compare(at_, begin.size(), begin) != 0) return false;
+    const auto close = text_.find(end, at_ + begin.size());
+    if (close == std::string::npos) throw Error(fmt::format("{} without {}", begin, end));
+    at_ = close + end.size();
+    return true;
+  }
+
+  void ReadChildren(Element& parent, int depth) {
+    if (depth > 32) throw Error("elements nested more than 32 deep");
+    while (true) {
+      at_ = std::min(text_.find('<', at_), text_.size());
+      if (at_ == text_.size()) {
+        if (depth > 0) throw Error(fmt::format("<{}> is not closed", parent.name));
+        return;
+      }
+      if (Skip("<!--", "-->") || Skip("<?", "?>") || Skip("<!", ">")) continue;
+      if (text_.compare(at_, 2, "</") == 0) {
+        at_ += 2;
+        const std::string name = Name();
+        if (name != parent.name || depth == 0)
+          throw Error(fmt::format("</{}> closes nothing", name));
+        at_ = std::min(text_.find('>', at_), text_.size() - 1) + 1;
+        return;
+      }
+      ReadElement(parent, depth);
+    }
+  }
+
+  void ReadElement(Element& parent, int depth) {
+    Element element;
+    element.line = Line();
+    ++at_;
+    element.name = Name();
+    while (true) {
+      Blanks();
+      if (at_ >= text_.size()) throw Error(fmt::format("<{}> has no end", element.name));
+      if (text_[at_] == '>') {
+        ++at_;
+        ReadChildren(element, depth + 1);
+        break;
+      }
+      if (text_.compare(at_, 2, "/>") == 0) {
+        at_ += 2;
+        break;
+      }
+      const std::string key = Name();
+      Blanks();
+      if (at_ + 1 >= text_.size() || text_[at_] != '=') throw Error("expected =");
+      ++at_;
+      Blanks();
+      const char quote = at_ < text_.size() ? text_[at_] : ' ';
+      if (quote != '"' && quote != '\'') throw Error("expected a value in quotes");
+      const auto close = text_.find(quote, at_ + 1);
+      if (close == std::string::npos) throw Error("a quote is not closed");
+      element.attributes[key] = text_.substr(at_ + 1, close - at_ - 1);
+      at_ = close + 1;
+    }
+    parent.children.push_back(std::move(element));
+  }
+
+  void Blanks() {
+    while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
+  }
+  std::string Name() {
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_])) &&
+           text_[at_] != '>' && text_[at_] != '=' && text_[at_] != '/')
+      ++at_;
+    if (at_ == begin) throw Error("expected a name");
+    return text_.substr(begin, at_ - begin);
+  }
+
+  std::string file_, text_;
+  std::size_t at_ = 0;
+};
+
+struct UrdfJoint {
+  std::string name, type, parent, child;
+  Pose origin;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  long line = 0;
+};
+
+class Urdf {
+ public:
+  explicit Urdf(const std::filesystem::path& file) : file_(file.string()) {
+    top_ = XmlReader(file_, ReadTextFile(file)).Read();
+    if (top_.name != "robot") throw Error(top_.line, "expected <robot>");
+    for (const Element& e : top_.children)
+      if (e.name == "joint") AddJoint(e);
+    if (joints_.empty()) throw Error(top_.line, "found no joint");
+  }
+
+  /// The joints from the root to `tip`, in this order.
+  std::vector<UrdfJoint> Chain(const std::string& tip) const {
+    std::vector<UrdfJoint> longest;
+    for (const auto& [child, joint] : joints_) {
+      if (!tip.empty() && child != tip) continue;
+      std::vector<UrdfJoint> chain = To(child);
+      if (Movable(chain) > Movable(longest)) longest = std::move(chain);
+    }
+    if (longest.empty())
+      throw Error(top_.line, tip.empty() ? "found no joint that moves" : "found no link " + tip);
+    return longest;
+  }
+
+  std::optional<ArmLink> Link(const std::string& name) const {
+    for (const Element& e : top_.children) {
+      if (e.name != "link" || Attribute(e, "name") != name) continue;
+      const Element* inertial = e.Child("inertial");
+      if (inertial == nullptr || inertial->Child("mass") == nullptr) return {};
+      const Element& mass = *inertial->Child("mass");
+      ArmLink link{Numbers(mass, "value", 1)[0], Eigen::Vector3d::Zero()};
+      if (const Element* origin = inertial->Child("origin")) link.com_m = Origin(*origin).p;
+      return link;
+    }
+    return {};
+  }
+
+  InputError Error(long line, const std::string& what) const {
+    return InputError::At(file_, line, what);
+  }
+
+ private:
+  static int Movable(const std::vector<UrdfJoint>& chain) {
+    return int(std::count_if(chain.begin(), chain.end(),
+                             [](const UrdfJoint& joint) { return joint.type != "fixed"; }));
+  }
+
+  std::string Attribute(const Element& e, const std::string& key) const {
+    const auto found = e.attributes.find(key);
+    if (found == e.attributes.end())
+      throw Error(e.line, fmt::format("<{}> has no {}", e.name, key));
+    return found->second;
+  }
+
+  std::vector<double> Numbers(const Element& e, const std::string& key, std::size_t count) const {
+    std::istringstream stream(Attribute(e, key));
+    std::vector<double> numbers;
+    for (std::string word; stream >> word;) {
+      char* end = nullptr;
+      const double value = std::strtod(word.c_str(), &end);
+      if (*end != '\0' || !(std::abs(value) < 1e6))
+        throw Error(e.line, fmt::format("{}: found {}, expected a number", key, Quoted(word)));
+      numbers.push_back(value);
+    }
+    if (numbers.size() != count) {
+      throw Error(e.line,
+                  fmt::format("{}: found {} numbers, expected {}", key, numbers.size(), count));
+    }
+    return numbers;
+  }
+
+  Pose Origin(const Element& e) const {
+    Pose origin;
+    if (e.attributes.contains("xyz")) origin.p = Eigen::Vector3d::Map(Numbers(e, "xyz", 3).data());
+    if (e.attributes.contains("rpy")) {
+      const auto rpy = Numbers(e, "rpy", 3);
+      origin.R =
+          ExpRotation({0, 0, rpy[2]}) * ExpRotation({0, rpy[1], 0}) * ExpRotation({rpy[0], 0, 0});
+    }
+    return origin;
+  }
+
+  void AddJoint(const Element& e) {
+    static const std::set<std::string> known{"revolute", "continuous", "prismatic", "fixed"};
+    UrdfJoint joint;
+    joint.line = e.line;
+    joint.name = Attribute(e, "name");
+    joint.type = Attribute(e, "type");
+    if (!known.contains(joint.type)) {
+      throw Error(e.line, fmt::format("joint {}: found type {}, expected revolute, continuous, "
+                                      "prismatic or fixed",
+                                      joint.name, Quoted(joint.type)));
+    }
+    if (!e.Child("parent") || !e.Child("child"))
+      throw Error(e.line, fmt::format("joint {} has no parent or no child", joint.name));
+    joint.parent = Attribute(*e.Child("parent"), "link");
+    joint.child = Attribute(*e.Child("child"), "link");
+    if (const Element* origin = e.Child("origin")) joint.origin = Origin(*origin);
+    if (const Element* axis = e.Child("axis"))
+      joint.axis = Eigen::Vector3d::Map(Numbers(*axis, "xyz", 3).data());
+    if (joint.axis.norm() < 1e-6) throw Error(e.line, fmt::format("joint {}: no axis", joint.name));
+    joint.axis.normalize();
+    if (!joints_.emplace(joint.child, joint).second)
+      throw Error(e.line, fmt::format("link {} has two parents", joint.child));
+  }
+
+  std::vector<UrdfJoint> To(std::string child) const {
+    std::vector<UrdfJoint> chain;
+    for (auto found = joints_.find(child); found != joints_.end(); found = joints_.find(child)) {
+      if (chain.size() > joints_.size())
+        throw Error(found->second.line, fmt::format("link {} is its own ancestor", child));
+      chain.insert(chain.begin(), found->second);
+      child = found->second.parent;
+    }
+    return chain;
+  }
+
+  std::string file_;
+  Element top_;
+  std::map<std::string, UrdfJoint> joints_;  ///< by their child
+};
+
+}  // namespace
+
+Arm ReadUrdf(const std::filesystem::path& file, const std::string& tip, ReadLog& log) {
+  const Urdf urdf(file);
+  Arm arm;
+  arm.convention = ArmConvention::kUrdf;
+  Pose fixed;
+  std::vector<std::optional<ArmLink>> links;
+  for (const UrdfJoint& joint : urdf.Chain(tip)) {
+    fixed = fixed * joint.origin;
+    if (joint.type == "fixed") continue;
+    ArmJoint own;
+    own.name = joint.name;
+    own.type = joint.type == "prismatic" ? JointType::kPrismatic : JointType::kRevolute;
+    own.before = fixed;
+    own.axis = joint.axis;
+    arm.joints.push_back(own);
+    links.push_back(urdf.Link(joint.child));
+    fixed = {};
+  }
+  if (arm.joints.size() > kMostUrdfJoints)
+    throw urdf.Error(
+        0, fmt::format("found {} joints, expected {} at most", arm.joints.size(), kMostUrdfJoints));
+  arm.joints.back().after = fixed;
+  const bool all =
+      std::all_of(links.begin(), links.end(), [](const auto& link) { return link.has_value(); });
+  if (all) {
+    for (const auto& link : links) arm.links.push_back(*link);
+  } else {
+    log.warnings.push_back(
+        fmt::format("{}: not every link has a mass, all are taken as unknown", file.string()));
+  }
+  return arm;
+}
+
+}  // namespace flextip

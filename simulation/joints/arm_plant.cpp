@@ -1,0 +1,95 @@
+#include "simulation/joints/arm_plant.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/linear_algebra.h"
+
+namespace flextip::simulation {
+namespace {
+
+constexpr double kLinksStep_s = 1e-3;  // the links' matrices are made anew
+constexpr int kCableSteps = 8;         // of the stiff cables within it
+
+double Friction(double coulomb, double viscous, double speed) {
+  return coulomb * std::tanh(speed / 2e-3) + viscous * speed;
+}
+
+/// The command at a time, linear between rows, at rest before the first.
+Eigen::VectorXd CommandAt(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& commands, double t) {
+  const Eigen::Index last = t_s.size() - 1;
+  if (t <= t_s[0]) return commands.row(0).transpose();
+  if (t >= t_s[last]) return commands.row(last).transpose();
+  const double place = (t - t_s[0]) / (t_s[1] - t_s[0]);
+  const auto k = std::min<Eigen::Index>(Eigen::Index(place), last - 1);
+  const double u = place - double(k);
+  return ((1.0 - u) * commands.row(k) + u * commands.row(k + 1)).transpose();
+}
+
+}  // namespace
+
+std::vector<ArmPlantState> RunArm(const ArmPlantSettings& settings, const Eigen::VectorXd& t_s,
+                                  const Eigen::MatrixXd& commands) {
+  const ChainOfLinks chain(settings.arm);
+  const Eigen::Index n = chain.Size();
+  const Eigen::MatrixXd routing = settings.routing.size() > 0
+                                      ? settings.routing
+                                      : Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n));
+  ArmPlantState state;
+  state.t_s = t_s[0];
+  state.motor = commands.row(0).transpose();
+  state.link = routing * state.motor;
+  state.motor_speed = state.link_speed = state.effort = Eigen::VectorXd::Zero(n);
+  std::vector<ArmPlantState> states;
+  for (Eigen::Index row = 0; row < t_s.size(); ++row) {
+    while (state.t_s < t_s[row] - 1e-9) {
+      const double whole = std::min(kLinksStep_s, t_s[row] - state.t_s), dt = whole / kCableSteps;
+      const LinkDynamics links =
+          DynamicsOf(chain, settings.masses, state.link, state.link_speed, settings.gravity_m_s2);
+      Eigen::MatrixXd M = links.M;
+      M.diagonal().array() += 2e-3;  // what no joint is without
+      const Ldlt inverse(M);
+      Eigen::VectorXd held = Eigen::VectorXd::Zero(n);
+      if (settings.servo_holds_gravity) {
+        held = DynamicsOf(chain, settings.masses, state.link, Eigen::VectorXd::Zero(n),
+                          settings.gravity_m_s2)
+                   .rest;
+      }
+      for (int step = 0; step < kCableSteps; ++step) {
+        const Eigen::VectorXd command =
+            CommandAt(t_s, commands, state.t_s - settings.command_delay_s);
+        const Eigen::VectorXd pulled = routing * state.motor,
+                              pulled_speed = routing * state.motor_speed;
+        Eigen::VectorXd cable(n), on_link(n);
+        for (Eigen::Index i = 0; i < n; ++i) {
+          const JointDrive& drive = settings.drives[i];
+          const double apart = pulled[i] - state.link[i];
+          const double stretch = apart > 0.5 * drive.play    ? apart - 0.5 * drive.play
+                                 : apart < -0.5 * drive.play ? apart + 0.5 * drive.play
+                                                             : 0.0;
+          cable[i] = drive.cable_stiffness * stretch;
+          if (stretch != 0.0)
+            cable[i] += drive.cable_damping * (pulled_speed[i] - state.link_speed[i]);
+          on_link[i] = cable[i] - Friction(drive.link_coulomb, 0.0, state.link_speed[i]);
+          state.effort[i] = drive.servo_stiffness * (command[i] - state.motor[i]) -
+                            drive.servo_damping * state.motor_speed[i] + held[i];
+        }
+        const Eigen::VectorXd back = routing.transpose() * cable;
+        for (Eigen::Index i = 0; i < n; ++i) {
+          const JointDrive& drive = settings.drives[i];
+          const double friction =
+              Friction(drive.motor_coulomb, drive.motor_viscous, state.motor_speed[i]);
+          state.motor_speed[i] += dt * (state.effort[i] - back[i] - friction) / drive.motor_inertia;
+        }
+        state.link_speed += dt * inverse.Solve(Eigen::VectorXd(on_link - links.rest));
+        state.motor += dt * state.motor_speed;
+        state.link += dt * state.link_speed;
+        state.t_s += dt;
+      }
+    }
+    states.push_back(state);
+  }
+  return states;
+}
+
+}  // namespace flextip::simulation

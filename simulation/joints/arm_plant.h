@@ -1,0 +1,42 @@
+// Motors that pull links by cables: servo, inertia, friction, stretch and play of every joint.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "simulation/joints/chain_of_links.h"
+
+namespace flextip::simulation {
+
+/// One joint's drive, in the joint's units (rad and Nm, or m and N).
+struct JointDrive {
+  double motor_inertia = 0.02;
+  double servo_stiffness = 400.0, servo_damping = 8.0;  ///< effort by error, against speed
+  double cable_stiffness = 4000.0, cable_damping = 4.0;
+  double play = 0.0;                                ///< whole width
+  double motor_coulomb = 0.0, motor_viscous = 0.0;  ///< against the motor
+  double link_coulomb = 0.0;                        ///< against the link
+};
+
+struct ArmPlantSettings {
+  Arm arm;  ///< the true one
+  std::vector<JointDrive> drives;
+  std::vector<PointMass> masses;
+  Eigen::MatrixXd routing;  ///< how far a motor's cable pulls each joint; identity: its own alone
+  double command_delay_s = 0.0;
+  bool servo_holds_gravity = true;  ///< the servo is told what gravity asks for
+  Eigen::Vector3d gravity_m_s2{0.0, 0.0, -9.81};
+};
+
+/// What sensors can see of the plant at one time.
+struct ArmPlantState {
+  double t_s = 0.0;
+  Eigen::VectorXd motor, motor_speed, link, link_speed, effort;
+};
+
+/// Runs the plant along commands (rows at `t_s`, evenly), starting at rest at the first, and
+/// returns its state at each row.
+std::vector<ArmPlantState> RunArm(const ArmPlantSettings& settings, const Eigen::VectorXd& t_s,
+                                  const Eigen::MatrixXd& commands);
+
+}  // namespace flextip::simulation

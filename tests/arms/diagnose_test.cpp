@@ -1,0 +1,118 @@
+// What is put into a recording is found, and what is not there is not claimed.
+#include "arms/diagnose/diagnose.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "arms/diagnose/model_file.h"
+#include "arms/diagnose/predict.h"
+#include "arms/effects/play.h"
+#include "recording/text/text.h"
+#include "tests/arms/made_arm.h"
+
+namespace flextip::arms {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::Not;
+
+const std::vector<double> kSeenNoise{3e-4, 2e-4, 5e-5, 1e-3, 4e-4, 6e-4};
+
+Recording SeenAtStops(unsigned seed) {
+  Recording recording = ArmRecording(SixJoints());
+  recording.joints_command0 = Stops(*recording.arm, 300, seed);
+  recording.joints_seen0 = WithNoise(*recording.joints_command0, kSeenNoise, seed + 100);
+  return recording;
+}
+
+/// Adds to seen joint `to` what `of` makes of all commanded values of joint `from`.
+template <class Of>
+void AddToSeen(Recording& recording, int to, int from, Of of) {
+  const auto& commanded = recording.joints_command0->q;
+  Eigen::VectorXd x(Eigen::Index(commanded.size()));
+  for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = commanded[k].value[from];
+  const Eigen::VectorXd added = of(x);
+  for (Eigen::Index k = 0; k < x.size(); ++k) recording.joints_seen0->q[k].value[to] += added[k];
+}
+
+double ValueOf(const ArmResult& result, const std::string& effect, const std::string& parameter,
+               int i) {
+  for (const auto& fit : result.answer.parameters)
+    for (const auto& p : fit.parameters)
+      if (fit.effect == effect && p.name == parameter) return p.value[i];
+  return std::nan("");
+}
+
+TEST(DiagnoseArm, HealthyJointsGiveNone) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const ArmResult result = Diagnose({ArmData(SeenAtStops(seed), "healthy")});
+    EXPECT_THAT(result.answer.verdict, ElementsAre("none")) << seed;
+    EXPECT_GT(result.answer.probabilities.front().probability, 0.6);
+  }
+}
+
+TEST(DiagnoseArm, FindsOffsetsOfTheJointsThatHaveThem) {
+  Recording recording = SeenAtStops(4);
+  AddToSeen(recording, 3, 3,
+            [](const Eigen::VectorXd& x) { return Eigen::VectorXd::Constant(x.size(), 0.02); });
+  const ArmResult result = Diagnose({ArmData(recording, "offset")});
+  EXPECT_THAT(result.answer.verdict, ElementsAre("joint_offset"));
+  EXPECT_NEAR(ValueOf(result, "joint_offset", "offset", 3), 0.02, 5e-4);
+  EXPECT_NEAR(ValueOf(result, "joint_offset", "offset", 0), 0.0, 5e-4);
+  EXPECT_LT(result.answer.gain.heldout_error_ratio, 0.3);
+}
+
+TEST(DiagnoseArm, FindsAScaleAndACoupling) {
+  Recording recording = SeenAtStops(5);
+  AddToSeen(recording, 1, 1, [](const Eigen::VectorXd& x) { return Eigen::VectorXd(0.02 * x); });
+  AddToSeen(recording, 5, 4, [](const Eigen::VectorXd& x) { return Eigen::VectorXd(0.1 * x); });
+  const ArmResult result = Diagnose({ArmData(recording, "two")});
+  EXPECT_THAT(result.answer.verdict, ElementsAre("joint_coupling", "joint_scale"));
+  EXPECT_NEAR(ValueOf(result, "joint_scale", "scale", 1), 1.02, 2e-3);
+  EXPECT_NEAR(ValueOf(result, "joint_coupling", "matrix", 29), 0.1, 5e-3);
+}
+
+TEST(DiagnoseArm, FindsPlayThatDragsAnotherJoint) {
+  Recording recording = SeenAtStops(6);
+  AddToSeen(recording, 4, 4,
+            [](const Eigen::VectorXd& x) { return Eigen::VectorXd(0.05 * PlayState(x, 0.05)); });
+  AddToSeen(recording, 5, 4,
+            [](const Eigen::VectorXd& x) { return Eigen::VectorXd(0.02 * PlayState(x, 0.05)); });
+  const ArmResult result = Diagnose({ArmData(recording, "play")});
+  EXPECT_THAT(result.answer.verdict, ElementsAre("joint_backlash"));
+  EXPECT_NEAR(ValueOf(result, "joint_backlash", "width", 4), 0.05, 0.005);
+  EXPECT_NEAR(ValueOf(result, "joint_backlash", "drag", 29), 0.4, 0.08);
+}
+
+TEST(DiagnoseArm, ClaimsNoLatencyAtStops) {
+  const ArmResult result = Diagnose({ArmData(SeenAtStops(7), "stops")});
+  EXPECT_THAT(result.answer.catalogue, Not(Contains("command_latency")));
+  EXPECT_THAT(result.answer.catalogue, Not(Contains("servo_lag")));
+}
+
+TEST(DiagnoseArm, FoundModelPredictsAnotherMotion) {
+  Recording recording = SeenAtStops(8), other = SeenAtStops(9);
+  for (Recording* r : {&recording, &other})
+    AddToSeen(*r, 3, 3, [](const Eigen::VectorXd& x) {
+      return Eigen::VectorXd(0.04 + 0.06 * PlayState(x, 0.06).array());
+    });
+  const ArmResult result = Diagnose({ArmData(recording, "first")});
+  const auto file = std::filesystem::temp_directory_path() / "flextip_arm_model_test.yaml";
+  WriteTextFile(file, ArmModelYaml(result.model));
+  const ArmPrediction prediction = Predict(ArmData(other, "second"), ReadArmModel(file));
+  std::filesystem::remove(file);
+  EXPECT_LT(prediction.ratio, 0.2);
+  EXPECT_LT(prediction.extended_rms.at("joints_seen0_q4_rad"), 3e-3);
+  EXPECT_GT(prediction.base_rms.at("joints_seen0_q4_rad"), 3e-2);
+}
+
+TEST(DiagnoseArm, RefusesAnotherArm) {
+  Recording other = ArmRecording(ThreeJointsWithMasses());
+  other.joints0 = SmoothMotion(*other.arm, 100, 50.0, 1);
+  other.joints_seen0 = other.joints0;
+  EXPECT_THROW(Diagnose({ArmData(SeenAtStops(1), "a"), ArmData(other, "b")}), InputError);
+}
+
+}  // namespace
+}  // namespace flextip::arms
