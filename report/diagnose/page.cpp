@@ -9,6 +9,7 @@
 
 #include "report/diagnose/head.h"
 #include "report/diagnose/parts.h"
+#include "report/diagnose/recordings.h"
 #include "report/diagnose/residuals.h"
 #include "report/diagnose/result.h"
 #include "report/diagnose/words.h"
@@ -262,6 +263,7 @@ void WriteDiagnoseReport(const fs::path& folder) {
     report.AddHeading("Causes");
     AddProbabilities(report, result);
   }
+  AddRecordings(report, folder);
   AddWhatIsWrong(report, result, residuals);
   report.AddHeading(result.Is("none") || result.Is("unknown") ? "How well the models predict"
                                                               : "What the extended model gains");
