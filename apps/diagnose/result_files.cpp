@@ -144,9 +144,7 @@ nlohmann::json Compared(const simulation::ControllerGain& gain) {
           {"after", Deviations(gain.extended.max_m, gain.extended.rms_m)}};
 }
 
-}  // namespace
-
-std::string DiagnosisJson(const DiagnosisResult& result, const simulation::ClosedLoopGain* gain) {
+Json ResultJson(const DiagnosisResult& result, const simulation::ClosedLoopGain* gain) {
   const bool known = NamesEffects(result.verdict);
   Json json;
   json["verdict"] = result.verdict.front();
@@ -190,6 +188,41 @@ std::string DiagnosisJson(const DiagnosisResult& result, const simulation::Close
     if (!run.ran) continue;
     json["closed_loop_runs"] += Json(Compared(run));
     if (run.kind == ControllerKind::kRodTrack) json["closed_loop"] = Compared(run);
+  }
+  return json;
+}
+
+/// How likely each effect is in each recording, in their order.
+Json PresenceIn(const SeveralResult& several) {
+  Json json = Json::object();
+  for (const std::string& effect : several.common.catalogue) {
+    for (const DiagnosisResult& own : several.own) {
+      const auto found = own.presence.find(effect);
+      json[effect] += found == own.presence.end() ? 0.0 : found->second;
+    }
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string DiagnosisJson(const DiagnosisResult& result, const simulation::ClosedLoopGain* gain) {
+  return ResultJson(result, gain).dump(2) + "\n";
+}
+
+std::string DiagnosisJson(const SeveralResult& several, const simulation::ClosedLoopGain* gain) {
+  Json json = ResultJson(several.common, gain);
+  json["recordings"] = several.names;
+  json["presence_in"] = PresenceIn(several);
+  json["changes"] = Json::array();
+  for (const FoundChange& change : several.changes) {
+    Json parameters = Json::object();
+    for (const ReportedParameter& p : change.parameters)
+      parameters[p.name] = {{"value", Value(p.value)}, {"sd", Value(p.sd)}};
+    json["changes"].push_back({{"effect", change.effect},
+                               {"first_in", several.names[change.first_in]},
+                               {"probability", change.probability},
+                               {"parameters", parameters}});
   }
   return json.dump(2) + "\n";
 }

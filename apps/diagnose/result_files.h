@@ -4,6 +4,7 @@
 #include <string>
 
 #include "diagnosis/diagnose.h"
+#include "diagnosis/several/diagnose_several.h"
 #include "simulation/closed_loop/gain.h"
 
 namespace flextip {
@@ -11,6 +12,11 @@ namespace flextip {
 /// Returns diagnosis.json. `gain`, where there is one, adds `closed_loop_runs`, each controller
 /// that ran, and `closed_loop`, the rod controller that sees the tip.
 std::string DiagnosisJson(const diagnosis::DiagnosisResult& result,
+                          const simulation::ClosedLoopGain* gain = nullptr);
+
+/// Returns diagnosis.json of several recordings: that of what all have in common, with
+/// `recordings`, `presence_in` (of each effect by recording) and `changes`.
+std::string DiagnosisJson(const diagnosis::SeveralResult& several,
                           const simulation::ClosedLoopGain* gain = nullptr);
 
 /// Returns residuals.csv: the ResidualTable, six digits a number; an absent measurement is empty.

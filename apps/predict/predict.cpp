@@ -13,6 +13,7 @@
 #include "apps/common/input/recording_input.h"
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
+#include "apps/diagnose/arm.h"
 #include "apps/diagnose/result_files.h"
 #include "diagnosis/model/extended_model.h"
 #include "diagnosis/prediction/predict.h"
@@ -54,6 +55,10 @@ nlohmann::json Summary(const diagnosis::Prediction& found, const diagnosis::Exte
 }
 
 void Run(const Options& options, bool quiet) {
+  if (IsArmRecording(options.input.recording)) {
+    return PredictArm({{options.input.recording}, options.input.out, {}, options.force, quiet},
+                      options.model);
+  }
   const InputRead read = ReadInput(options.input, UseOfPredict(), quiet);
   const diagnosis::ExtendedModel model = diagnosis::ReadModel(options.model);
   std::vector<std::filesystem::path> inputs = options.input.Files();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/judgement.h"
 #include "diagnosis/diagnose.h"
 
 namespace flextip::diagnosis {
@@ -35,5 +36,8 @@ struct SeveralResult {
 /// instrument.
 SeveralResult DiagnoseSeveral(const std::vector<NamedRecording>& recordings,
                               const DiagnoseOptions& options = {});
+
+/// As JudgeDiagnosis does, with what began.
+Judgement JudgeSeveral(const SeveralResult& several);
 
 }  // namespace flextip::diagnosis

@@ -15,7 +15,7 @@ constexpr int kFirstRounds = 6, kFitRounds = 4;
 constexpr int kMostFits = 12;
 constexpr double kRival = 2.0;        // log odds below the best that are worth a fit
 constexpr std::size_t kBesides = 10;  // hypotheses beside which changes are weighed, with singles
-constexpr std::size_t kChanges = 3;   // at most
+constexpr std::size_t kMostEffects = 2;  // in any recording: three at once are not weighed
 
 std::vector<JointHypothesis> Commons(const Fleet& fleet, bool pairs) {
   std::vector<JointHypothesis> all;
@@ -47,6 +47,7 @@ std::vector<JointScored> Weighed(const JointEvidence& evidence, const Fleet& fle
 std::vector<JointScored> WithChanges(const JointEvidence& evidence, const Fleet& fleet,
                                      const JointWeighed& beside, const SelectionOptions& options) {
   std::vector<JointScored> scored;
+  if (beside.hypothesis.EffectsIn(fleet.Size() - 1).size() >= kMostEffects) return scored;
   std::vector<JointHypothesis> own;  // of effects that each recording has for itself
   for (const auto& added : evidence.WithChanges(beside)) {
     JointWeighed weighed = beside;
@@ -225,7 +226,7 @@ std::vector<JointScored> WeighAll(const JointEvidence& evidence, const Fleet& fl
   if (!best.changes.empty()) {
     const JointScored own = Weighed(evidence, fleet, {best}, options).front();
     more.push_back(own);
-    if (best.changes.size() < kChanges) besides.push_back(own.weighed);
+    besides.push_back(own.weighed);
     JointHypothesis common{best.effects, {}, false};
     const bool is_in =
         std::ranges::any_of(besides, [&](const JointWeighed& w) { return w.hypothesis == common; });
