@@ -17,6 +17,7 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddConvert(app, context);
   AddDetect(app, context);
   AddDiagnose(app, context);
+  AddEffect(app, context);
   AddEstimate(app, context);
   AddExport(app, context);
   AddImport(app, context);

@@ -71,6 +71,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   core/version.h
   diagnosis/diagnose.h
   diagnosis/effects/discovered/term.h
+  diagnosis/effects/discovered/term_columns.h
   diagnosis/effects/periodic.h
   diagnosis/evidence/priors.h
   diagnosis/evidence/residual_memory.h

@@ -46,6 +46,7 @@ void AddDiagnose(CLI::App& app, AppContext& context);
 void AddCompletion(CLI::App& app, AppContext& context);
 void AddConvert(CLI::App& app, AppContext& context);
 void AddDetect(CLI::App& app, AppContext& context);
+void AddEffect(CLI::App& app, AppContext& context);
 void AddEstimate(CLI::App& app, AppContext& context);
 void AddExport(CLI::App& app, AppContext& context);
 void AddImport(CLI::App& app, AppContext& context);

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include "bench/diagnosis_matrix/form.h"
 #include "core/error.h"
@@ -74,6 +76,24 @@ bool IsAlias(const DiagnosisResult& full, const diagnosis::Verdict& verdict) {
   });
 }
 
+/// The same recording without its form: of all forms of a seed the same.
+struct Healthy {
+  int attempt = 0;
+  DiagnosisResult result;
+};
+
+const Healthy& HealthyOf(const DiscoveryCase& one) {
+  static std::map<std::pair<std::uint64_t, bool>, Healthy> all;
+  const auto key = std::pair(one.seed, one.options.with_load);
+  const auto at = all.find(key);
+  if (at != all.end()) return at->second;
+  hidden::HiddenOptions without = one.options;
+  without.effects.clear();
+  const hidden::HiddenRecording healthy = hidden::MakeHidden(without, one.seed);
+  return all[key] = {healthy.attempt,
+                     diagnosis::Diagnose(Written(healthy), "recording", {.discover = false})};
+}
+
 }  // namespace
 
 bool DiscoveryRecord::IsApart() const { return separation >= kSeparable; }
@@ -99,17 +119,14 @@ DiscoveryRecord RunDiscovery(const DiscoveryCase& one) {
       record.separation = MeasureForm(recording, hidden.attempt, one.options, one.seed).value;
       for (const hidden::FormTruth& truth : hidden::FormTruths())
         if (truth.name == one.name) JudgeForm(result, truth, record);
-      hidden::HiddenOptions without = one.options;
-      without.effects.clear();
-      const hidden::HiddenRecording healthy = hidden::MakeHidden(without, one.seed);
+      const Healthy& healthy = HealthyOf(one);
       if (healthy.attempt == hidden.attempt)
-        record.heldout_over_true =
-            Over(result, diagnosis::Diagnose(Written(healthy), "recording", {.discover = false}));
+        record.heldout_over_true = Over(result, healthy.result);
     }
     if (one.part == "deleted" && !record.unknown && record.terms == 0)
       record.alias = IsAlias(
           diagnosis::Diagnose(recording, "recording", {.discover = false, .measure_gain = false}),
-          one.name, result.verdict);
+          result.verdict);
   } catch (const InputError& error) {
     record.error = error.what();
   } catch (const WorkError& error) {

@@ -5,13 +5,26 @@
 #include <cmath>
 #include <random>
 
-#include "diagnosis/evidence/residual_memory.h"
-
 namespace flextip::diagnosis {
 namespace {
 
 constexpr double kFreely = 1000.0;
 constexpr std::size_t kRivals = 6;
+
+/// The variance of a mean of the residuals over that of white ones, times their mean square: by
+/// correlations over a twentieth of the series, the farther the less (Newey & West 1987). At least
+/// 1.
+double LongRunFactor(const std::vector<double>& residuals) {
+  const std::size_t n = residuals.size(), reach = n / 20;
+  double squares = 0.0, sum = 0.0;
+  for (std::size_t lag = 0; lag <= reach && lag < n; ++lag) {
+    double products = 0.0;
+    for (std::size_t i = lag; i < n; ++i) products += residuals[i] * residuals[i - lag];
+    if (lag == 0) squares = products;
+    sum += (lag == 0 ? 1.0 : 2.0 * (1.0 - double(lag) / double(reach + 1))) * products;
+  }
+  return n == 0 || squares <= 0.0 ? 1.0 : std::max(1.0, sum / double(n));
+}
 
 }  // namespace
 
@@ -97,7 +110,7 @@ double SamplesAsOne(const ResidualProblem& problem, const Term& term,
   }
   double sum = 0.0, weights = 0.0;
   for (std::size_t r = 0; r < series.size(); ++r) {
-    sum += energy[r] * MemoryOfSeries(series[r]).SamplesAsOne();
+    sum += energy[r] * LongRunFactor(series[r]);
     weights += energy[r];
   }
   return weights > 0.0 ? sum / weights : 1.0;

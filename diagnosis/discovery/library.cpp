@@ -115,7 +115,8 @@ class Grid {
     const double middle = 0.5 * (spread.Low() + spread.High()), range = spread.Range();
     Add(S::kLinear, variable, {middle});
     Add(S::kQuadratic, variable, {middle});
-    Add(S::kSmooth, variable, {spread.Low(), spread.High()});
+    if (variable != V::kTime)  // that tells nothing of another time
+      Add(S::kSmooth, variable, {spread.Low(), spread.High()});
     const double within = variable == V::kTime ? 2.0 * set_.period_s : 0.03 * range;
     for (int i = 1; i < kThresholds; ++i)
       Add(S::kStep, variable, {spread.At(double(i) / kThresholds), within});
