@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace flextip::diagnosis {
 namespace {
@@ -71,6 +72,7 @@ class Grid {
                              V::kPortForce, V::kLoad, V::kDistanceToCamera})
       if (Fits(variable)) AddScalar(variable);
     AddVectors();
+    AddPlanes();
     if (HasOwnValue()) AddOwnValue();
     if (set_.resolved_in_time && (inputs_ == 3)) AddMemory(V::kPosition);
     if (target_ == TermTarget::kEmPosition || target_ == TermTarget::kEmOrientation) AddPlaces();
@@ -155,8 +157,10 @@ class Grid {
                              ? LargestRange(states_, variable, inputs_, false)
                              : SpreadOf(states_, variable).Range();
     if (!(range > 0.0)) return;
-    for (const double part : {0.002, 0.006, 0.015, 0.03, 0.06, 0.12, 0.25})
+    for (const double part : {0.002, 0.006, 0.015, 0.03, 0.06, 0.12, 0.25}) {
       Add(S::kPlay, variable, {part * range});
+      Add(S::kSmoothPlay, variable, {part * range});
+    }
     for (const double time_s : {0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4})
       Add(S::kRelaxing, variable, {time_s});
   }
@@ -179,6 +183,22 @@ class Grid {
     }
     if (target_ == TermTarget::kWristPosition) AddWaves(V::kOwnValue, range, 1.0 / kShortest_m);
     if (set_.resolved_in_time) AddMemory(V::kOwnValue);
+  }
+
+  /// Planes of normals all over the sphere, at quantiles of the places along each.
+  void AddPlanes() {
+    constexpr int kNormals = 48, kPlanes = 10;
+    const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
+    for (int n = 0; n < kNormals; ++n) {  // Fibonacci's sphere
+      const double z = 1.0 - 2.0 * (n + 0.5) / kNormals, r = std::sqrt(1.0 - z * z);
+      const Eigen::Vector3d normal(r * std::cos(golden * n), r * std::sin(golden * n), z);
+      Spread along;
+      for (const TermState& state : states_) along.sorted.push_back(normal.dot(state.position));
+      std::sort(along.sorted.begin(), along.sorted.end());
+      for (int i = 1; i < kPlanes; ++i)
+        Add(S::kPastPlane, V::kPosition,
+            {normal[0], normal[1], normal[2], along.At(double(i) / kPlanes)});
+    }
   }
 
   /// A grid of places about the motion, as far out as the motion is large.
@@ -245,6 +265,7 @@ bool IsScale(const Term& term, std::size_t i) {
     case S::kTanh:
     case S::kRelaxing:
     case S::kPlay:
+    case S::kSmoothPlay:
     case S::kExponential:
     case S::kAfter:
       return i == 0;
@@ -256,6 +277,7 @@ bool IsScale(const Term& term, std::size_t i) {
 double StepOf(const Term& term, std::size_t i, const std::vector<TermState>& states) {
   if (IsScale(term, i)) return 0.25;
   if (term.shape == S::kInversePower) return i < 3 ? 0.02 : 0.0;
+  if (term.shape == S::kPastPlane) return i < 3 ? 0.1 : 0.004;
   const double range = SpreadOf(states, term.variable).Range();
   if (term.shape == S::kPeriodic) return 0.12 / range;
   const bool threshold =

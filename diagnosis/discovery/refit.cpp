@@ -107,6 +107,8 @@ double AxisOf(const Term& term, const TermState& state, Eigen::Index input) {
     case TermVariable::kPosition:
       if (term.shape == TermShape::kInversePower)
         return (state.position - Eigen::Vector3d(term.at[0], term.at[1], term.at[2])).norm();
+      if (term.shape == TermShape::kPastPlane)
+        return Eigen::Vector3d(term.at[0], term.at[1], term.at[2]).normalized().dot(state.position);
       return state.position[std::min<Eigen::Index>(input, 2)];
     case TermVariable::kOrientation:
       return state.orientation[std::min<Eigen::Index>(input, 2)];

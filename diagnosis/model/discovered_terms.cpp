@@ -23,6 +23,7 @@ std::string WhatIsWrong(const Term& term) {
     case TermShape::kAfter:
     case TermShape::kRelaxing:
     case TermShape::kPlay:
+    case TermShape::kSmoothPlay:
     case TermShape::kPeriodic:
       return at[0] > 0.0 ? "" : fmt::format("found at[0] = {}, expected > 0", at[0]);
     case TermShape::kStep:

@@ -38,7 +38,7 @@ struct Instant {
 };
 
 /// The memory of an effect from sample to sample.
-using EffectMemory = std::array<double, 8>;
+using EffectMemory = std::array<double, 12>;
 
 /// The sample's inputs and their derivatives by the effect's parameters, for an effect to write.
 class InputChange {

@@ -12,11 +12,13 @@ using EffectPointer = std::unique_ptr<flextip::diagnosis::Effect>;
 EffectPointer MakeGageHum();
 EffectPointer MakeGageLimit();
 EffectPointer MakeWristPlay();
+EffectPointer MakeGageGlue();
 EffectPointer MakeLoadCreep();
 EffectPointer MakeEmMetal();
 EffectPointer MakePortJump();
 EffectPointer MakeSoftDepth();
 EffectPointer MakeSeenSlope();
+EffectPointer MakeLoadPlane();
 EffectPointer MakeEmConstant();
 
 namespace flextip::diagnosis {
@@ -34,8 +36,9 @@ SampleInputs Acted(const Effect& effect, const Eigen::VectorXd& theta, const Ins
 TEST(EffectSource, DoesWhatTheTermDoes) {
   const SampleSet samples = SmallSamples(3.0, true, 8);
   const EffectPointer written[] = {MakeGageHum(),   MakeGageLimit(), MakeWristPlay(),
-                                   MakeLoadCreep(), MakeEmMetal(),   MakePortJump(),
-                                   MakeSoftDepth(), MakeSeenSlope(), MakeEmConstant()};
+                                   MakeGageGlue(),  MakeLoadCreep(), MakeEmMetal(),
+                                   MakePortJump(),  MakeSoftDepth(), MakeSeenSlope(),
+                                   MakeLoadPlane(), MakeEmConstant()};
   const auto terms = SourceTerms();
   ASSERT_EQ(std::size(written), terms.size());
   EffectRodSolver solver;

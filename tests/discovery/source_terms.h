@@ -28,11 +28,13 @@ inline std::vector<std::pair<std::string, Term>> SourceTerms() {
       SourceTerm("gage_hum", T::kStrain, S::kPeriodic, V::kTime, {3.1}),
       SourceTerm("gage_limit", T::kStrain, S::kBand, V::kOwnValue, {0.01}),
       SourceTerm("wrist_play", T::kWristPosition, S::kPlay, V::kOwnValue, {0.0005}),
+      SourceTerm("gage_glue", T::kStrain, S::kSmoothPlay, V::kOwnValue, {0.02}),
       SourceTerm("load_creep", T::kLoad, S::kRelaxing, V::kOwnValue, {0.8}),
       SourceTerm("em_metal", T::kEmPosition, S::kInversePower, V::kPosition, {0.2, 0.1, 0.05, 3.0}),
       SourceTerm("port_jump", T::kPort, S::kStep, V::kTime, {1.0, 0.1}),
       SourceTerm("soft_depth", T::kStiffness, S::kSmooth, V::kInsertionDepth, {0.1, 0.3}),
       SourceTerm("seen_slope", T::kVisionPosition, S::kLinear, V::kImagePosition, {}),
+      SourceTerm("load_plane", T::kShaftLoad, S::kPastPlane, V::kPosition, {0.1, 0.2, 0.9, 0.02}),
       SourceTerm("em_constant", T::kEmOrientation, S::kConstant, V::kTime, {})};
 }
 

@@ -29,6 +29,8 @@ std::vector<int> RefinedAt(const Term& term) {
       return {0};
     case TermShape::kInversePower:
       return {0, 1, 2};
+    case TermShape::kPastPlane:
+      return {3};
     default:
       return {};
   }

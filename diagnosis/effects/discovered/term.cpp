@@ -36,8 +36,9 @@ constexpr const char* kFormNames[kTermForms] = {"constant",   "linear",   "quadr
                                                 "hysteresis", "decaying", "other"};
 
 constexpr const char* kShapeNames[kTermShapes] = {
-    "constant", "linear",      "quadratic", "periodic", "step", "beyond",        "below", "band",
-    "tanh",     "exponential", "after",     "relaxing", "play", "inverse_power", "smooth"};
+    "constant", "linear",      "quadratic",     "periodic",    "step",  "beyond",
+    "below",    "band",        "tanh",          "exponential", "after", "relaxing",
+    "play",     "smooth_play", "inverse_power", "past_plane",  "smooth"};
 
 template <class Enum, class NameOf>
 std::optional<Enum> Named(std::string_view name, int count, NameOf name_of) {
@@ -64,7 +65,8 @@ int Dimension(TermVariable variable) {
 }
 
 bool HasMemory(TermShape shape) {
-  return shape == TermShape::kRelaxing || shape == TermShape::kPlay;
+  return shape == TermShape::kRelaxing || shape == TermShape::kPlay ||
+         shape == TermShape::kSmoothPlay;
 }
 
 int ShapeParameters(TermShape shape, TermVariable variable) {
@@ -79,6 +81,7 @@ int ShapeParameters(TermShape shape, TermVariable variable) {
     case TermShape::kSmooth:
       return 2;
     case TermShape::kInversePower:
+    case TermShape::kPastPlane:
       return 4;
     default:
       return 1;
@@ -124,6 +127,7 @@ TermForm FormOf(const Term& term) {
     case TermShape::kBelow:
     case TermShape::kBand:
     case TermShape::kTanh:
+    case TermShape::kPastPlane:
       return TermForm::kSaturating;
     case TermShape::kExponential: {
       // Nearer to nothing where the exponential is one, it goes the way to saturation.
@@ -132,6 +136,7 @@ TermForm FormOf(const Term& term) {
       return at_begin < term.offset.norm() ? TermForm::kSaturating : TermForm::kDecaying;
     }
     case TermShape::kPlay:
+    case TermShape::kSmoothPlay:
       return TermForm::kHysteresis;
     case TermShape::kAfter:
     case TermShape::kRelaxing:

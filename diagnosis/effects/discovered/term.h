@@ -91,10 +91,12 @@ enum class TermShape : std::uint8_t {
   kAfter,         ///< exp(-(v - at[1]) / at[0]) from at[1] on, zero before
   kRelaxing,      ///< of v's past what has not relaxed with time constant at[0]
   kPlay,          ///< where v stands in a play of half width at[0]
+  kSmoothPlay,    ///< the same, reached exponentially with the path (Dahl's friction)
   kInversePower,  ///< distance from the place at[0..2] (over 0.1 m) to the power -at[3]
+  kPastPlane,     ///< how far the place is beyond the plane of normal at[0..2] at at[3]
   kSmooth,        ///< cubic B-splines between at[0] and at[1], fading to zero outside
 };
-inline constexpr int kTermShapes = 15;
+inline constexpr int kTermShapes = 17;
 const char* Name(TermShape shape);
 
 inline constexpr int kMostTermInputs = 4, kMostTermColumns = 7;

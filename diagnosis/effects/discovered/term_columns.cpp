@@ -13,8 +13,9 @@ constexpr double kSpeedTime_s = 0.06;  // a live speed is smoothed over this
 constexpr double kUnitDistance_m = 0.1;
 constexpr double kLeastDistance_m = 0.005;
 constexpr double kFade = 0.1;  // of the range: within it a smooth term fades to nothing
-// Numbers of the memory: whether it has begun, then what shapes keep; time and speeds at its end.
-constexpr int kBegun = 0, kKept = 1, kLastTime = 5, kLastValue = 6, kSpeed = 7;
+// Numbers of the memory: whether it has begun, then what shapes keep; time and
+// speeds; values of the last sample.
+constexpr int kBegun = 0, kKept = 1, kLastTime = 5, kLastValue = 6, kSpeed = 7, kPast = 8;
 
 const DiagnosisSample& SampleOf(const Instant& now) { return now.samples.samples[now.k]; }
 
@@ -142,8 +143,13 @@ void FillColumns(const Term& term, double v, Eigen::Index row, TermColumns& colu
 /// Where the variable stands against its past, of input `row`.
 double Remembered(const Term& term, double v, double dt_s, Eigen::Index row, EffectMemory& memory) {
   double& kept = memory[static_cast<std::size_t>(kKept + row)];
-  if (memory[kBegun] == 0.0) kept = v;
-  if (term.shape == TermShape::kRelaxing) {
+  double& past = memory[static_cast<std::size_t>(kPast + row)];
+  if (memory[kBegun] == 0.0) kept = past = v;
+  if (term.shape == TermShape::kSmoothPlay) {
+    const double left = std::exp(-std::abs(v - past) / term.at[0]);
+    kept = v - left * (past - kept) - std::copysign(term.at[0] * (1.0 - left), v - past);
+    past = v;
+  } else if (term.shape == TermShape::kRelaxing) {
     kept += (1.0 - std::exp(-dt_s / term.at[0])) * (v - kept);
   } else {
     kept = std::clamp(kept, v - term.at[0], v + term.at[0]);
@@ -195,6 +201,9 @@ TermColumns ColumnsAt(const Term& term, const TermState& state, EffectMemory& me
       const Eigen::Vector3d place(term.at[0], term.at[1], term.at[2]);
       const double r = std::max(kLeastDistance_m, (state.position - place).norm());
       columns(row, 0) = std::pow(r / kUnitDistance_m, -term.at[3]);
+    } else if (term.shape == TermShape::kPastPlane) {
+      const Eigen::Vector3d normal(term.at[0], term.at[1], term.at[2]);
+      columns(row, 0) = std::max(0.0, normal.normalized().dot(state.position) - term.at[3]);
     } else if (term.shape == TermShape::kLinear && Dimension(term.variable) > 1 && !by_input) {
       if (term.variable == TermVariable::kPosition) columns.row(row) = state.position.transpose();
       if (term.variable == TermVariable::kOrientation)

@@ -20,7 +20,7 @@ struct TermState {
 };
 
 /// Returns them at `now`, for a term of `target`. Speeds are central differences where `now` has
-/// neighbours, else smoothed differences to the last instant, by `memory` (its last five numbers).
+/// neighbours, else smoothed differences to the last instant, by `memory` (numbers 5 to 7).
 /// Without a shape in `now` what follows from it is zero.
 TermState StateAt(TermTarget target, const Instant& now, EffectMemory& memory);
 
@@ -29,7 +29,7 @@ using TermColumns =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostTermInputs, kMostTermColumns>;
 
 /// Returns the columns of `term`'s shape (its amplitudes do not matter). Shapes that remember do so
-/// by `memory` (its first three to five numbers), instant by instant in order of time. Inputs that
+/// by `memory` (the other numbers), instant by instant in order of time. Inputs that
 /// share a variable have equal rows; `one_row`: then one row alone.
 TermColumns ColumnsAt(const Term& term, const TermState& state, EffectMemory& memory,
                       bool one_row = false);

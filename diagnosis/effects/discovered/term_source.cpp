@@ -90,9 +90,12 @@ std::vector<std::string> ColumnSources(const Term& term) {
       return {"v < kAt[1] ? 0.0 : std::exp(-(v - kAt[1]) / kAt[0])"};
     case TermShape::kRelaxing:
     case TermShape::kPlay:
+    case TermShape::kSmoothPlay:
       return {"v - kept"};
     case TermShape::kInversePower:
       return {"std::pow(distance_m / 0.1, -kAt[3])"};
+    case TermShape::kPastPlane:
+      return {"std::max(0.0, normal.normalized().dot(state.position) - kAt[3])"};
     case TermShape::kSmooth: {
       std::vector<std::string> columns;
       for (int j = 0; j < kMostTermColumns; ++j)
@@ -108,6 +111,7 @@ std::string Before(const Term& term) {
   std::string text;
   const bool has_v =
       term.shape != TermShape::kConstant && term.shape != TermShape::kInversePower &&
+      term.shape != TermShape::kPastPlane &&
       !(term.shape == TermShape::kLinear && ShapeParameters(term.shape, term.variable) == 0);
   if (has_v)
     text += fmt::format("      const double v = {};  // {}\n", VariableSource(term),
@@ -116,15 +120,27 @@ std::string Before(const Term& term) {
     text +=
         "      double& kept = memory[static_cast<std::size_t>(1 + i)];\n"
         "      if (memory[0] == 0.0) kept = v;\n";
-    text += term.shape == TermShape::kPlay
-                ? "      kept = std::clamp(kept, v - kAt[0], v + kAt[0]);\n"
-                : "      const double dt_s = memory[0] == 0.0 ? 0.0 : state.t_s - memory[5];\n"
-                  "      kept += (1.0 - std::exp(-dt_s / kAt[0])) * (v - kept);\n";
+    if (term.shape == TermShape::kSmoothPlay)
+      text +=
+          "      double& past = memory[static_cast<std::size_t>(8 + i)];\n"
+          "      if (memory[0] == 0.0) past = v;\n"
+          "      const double left = std::exp(-std::abs(v - past) / kAt[0]);\n"
+          "      kept = v - left * (past - kept) -\n"
+          "             std::copysign(kAt[0] * (1.0 - left), v - past);\n"
+          "      past = v;\n";
+    if (term.shape == TermShape::kPlay)
+      text += "      kept = std::clamp(kept, v - kAt[0], v + kAt[0]);\n";
+    if (term.shape == TermShape::kRelaxing)
+      text +=
+          "      const double dt_s = memory[0] == 0.0 ? 0.0 : state.t_s - memory[5];\n"
+          "      kept += (1.0 - std::exp(-dt_s / kAt[0])) * (v - kept);\n";
   }
   if (term.shape == TermShape::kInversePower)
     text +=
         "      const Eigen::Vector3d place(kAt[0], kAt[1], kAt[2]);\n"
         "      const double distance_m = std::max(0.005, (state.position - place).norm());\n";
+  if (term.shape == TermShape::kPastPlane)
+    text += "      const Eigen::Vector3d normal(kAt[0], kAt[1], kAt[2]);\n";
   if (term.shape == TermShape::kSmooth)
     text +=
         "      const double x = (v - kAt[0]) / (kAt[1] - kAt[0]);\n"

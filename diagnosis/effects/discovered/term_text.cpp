@@ -94,6 +94,8 @@ Numbers Amplitudes(const Term& term) {
     case TermShape::kBand:
     case TermShape::kRelaxing:
     case TermShape::kPlay:
+    case TermShape::kSmoothPlay:
+    case TermShape::kPastPlane:
       add(Suffixed("slope", Over(unit, by)), along(0));
       break;
     case TermShape::kQuadratic:
@@ -145,9 +147,12 @@ std::vector<std::string> AtNames(const Term& term) {
     case TermShape::kRelaxing:
       return {"time_constant_s"};
     case TermShape::kPlay:
+    case TermShape::kSmoothPlay:
       return {Suffixed("half_width", by)};
     case TermShape::kInversePower:
       return {"place_x_m", "place_y_m", "place_z_m", "power"};
+    case TermShape::kPastPlane:
+      return {"normal_x", "normal_y", "normal_z", "plane_m"};
     case TermShape::kSmooth:
       return {Suffixed("from", by), Suffixed("to", by)};
     default:
@@ -241,12 +246,17 @@ std::string TextOf(const Term& term) {
       return fmt::format("{} follows changes of {} and relaxes within about {:.3g} s", what, on,
                          term.at[0]);
     case TermShape::kPlay:
+    case TermShape::kSmoothPlay:
       return fmt::format("{} depends on the way that {} came: hysteresis of {}", what, on,
                          Shown(2.0 * term.at[0], by));
     case TermShape::kInversePower:
       return fmt::format(
           "{} is off near ({:.3f}, {:.3f}, {:.3f}) m in R, with the distance to the power -{:.2g}",
           what, term.at[0], term.at[1], term.at[2], term.at[3]);
+    case TermShape::kPastPlane:
+      return fmt::format(
+          "{} goes off where the place is beyond a plane of normal ({:.2f}, {:.2f}, {:.2f}) in R",
+          what, term.at[0], term.at[1], term.at[2]);
     case TermShape::kSmooth:
       return fmt::format("{} changes smoothly with {} between {} and {}; no simple form fits", what,
                          on, at(0), at(1));
