@@ -1,6 +1,7 @@
 #include "arms/diagnose/describe.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,7 @@ using diagnosis::Verdict;
 constexpr double kCannotTell = 0.5;        // posterior over prior deviation
 constexpr double kAsGood = 3.0;            // log odds
 constexpr Eigen::Index kMostPoints = 600;  // of a curve
-constexpr int kMostNotTold = 12;
+constexpr double kTakenUp = 0.7;           // correlation with what takes a number up
 
 std::vector<ReportedParameter> Reported(const Layout& layout, const Layout::Block& block,
                                         const Eigen::VectorXd& theta,
@@ -49,19 +50,36 @@ std::string NumberName(const Layout& layout, const Layout::Block& block, int j) 
   return block.effect->Name();
 }
 
+/// Where a number of present effects stands: its list, and what takes it up.
+struct LooseNumber {
+  std::string list, taken_by;
+  int index = 0;
+};
+
+LooseNumber MakeLoose(const Layout& layout, const Layout::Block& block, int j, int partner) {
+  LooseNumber loose;
+  const std::string name = NumberName(layout, block, j - block.first);
+  const auto bracket = name.find('[');
+  loose.list = name.substr(0, bracket);
+  if (bracket != std::string::npos) loose.index = std::stoi(name.substr(bracket + 1)) + 1;
+  for (const Layout::Block& rival : layout.Blocks())
+    if (partner >= rival.first && partner < rival.first + rival.size)
+      loose.taken_by = rival.effect->Name();
+  return loose;
+}
+
 /// Numbers of present effects that the data leave as wide as they were thought to be, with the
-/// number that takes them up.
+/// effect that takes them up: a sentence for each list.
 std::vector<std::string> NotTold(const Layout& layout, const diagnosis::WeighedHypothesis& weighed,
                                  const Eigen::MatrixXd& covariance) {
-  std::vector<std::string> not_told;
   const Eigen::VectorXd wide = layout.Prior().Widened(weighed.hypothesis.effects, weighed.scales);
+  std::map<std::pair<std::string, std::string>, std::vector<int>> lists;
   for (const int b : weighed.hypothesis.effects) {
     const Layout::Block& block = layout.Blocks()[b];
     for (int j = block.first; j < block.first + block.size; ++j) {
-      const double sd = std::sqrt(std::max(0.0, covariance(j, j)));
-      if (sd < kCannotTell * wide[j]) continue;
+      if (std::sqrt(std::max(0.0, covariance(j, j))) < kCannotTell * wide[j]) continue;
       int partner = -1;
-      double most = 0.8;
+      double most = kTakenUp;
       for (int other = 0; other < layout.Size(); ++other) {
         if (other == j) continue;
         const double scale = std::sqrt(covariance(j, j) * covariance(other, other));
@@ -70,15 +88,31 @@ std::vector<std::string> NotTold(const Layout& layout, const diagnosis::WeighedH
         most = c;
         partner = other;
       }
-      std::string text = NumberName(layout, block, j - block.first) + " cannot be told";
-      for (const Layout::Block& rival : layout.Blocks())
-        if (partner >= rival.first && partner < rival.first + rival.size)
-          text += " from " + NumberName(layout, rival, partner - rival.first);
-      not_told.push_back(std::move(text));
-      if (int(not_told.size()) >= kMostNotTold) return not_told;
+      const LooseNumber loose = MakeLoose(layout, block, j, partner);
+      lists[{loose.list, loose.taken_by}].push_back(loose.index);
     }
   }
+  std::vector<std::string> not_told;
+  for (const auto& [names, indices] : lists) {
+    std::string text = names.first;
+    if (indices.front() > 0) text += fmt::format(" {}", fmt::join(indices, ", "));
+    text += names.second.empty() ? ": nothing in the recording shows it"
+                                 : " cannot be told from " + names.second;
+    not_told.push_back(std::move(text));
+  }
   return not_told;
+}
+
+/// Puts first what explains most.
+void OrderByImportance(const Found& found, const Layout& layout, Verdict& verdict) {
+  const auto of = [&](const std::string& name) {
+    double most = -1.0;
+    for (const auto& [block, importance] : found.importance)
+      if (layout.Blocks()[block].effect->Name() == name) most = std::max(most, importance);
+    return most;
+  };
+  std::stable_sort(verdict.begin(), verdict.end(),
+                   [&](const std::string& a, const std::string& b) { return of(a) > of(b); });
 }
 
 /// What each joint's own numbers say.
@@ -287,7 +321,7 @@ void Describe(const Replay& base, const Replay& extended, const Found& found,
   const auto& weighed = found.BestKnown().weighed;
   const auto& best = weighed.hypothesis;
   const diagnosis::Evidence evidence(found.problem.total, layout.Prior(), found.generic_sd,
-                                     {.scales = {0.4, 2.5}, .unknown_sd = {}});
+                                     {.scales = {0.3, 3.0}, .unknown_sd = {}});
   const Eigen::MatrixXd covariance =
       evidence.Covariance(weighed).topLeftCorner(layout.Size(), layout.Size());
   Eigen::VectorXd theta = extended.Theta();
@@ -330,6 +364,10 @@ void Describe(const Replay& base, const Replay& extended, const Found& found,
   if (diagnosis::NamesEffects(answer.verdict))
     answer.indistinguishable = Alternatives(found, layout);
   result.not_told = NotTold(layout, weighed, covariance);
+  for (const int b : found.not_claimed)
+    result.not_told.push_back(layout.Blocks()[b].effect->Name() +
+                              ": what it explains is lost in what is left, not claimed");
+  OrderByImportance(found, layout, answer.verdict);
   result.joint_findings = JointFindings(layout, best, theta, covariance);
   for (const ArmJoint& joint : layout.Recordings().front().arm.joints)
     result.joint_types.emplace_back(joint.type == JointType::kRevolute ? "revolute" : "prismatic");

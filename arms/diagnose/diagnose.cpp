@@ -82,7 +82,7 @@ std::vector<double> BaggedProbabilities(const Found& found, const Layout& layout
     diagnosis::NormalSums sums(found.problem.total.g.size());
     for (std::size_t b = 0; b < blocks.size(); ++b) sums.Add(blocks[draw(rng)].sums);
     const diagnosis::Evidence evidence(sums, layout.Prior(), found.generic_sd,
-                                       {.scales = {0.4, 2.5}, .unknown_sd = {0.1, 0.3, 1.0}});
+                                       {.scales = {0.3, 3.0}, .unknown_sd = {0.1, 0.3, 1.0}});
     std::vector<Scored> scored;
     for (const std::size_t i : leaders) {
       const auto& h = found.scored[i].weighed.hypothesis;

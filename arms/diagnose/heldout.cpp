@@ -120,7 +120,7 @@ ArmHeldOut MeasureHeldOut(const Replay& base, const Replay& extended, const Foun
   for (int fold = 0; fold < folds; ++fold) {
     const diagnosis::NormalSums train = Train(found.problem, fold, folds, parts);
     const diagnosis::Evidence evidence(train, layout.Prior(), found.generic_sd,
-                                       {.scales = {0.4, 2.5}, .unknown_sd = {}});
+                                       {.scales = {0.3, 3.0}, .unknown_sd = {}});
     const auto& weighed = found.BestKnown().weighed;
     const Eigen::VectorXd step =
         evidence.Mode(weighed, evidence.Covariance(weighed)).head(layout.Size()) - extended.Theta();

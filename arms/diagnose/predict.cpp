@@ -78,7 +78,8 @@ ArmPrediction Predict(const ArmData& data, const ArmModel& model) {
     replay.Evaluate(here);
     replay.Register();
     replay.Evaluate(here);
-    const Noise noise = MeasureNoise(replay, false);
+    Noise noise = MeasureNoise(replay, false);
+    for (ChannelNoise& own : noise) own.sd = own.floor;  // what is left here is error, not noise
     // Only what is each recording's own is found again.
     for (int round = 0; round < 5; ++round) {
       const Eigen::VectorXd moved = FitOwn(replay, noise);

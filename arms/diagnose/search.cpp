@@ -16,15 +16,19 @@ using diagnosis::EvidenceOptions;
 using diagnosis::Hypothesis;
 using diagnosis::WeighedHypothesis;
 
-constexpr double kRival = 3.0;           // log odds below the best that are worth a fit
+constexpr double kRival = 3.0;          // log odds below the best that are worth a fit
+constexpr double kMuchLeft = 4.0;       // chi-squared per row, in stated noise
+constexpr double kHardlyCounts = 0.01;  // of what is left
+constexpr int kMostDrops = 3;
 constexpr double kWorthCarrying = 20.0;  // squared residual
 constexpr int kMostFits = 14;            // a round
 constexpr int kFitRounds = 6;
 constexpr int kNoiseRounds = 3;
-constexpr double kWidths[] = {0.0,  0.002, 0.004, 0.008, 0.015, 0.025,
-                              0.04, 0.06,  0.09,  0.13,  0.18,  0.25};  // of a window, rad or 10 cm
+// Widths of a window that are tried, in rad or 10 cm.
+constexpr double kWidths[] = {0.0,  0.002, 0.004, 0.008, 0.015, 0.025, 0.04,
+                              0.06, 0.09,  0.13,  0.18,  0.25,  0.35,  0.5};
 
-const std::vector<double> kScales{0.4, 2.5};
+const std::vector<double> kScales{0.3, 3.0};
 
 /// Where a hypothesis fits.
 struct Place {
@@ -62,6 +66,12 @@ class Searcher {
       noise_ = now;
       found_.converged = same;
       if (same) break;
+    }
+    for (int round = 0; round < kMostDrops && ForbidWhatHardlyCounts(); ++round) {
+      tried_.clear();
+      Round();
+      GoTo(best_);
+      noise_ = MeasureNoise(replay_, true);
     }
     Finish();
     return std::move(found_);
@@ -107,7 +117,7 @@ class Searcher {
 
   /// Moves the replay to where `hypothesis` fits.
   WeighedHypothesis Descend(const Hypothesis& hypothesis, int rounds) {
-    WeighedHypothesis weighed{hypothesis, 0.0, std::vector<double>(hypothesis.effects.size(), 2.5),
+    WeighedHypothesis weighed{hypothesis, 0.0, std::vector<double>(hypothesis.effects.size(), 3.0),
                               0.0};
     for (int round = 0; round < rounds; ++round) {
       const Problem problem = ProblemHere();
@@ -285,6 +295,7 @@ class Searcher {
       std::vector<Hypothesis> next;
       for (const Hypothesis& h : frontier)
         for (int b = 0; b < layout_.EffectCount(); ++b) {
+          if (forbidden_.contains(b)) continue;
           if (std::find(h.effects.begin(), h.effects.end(), b) != h.effects.end()) continue;
           Hypothesis longer = h;
           longer.effects.push_back(b);
@@ -332,7 +343,75 @@ class Searcher {
     }
   }
 
+  /// Squared misfit in stated noise, with the parameters moved by `step` as the derivatives say.
+  double MisfitAfter(const Eigen::VectorXd& step) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < noise_.size(); ++i) {
+      const Channel& channel = replay_.Channels()[i];
+      const Eigen::VectorXd by = channel.derivative * step;
+      const Eigen::Index C = channel.Components();
+      for (Eigen::Index k = 0; k < channel.Rows(); ++k)
+        for (Eigen::Index c = 0; c < C; ++c)
+          if (noise_[i].keep(k, c))
+            sum += std::pow((channel.residual(k, c) - by[k * C + c]) / noise_[i].floor[c], 2);
+    }
+    return sum;
+  }
+
+  /// By how much of what is left the misfit rises without each effect of the best.
+  std::vector<double> Importance() {
+    GoTo(best_);
+    const Problem problem = ProblemHere();
+    const Evidence evidence = EvidenceHere(problem, false);
+    const double left = MisfitAfter(Eigen::VectorXd::Zero(layout_.Size()));
+    std::vector<double> importance;
+    for (const int effect : best_.hypothesis.effects) {
+      Hypothesis without;
+      for (const int other : best_.hypothesis.effects)
+        if (other != effect) without.effects.push_back(other);
+      const WeighedHypothesis weighed = evidence.Weigh(without);
+      const Eigen::VectorXd mode =
+          evidence.Mode(weighed, evidence.Covariance(weighed)).head(layout_.Size());
+      importance.push_back(MisfitAfter(mode - replay_.Theta()) / std::max(1e-300, left) - 1.0);
+    }
+    long count = 0;
+    for (const ChannelNoise& noise : noise_) count += noise.keep.count();
+    left_per_row_ = left / double(std::max(1L, count));
+    return importance;
+  }
+
+  /// Whether the best has the same effect in other recordings: one may take up the other.
+  bool HasTwin(int effect) const {
+    const std::string name = layout_.Blocks()[effect].effect->Name();
+    return std::any_of(best_.hypothesis.effects.begin(), best_.hypothesis.effects.end(),
+                       [&](int other) {
+                         return other != effect && layout_.Blocks()[other].effect->Name() == name;
+                       });
+  }
+
+  /// Where much is left that nothing explains, an effect that takes away a hundredth of it is not
+  /// claimed: any smooth form would. Returns whether there was one.
+  bool ForbidWhatHardlyCounts() {
+    const std::vector<double> importance = Importance();
+    if (left_per_row_ < kMuchLeft) return false;
+    int least = -1;
+    for (int i = 0; i < int(importance.size()); ++i)
+      if (importance[i] < kHardlyCounts && !HasTwin(best_.hypothesis.effects[i]) &&
+          (least < 0 || importance[i] < importance[least]))
+        least = i;
+    if (least < 0) return false;
+    const int block = best_.hypothesis.effects[least];
+    forbidden_.insert(block);
+    found_.not_claimed.push_back(block);
+    std::erase(best_.hypothesis.effects, block);
+    return true;
+  }
+
   void Finish() {
+    found_.importance.clear();
+    const std::vector<double> importance = Importance();
+    for (std::size_t i = 0; i < importance.size(); ++i)
+      found_.importance[best_.hypothesis.effects[i]] = importance[i];
     GoTo(best_);
     found_.problem = ProblemHere();
     const Evidence evidence = EvidenceHere(found_.problem, true);
@@ -368,6 +447,8 @@ class Searcher {
   Eigen::VectorXd generic_sd_;
   std::vector<Place> tried_;
   Place best_;
+  std::set<int> forbidden_;
+  double left_per_row_ = 0.0;
   Found found_;
 };
 

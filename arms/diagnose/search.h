@@ -2,6 +2,7 @@
 // and the noise measured again from what the best one leaves, until nothing changes.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "arms/diagnose/noise.h"
@@ -32,7 +33,9 @@ struct Found {
   Eigen::VectorXd generic_sd;
   Noise noise;
   std::vector<Eigen::VectorXd> sizes;
-  Eigen::VectorXd base_theta;  ///< of the base: nuisances alone
+  Eigen::VectorXd base_theta;        ///< of the base: nuisances alone
+  std::map<int, double> importance;  ///< of each effect of the best: what its lack adds to the rest
+  std::vector<int> not_claimed;      ///< likely by their evidence, but lost in what is left
   int fits = 0;
   bool converged = false;
 

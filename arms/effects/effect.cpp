@@ -67,7 +67,7 @@ Entry OffDiagonal(int size, int m) {
 }
 
 double UnitRatio(const ArmData& data, int i, int j) {
-  const double to = data.TypicalOf(i, 1.0, 0.1), from = data.TypicalOf(j, 1.0, 0.1);
+  const double to = data.TypicalOf(i, 1.0, 0.3), from = data.TypicalOf(j, 1.0, 0.3);
   return to / from;
 }
 

@@ -17,12 +17,12 @@ class JointBacklash : public ArmEffect {
   bool Applies(const ArmData& data) const override { return data.seen.Any() || data.pose.Any(); }
 
   std::vector<FitParameter> Parameters(const ArmData& data) const override {
-    auto parameters = PerJoint(data, "joint_backlash.width", {0.0005, 0.0002, 0.01, 0.001, true});
+    auto parameters = PerJoint(data, "joint_backlash.width", {0.0005, 0.0002, 0.05, 0.002, true});
     const int n = data.Size();
     for (int m = 0; m < n * n - n; ++m) {
       const Entry entry = OffDiagonal(n, m);
       parameters.push_back({0.02 * data.TypicalOf(entry.row, 0.0005, 0.0002),
-                            data.TypicalOf(entry.row, 0.005, 5e-4)});
+                            data.TypicalOf(entry.row, 0.04, 1e-3)});
     }
     return parameters;
   }

@@ -18,7 +18,7 @@ class JointCoupling : public PlainEffect {
     for (int m = 0; m < count; ++m) {
       const Entry entry = OffDiagonal(n, m);
       const double ratio = UnitRatio(data, entry.row, entry.column);
-      parameters.push_back({tolerance[m] * ratio, 0.02 * ratio});
+      parameters.push_back({tolerance[m] * ratio, 0.05 * ratio});
     }
     return parameters;
   }
