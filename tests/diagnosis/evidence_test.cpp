@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "diagnosis/model/parameter_layout.h"
 #include "tests/diagnosis/small_recording.h"
 
 namespace flextip::diagnosis {
