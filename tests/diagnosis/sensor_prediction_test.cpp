@@ -19,7 +19,7 @@ class SensorDerivatives : public testing::Test {
     samples_.has_camera = true;
     samples_.T_RC = {ExpRotation({0.3, -0.5, 0.2}), {0.35, 0.05, -0.25}};
     samples_.centre = {0.3, 0.02, -0.03};
-    for (double& x : u_) x = 0.3 * Draw();
+    for (double& x : u_.head<kEmReadTurn>()) x = 0.3 * Draw();
     for (double& x : geometry_.at) x = 0.5 * Draw();
     geometry_.at.segment<3>(place::kTip) = samples_.T_RC * Eigen::Vector3d(0.06, -0.04, 0.2);
     for (double& x : geometry_.rate) x = 0.1 * Draw();
@@ -28,6 +28,7 @@ class SensorDerivatives : public testing::Test {
     for (Eigen::Vector3d* d : {&z_.d_wrist, &z_.d_port, &z_.d_em, &z_.d_tip}) {
       *d = Eigen::Vector3d(1.0, Draw(), Draw()).normalized();
     }
+    for (double& x : u_.tail<kCount - kEmReadTurn>()) x = 0.3 * Draw();
   }
 
   double Draw() { return std::uniform_real_distribution<double>(-1.0, 1.0)(rng_); }
