@@ -250,8 +250,12 @@ void WriteDiagnoseReport(const fs::path& folder) {
   const auto residuals = fs::exists(table) ? ReadResultTable(table) : ResultTable{};
   const auto headline = MakeHeadline(result);
 
-  const Head head = HeadOfDiagnosis(folder, result, headline);
+  Head head = HeadOfDiagnosis(folder, result, headline);
   const bool answered = head.grade != kNoAnswer;
+  if (const std::string began = WhatBegan(folder); answered && !began.empty()) {
+    head.says = began + head.says;
+    head.more.clear();  // of all recordings together, with what began
+  }
 
   Report report("Diagnosis: " + (answered ? headline.title : "no answer"),
                 "flextip " + summary.command);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "report/report.h"
 
@@ -10,5 +11,9 @@ namespace flextip::report {
 /// Adds a table of effects by recording, and one of what began, from diagnosis.json; nothing where
 /// it is of one recording.
 void AddRecordings(Report& report, const std::filesystem::path& folder);
+
+/// Returns "stiffness began in C (> 99 %). Before that: ", to stand before the answer for what all
+/// have in common; empty where nothing began.
+std::string WhatBegan(const std::filesystem::path& folder);
 
 }  // namespace flextip::report

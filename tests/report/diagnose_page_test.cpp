@@ -199,6 +199,26 @@ TEST_F(DiagnosePage, IsMadeOfTheLeastAnswerToo) {
   EXPECT_THAT(html, HasSubstr("Nothing is wrong beyond tolerance"));
 }
 
+TEST_F(DiagnosePage, ShowsSeveralRecordingsAndWhatBegan) {
+  Json diagnosis = Friction();
+  EXPECT_THAT(Page(diagnosis), Not(HasSubstr("Recording by recording")));
+  diagnosis["recordings"] = {"monday", "friday"};
+  diagnosis["presence_in"] = {{"port_friction", {0.98, 0.97}},
+                              {"port_offset", {0.001, 0.96}},
+                              {"length", {0.001, 0.002}}};
+  diagnosis["changes"] = {
+      {{"effect", "port_offset"},
+       {"first_in", "friday"},
+       {"probability", 0.96},
+       {"parameters", {{"offset_m", {{"value", {0.0, 0.002, 0.0}}, {"sd", {1e-4, 1e-4, 1e-4}}}}}}}};
+  const std::string html = Page(diagnosis);
+  EXPECT_THAT(html, HasSubstr("Port offset began in friday (96 %). Before that: "));
+  EXPECT_THAT(html, HasSubstr("2.00 ± 0.10 mm"));
+  EXPECT_THAT(html, HasSubstr("<td>monday</td>"));
+  const auto table = html.substr(html.find("Effects by recording"));
+  EXPECT_THAT(table.substr(0, table.find("</table>")), Not(HasSubstr("length")));
+}
+
 TEST_F(DiagnosePage, SaysWhichFileIsWrong) {
   Write("diagnosis.json", R"({"verdict": 3})");
   try {

@@ -106,6 +106,21 @@ TEST_F(Pages, PlotEveryColumnOfAState) {
   EXPECT_EQ(plots[2]["traces"][0]["y"], nlohmann::json({1.0, 2.0}));
 }
 
+TEST_F(Pages, ShowBothModelsErrorsOfAPrediction) {
+  Write("summary.json", R"({"command": "predict", "version": "1", "ratio": 0.25, "tip_ratio": 0.2,
+    "base_rms": {"em0_position_m": 0.002}, "extended_rms": {"em0_position_m": 0.0005},
+    "base_tip_rms_m": 0.004, "extended_tip_rms_m": 0.0008,
+    "verdict": {"grade": "good", "says": "The model holds.", "reasons": [], "next": "use it",
+                "command": "flextip estimate rec --model m.yaml -o out"}})");
+  EXPECT_THROW(WriteReport(folder_), InputError);  // the residuals are missing
+  Write("residuals.csv", "#t_s,base.em0_position_m.0,extended.em0_position_m.0\n0,8,1\n1,-8,-1\n");
+  WriteReport(folder_);
+  const std::string html = Page();
+  EXPECT_THAT(html, HasSubstr("The model holds."));
+  EXPECT_THAT(html, HasSubstr("<td>EM position</td><td>2</td><td>0.5</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>tip, RMS</td><td>4</td><td>0.8</td>"));
+}
+
 TEST_F(Pages, ShowPicturesOfAllCommands) {
   Write("overlay/0001.png", "\x89PNG one");
   Write("overlay/notes.txt", "not a picture");
