@@ -17,10 +17,12 @@ void AddCommands(CLI::App& app, AppContext& context) {
   AddConvert(app, context);
   AddDetect(app, context);
   AddDiagnose(app, context);
+  AddEffect(app, context);
   AddEstimate(app, context);
   AddExport(app, context);
   AddImport(app, context);
   AddMap(app, context);
+  AddPredict(app, context);
   AddReplay(app, context);
   AddReport(app, context);
   AddReproduce(app, context);

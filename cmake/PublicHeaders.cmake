@@ -70,6 +70,8 @@ set(FLEXTIP_PUBLIC_HEADERS
   core/tip_observation.h
   core/version.h
   diagnosis/diagnose.h
+  diagnosis/effects/discovered/term.h
+  diagnosis/effects/discovered/term_columns.h
   diagnosis/effects/periodic.h
   diagnosis/evidence/priors.h
   diagnosis/evidence/residual_memory.h
@@ -78,9 +80,12 @@ set(FLEXTIP_PUBLIC_HEADERS
   diagnosis/model/effect.h
   diagnosis/model/extended_instrument.h
   diagnosis/model/extended_model.h
+  diagnosis/planning/plan.h
   diagnosis/model/latency.h
+  diagnosis/prediction/predict.h
   diagnosis/replay/sample_input.h
   diagnosis/samples/sample_set.h
+  diagnosis/several/diagnose_several.h
   estimation/instrument_model.h
   estimation/watch/instrument_watch.h
   estimation/measurements.h

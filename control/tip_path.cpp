@@ -11,7 +11,9 @@ namespace flextip {
 
 TipPath::TipPath(const PathSetup& setup, const Pose& T_RE, double update_rate_hz)
     : setup_(setup), update_rate_hz_(update_rate_hz), points_{T_RE.p}, d_start_(T_RE.R.col(0)) {
-  for (const auto& waypoint : setup.waypoints_m) points_.emplace_back(T_RE.p + waypoint);
+  const bool from_start = setup.frame == PathFrame::kStart;
+  for (const auto& waypoint : setup.waypoints_m)
+    points_.emplace_back(from_start ? Eigen::Vector3d(T_RE.p + waypoint) : waypoint);
 }
 
 std::optional<Eigen::Vector3d> TipPath::Direction() const {

@@ -15,9 +15,15 @@ enum class PathMode {
   kSteps,       ///< thesis 4.3.1: the goal moves on by a step each update and waits at a leg's end
 };
 
+enum class PathFrame : std::uint8_t {
+  kStart,  ///< waypoints count from the tip at the start
+  kRobot,  ///< waypoints are places in R
+};
+
 struct PathSetup {
   PathMode mode = PathMode::kContinuous;
-  std::vector<Eigen::Vector3d> waypoints_m;  ///< relative to where the tip starts, in R
+  PathFrame frame = PathFrame::kStart;
+  std::vector<Eigen::Vector3d> waypoints_m;  ///< in R
   std::vector<Eigen::Vector3d> directions;   ///< of the tip there, in R, unit; empty: any
   double speed_m_s = 0.02;                   ///< kContinuous
   double settle_s = 0.5;                     ///< kContinuous: held at the last waypoint

@@ -5,19 +5,24 @@
 #include <Eigen/Dense>
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "diagnosis/effects/discovered/term.h"
 #include "diagnosis/evidence/residual_memory.h"
 #include "diagnosis/model/effect.h"
+#include "diagnosis/planning/plan.h"
 #include "recording/recording.h"
 
 namespace flextip::diagnosis {
 
 struct DiagnoseOptions {
-  std::vector<std::string> without;  ///< effects left out of the catalogue
-  EffectMakers own_effects = {};     ///< of the user's own, judged like those of the catalogue
-  bool measure_gain = true;          ///< fits on parts of the recording, judged on the rest
+  std::vector<std::string> without;       ///< effects left out of the catalogue
+  EffectMakers own_effects = {};          ///< of the user's own, judged like those of the catalogue
+  bool discover = true;                   ///< looks for terms that the catalogue does not have
+  bool measure_gain = true;               ///< fits on parts of the recording, judged on the rest
+  std::optional<MotionLimits> plan = {};  ///< the next motion is planned within these
 };
 
 /// Effects together, in alphabetical order; {"none"} and {"unknown"} are answers too.
@@ -69,6 +74,44 @@ struct Signature {
   double score = 0.0;
 };
 
+/// What a term is called: where it acts, what on, and how. No variable: a constant.
+struct TermName {
+  std::string channel;
+  std::vector<std::string> depends_on;
+  std::string form;
+};
+TermName NameOf(const Term& term);
+
+/// Where a term is at least half as large as its largest.
+struct TermRegion {
+  double largest = 0.0, part = 0.0;  ///< in the channel's unit; part of the samples
+  double depth_low_m = 0.0, depth_high_m = 0.0;
+  Eigen::Vector3d p_RE_low = Eigen::Vector3d::Zero(), p_RE_high = Eigen::Vector3d::Zero();
+};
+
+/// A term drawn along its direction against its variable, sample by sample: what it says, and what
+/// the sensors say of it with all else as fitted.
+struct TermPicture {
+  std::vector<double> variable, term, measured;
+};
+
+/// A term that the residuals hold and that no effect of the catalogue explains.
+struct Discovered {
+  Term term;
+  TermName name;
+  std::string frame;                          ///< of `direction`: "R", or whose numbers they are
+  Eigen::VectorXd direction;                  ///< unit
+  std::vector<ReportedParameter> parameters;  ///< in physical units
+  std::string text;                           ///< a sentence
+  double false_discovery =
+      1.0;                 ///< the probability that chance would hold as well on unseen blocks
+  double stability = 0.0;  ///< part of resamplings in which the channel stays the same
+  std::vector<TermName> could_be;  ///< what the recording cannot tell from it
+  TermRegion region;
+  TermPicture picture;
+  Gain gain;  ///< over the same model without the term
+};
+
 /// For pictures: residuals of every sample in standard deviations of each channel's noise (less the
 /// part that the tip's force explains), with the base simulation and the extended model.
 struct ResidualTable {
@@ -85,8 +128,10 @@ struct DiagnosisResult {
   std::vector<std::vector<std::string>> indistinguishable;  ///< one group for each verdict
   std::string separating_motion;  ///< the motion that would tell a group apart; empty: none needed
   double separating_motion_score = 0.0;
+  std::optional<NextMotion> plan;           ///< where one was asked for
   std::vector<EffectFit> parameters;        ///< of the verdict's effects
   std::vector<EffectFit> within_tolerance;  ///< of all others, as far as the data moved them
+  std::vector<Discovered> discovered;       ///< beside the verdict's effects, or with none of them
   Eigen::MatrixXd covariance;  ///< of the verdict's parameters as listed, all numbers in order
   SensorTolerance sensor_tolerance;                    ///< of `within_tolerance`
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< in R, which EM gradients are about
@@ -110,8 +155,8 @@ struct DiagnosisResult {
   bool IsAdequate() const;
 };
 
-/// Throws InputError where nothing can be judged (sample_set.h) and for names in `without` that
-/// no effect has; `name` is the recording's in messages.
+/// Throws InputError where nothing can be judged (sample_set.h), for names in `without` that no
+/// effect has and for limits of a plan that leave no motion; `name` is the recording's in messages.
 DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
                          const DiagnoseOptions& options = {});
 

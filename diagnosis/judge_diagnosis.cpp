@@ -36,6 +36,7 @@ std::string AnswerOf(const DiagnosisResult& result) {
     says += fmt::format("; {} could as well be {}", group[0],
                         fmt::join(group.begin() + 1, group.end(), " or "));
   }
+  for (const Discovered& term : result.discovered) says += "; in the residuals: " + term.text;
   if (result.gain.measured)
     says += fmt::format("; held-out error {:.2f} of the base's", result.gain.heldout_error_ratio);
   return says + ".";
@@ -43,12 +44,12 @@ std::string AnswerOf(const DiagnosisResult& result) {
 
 /// A model that predicts no better than the base simulation is not worth its use.
 bool IsGain(const DiagnosisResult& result) {
-  return NamesEffects(result.verdict) &&
+  return (NamesEffects(result.verdict) || !result.discovered.empty()) &&
          (!result.gain.measured || result.gain.heldout_error_ratio < 0.98);
 }
 
 void SayNext(const DiagnosisResult& result, Judgement& judged) {
-  if (result.verdict == Verdict{"unknown"}) {
+  if (result.verdict == Verdict{"unknown"} && result.discovered.empty()) {
     judged.next =
         "look at the residual patterns, which channel depends on which quantity, and check the "
         "recording";
@@ -59,7 +60,10 @@ void SayNext(const DiagnosisResult& result, Judgement& judged) {
   judged.next = gain ? "let the estimator use the model" : "keep the base simulation";
   judged.command = gain ? "flextip estimate RECORDING --model RESULT/model.yaml -o RESULT-estimate"
                         : "flextip estimate RECORDING -o RESULT-estimate";
-  if (!result.separating_motion.empty()) {
+  if (result.plan && !result.plan->places_m.empty()) {
+    judged.next = fmt::format("run the planned motion, motion.yaml in the result; until then {}",
+                              judged.next);
+  } else if (!result.separating_motion.empty()) {
     judged.next = fmt::format("to tell the alternatives apart, record {}; until then {}",
                               result.separating_motion, judged.next);
   }

@@ -81,6 +81,14 @@ const std::vector<Labelled>& Labels() {
       {"heldout_error_ratio", "held-out error over the base's"},
       {"fits", "models fitted"},
       {"failed_samples", "samples without an equilibrium"},
+      // predict
+      {"ratio", "error over the base's"},
+      {"tip_ratio", "tip's error over the base's"},
+      {"extended_tip_rms_m", "predicted tip, RMS"},
+      {"base_tip_rms_m", "predicted tip by the base, RMS"},
+      {"extended_tip_mean_m", "predicted tip, mean"},
+      {"base_tip_mean_m", "predicted tip by the base, mean"},
+      {"judged_samples", "samples judged"},
       // shape
       {"shape ok", "shapes solved"},
       // control

@@ -38,6 +38,8 @@ void WriteCalibrateReport(const std::filesystem::path& folder);
 /// The verdict, its evidence and the gain, from diagnosis.json (which must be there) and
 /// residuals.csv.
 void WriteDiagnoseReport(const std::filesystem::path& folder);
+/// The error of both models by channel, from summary.json and residuals.csv.
+void WritePredictReport(const std::filesystem::path& folder);
 /// Every row of table.csv by chapter, and the figures of figures.json.
 void WriteReproduceReport(const std::filesystem::path& folder);
 /// The figures of figures.json (which must be there) and table.csv.

@@ -42,6 +42,7 @@ const std::vector<CommandPage>& Pages() {
       {"diagnose", WriteDiagnoseReport, {"diagnosis.json", "residuals.csv"}},
       {"import", WriteImportReport, {"recording.yaml"}},
       {"map", WriteMapReport, {"figures.json", "table.csv"}},
+      {"predict", WritePredictReport, {"residuals.csv"}},
       {"reproduce", WriteReproduceReport, {"figures.json", "table.csv"}}};
   return pages;
 }

@@ -49,8 +49,22 @@ YamlMap TaskReader::Section(const YamlMap& map, const std::string& key) {
   return sections_.back();
 }
 
+YamlMap TaskReader::PathSection(const YamlMap& map) {
+  const YamlMap path = Section(map, "path");
+  if (!path.Has("file")) return path;
+  sections_.push_back(YamlMap::Load(folder_ / path.Text("file")));
+  return sections_.back();
+}
+
+PathFrame TaskReader::ReadPathFrame(const YamlMap& path) {
+  const bool in_robot_frame = ReadChoice(path, "frame", {"start", "R"}) == 1;
+  task_.path.frame = in_robot_frame ? PathFrame::kRobot : PathFrame::kStart;
+  return task_.path.frame;
+}
+
 void TaskReader::ReadPath(const YamlMap& map) {
   PathSetup& path = task_.path;
+  ReadPathFrame(map);
   path.mode = ReadChoice(map, "mode", {"continuous", "steps"}) == 1 ? PathMode::kSteps
                                                                     : PathMode::kContinuous;
   for (const YamlMap& waypoint : map.Maps("waypoints")) {

@@ -51,7 +51,11 @@ class TaskReader {
   TaskReader(std::filesystem::path folder, TipTask& task, std::vector<YamlMap>& sections)
       : folder_(std::move(folder)), task_(task), sections_(sections) {}
 
-  /// Reads waypoints, speed and mode of the section path, `map`, which is in the sections already.
+  /// Returns the section path of `map`, or the file that it names; it is then in the sections.
+  YamlMap PathSection(const YamlMap& map);
+  /// Reads the frame of the path's waypoints.
+  PathFrame ReadPathFrame(const YamlMap& path);
+  /// Reads frame, waypoints, speed and mode of `map`, which PathSection gave.
   void ReadPath(const YamlMap& map);
   /// Reads the list `fixtures` of `map`, where it has one.
   void ReadFixtures(const YamlMap& map);

@@ -12,8 +12,9 @@ namespace flextip {
 namespace {
 
 // Each takes an input first and writes a folder with -o.
-constexpr std::array<std::string_view, 9> kCommands{
-    "align", "check", "detect", "diagnose", "estimate", "map", "replay", "simulate", "track"};
+constexpr std::array<std::string_view, 10> kCommands{"align",    "check", "detect",  "diagnose",
+                                                     "estimate", "map",   "predict", "replay",
+                                                     "simulate", "track"};
 // So does each command below these.
 constexpr std::array<std::string_view, 2> kFamilies{"calibrate", "import"};
 

@@ -8,9 +8,9 @@
 namespace flextip {
 namespace {
 
-const std::set<std::string> kTakeTracked{"align", "calibrate", "diagnose", "estimate"};
-const std::set<std::string> kTakeCalibrations{"align",    "calibrate", "check",
-                                              "diagnose", "estimate",  "track"};
+const std::set<std::string> kTakeTracked{"align", "calibrate", "diagnose", "estimate", "predict"};
+const std::set<std::string> kTakeCalibrations{"align",    "calibrate", "check", "diagnose",
+                                              "estimate", "predict",   "track"};
 // They find camera and collar themselves.
 const std::set<std::string> kTakeNothing{"camera", "stereo", "hand-eye"};
 
@@ -33,7 +33,8 @@ std::string CommandPaths::Fill(const std::string& command) const {
     if (!filled.empty()) filled += ' ';
     filled += FillPlaceholders(word, {{"RECORDING", recording.string()},
                                       {"PICTURE", picture.string()},
-                                      {"RESULT", result.string()}});
+                                      {"RESULT", result.string()},
+                                      {"MODEL", model.string()}});
     if (word != "RECORDING" || nothing) continue;
     if (!tracked.empty() && !has_tracked && kTakeTracked.contains(words[1]))
       filled += " --tracked " + ShellQuoted(tracked.string());

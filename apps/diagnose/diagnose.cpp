@@ -1,6 +1,7 @@
 // flextip diagnose: what the simulation gets wrong, why, and what an extended model gains.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,10 +16,14 @@
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/diagnose/arm.h"
+#include "apps/diagnose/motion_options.h"
 #include "apps/diagnose/result_files.h"
+#include "core/error.h"
 #include "diagnosis/diagnose.h"
 #include "diagnosis/judge_diagnosis.h"
 #include "diagnosis/model/extended_model.h"
+#include "diagnosis/planning/motion_file.h"
+#include "diagnosis/several/diagnose_several.h"
 #include "recording/text/text.h"
 #include "report/pages.h"
 #include "simulation/closed_loop/gain.h"
@@ -28,8 +33,9 @@ namespace {
 
 struct Options {
   RecordingInput input;
-  std::vector<std::filesystem::path> more;  ///< further recordings, of an arm
+  std::vector<std::filesystem::path> others;  ///< recordings after the first
   std::vector<std::string> without;
+  MotionOptions plan;
   bool no_closed_loop = false, force = false;
 };
 
@@ -48,37 +54,64 @@ simulation::ClosedLoopGain MeasureGain(const Recording& recording,
   return gain;
 }
 
-void Run(const Options& options, bool quiet) {
-  if (IsArmRecording(options.input.recording) || !options.more.empty()) {
-    ArmRun run{{options.input.recording}, options.input.out, options.without, options.force, quiet};
-    run.recordings.insert(run.recordings.end(), options.more.begin(), options.more.end());
-    return DiagnoseArm(run);
+/// A recording as it was read, under its name.
+struct NamedRead {
+  InputRead read;
+  std::string name;
+};
+
+/// Names of the folders, made unique.
+std::string UniqueName(const std::filesystem::path& folder, const std::vector<NamedRead>& taken) {
+  const std::filesystem::path full = std::filesystem::absolute(folder).lexically_normal();
+  const std::string name =
+      (full.has_filename() ? full.filename() : full.parent_path().filename()).string();
+  std::string unique = name;
+  const auto is_taken = [&] {
+    return std::ranges::any_of(taken, [&](const NamedRead& one) { return one.name == unique; });
+  };
+  for (int count = 2; is_taken(); ++count) unique = fmt::format("{}_{}", name, count);
+  return unique;
+}
+
+std::vector<NamedRead> ReadAll(const Options& options, bool quiet) {
+  if (!options.input.tracked.empty() && !options.others.empty()) {
+    throw InputError("--tracked is of one recording, found several: put the tips into each");
   }
-  const InputRead read = ReadInput(options.input, UseOfDiagnose(), quiet);
-  const Recording& recording = read.recording;
-  OutputFolder output(
-      options.input.out, "diagnose",
-      {.force = options.force, .inputs = options.input.Files(), .paths = options.input.Paths()});
-  output.Warn(read.warnings);
-  output.Beware(FindingsJson(read.findings));
-  const diagnosis::DiagnosisResult result = diagnosis::Diagnose(
-      recording, options.input.recording.string(), {.without = options.without});
-  output.Warn(result.warnings);
-  const diagnosis::ExtendedModel model = diagnosis::FromResult(result);
-  std::optional<simulation::ClosedLoopGain> gain;
-  if (!options.no_closed_loop && diagnosis::NamesEffects(result.verdict))
-    gain = MeasureGain(recording, model, output);
-  WriteTextFile(output.folder() / "diagnosis.json", DiagnosisJson(result, gain ? &*gain : nullptr));
-  WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result.residuals));
-  diagnosis::WriteModel(output.folder() / "model.yaml", model);
-  nlohmann::json summary = {
-      {"verdicts", result.verdict},    {"samples", result.samples},
-      {"fits", result.fits},           {"probability", result.probabilities.front().probability},
-      {"converged", result.converged}, {"streams_not_used", read.NotUsed()}};
+  std::vector<std::filesystem::path> folders{options.input.recording};
+  folders.insert(folders.end(), options.others.begin(), options.others.end());
+  std::vector<NamedRead> all;
+  for (const std::filesystem::path& folder : folders) {
+    RecordingInput input = options.input;
+    input.recording = folder;
+    const std::string name = UniqueName(folder, all);
+    all.push_back({ReadInput(input, UseOfDiagnose(), quiet), name});
+  }
+  return all;
+}
+
+OutputFolder OutputOf(const Options& options) {
+  std::vector<std::filesystem::path> inputs = options.input.Files();
+  inputs.insert(inputs.end(), options.others.begin(), options.others.end());
+  return {options.input.out,
+          "diagnose",
+          {.force = options.force, .inputs = inputs, .paths = options.input.Paths()}};
+}
+
+nlohmann::json SummaryOf(const diagnosis::DiagnosisResult& result) {
+  nlohmann::json summary = {{"verdicts", result.verdict},
+                            {"samples", result.samples},
+                            {"fits", result.fits},
+                            {"probability", result.probabilities.front().probability},
+                            {"converged", result.converged}};
   if (result.gain.measured) summary["heldout_error_ratio"] = result.gain.heldout_error_ratio;
-  if (!read.calibrations.empty()) summary["calibrations"] = CalibrationsJson(read.calibrations);
-  Judgement judged = diagnosis::JudgeDiagnosis(result);
-  MentionFindings(read.findings, judged);
+  return summary;
+}
+
+void Finish(const Options& options, const std::vector<NamedRead>& reads, const Judgement& judged,
+            nlohmann::json summary, OutputFolder& output, bool quiet) {
+  const InputRead& first = reads.front().read;
+  summary["streams_not_used"] = first.NotUsed();
+  if (!first.calibrations.empty()) summary["calibrations"] = CalibrationsJson(first.calibrations);
   summary["verdict"] = JudgementJson(judged);
   output.WriteSummary(summary);
   report::WriteDiagnoseReport(output.folder());
@@ -86,8 +119,84 @@ void Run(const Options& options, bool quiet) {
   PrintJudgement(judged, output.paths(), quiet);
   RequireFound(judged, output.paths());
   if (quiet) return;
-  if (!read.NotUsed().empty()) fmt::print("Not used: {}\n", read.NotUsed());
+  if (!first.NotUsed().empty()) fmt::print("Not used: {}\n", first.NotUsed());
   fmt::print("{}\n", (options.input.out / "report.html").string());
+}
+
+void WriteResult(const std::filesystem::path& folder, const std::string& json,
+                 const diagnosis::DiagnosisResult& result) {
+  WriteTextFile(folder / "diagnosis.json", json);
+  WriteTextFile(folder / "residuals.csv", ResidualsCsv(result.residuals));
+  diagnosis::WriteModel(folder / "model.yaml", diagnosis::FromResult(result));
+  if (!result.discovered.empty())
+    WriteTextFile(folder / "discovered.csv", DiscoveredCsv(result.discovered));
+  if (result.plan && !result.plan->places_m.empty())
+    diagnosis::WriteMotion(folder / "motion.yaml", *result.plan);
+}
+
+std::optional<simulation::ClosedLoopGain> GainOf(const Options& options, const Recording& recording,
+                                                 const diagnosis::DiagnosisResult& result,
+                                                 OutputFolder& output) {
+  if (options.no_closed_loop || !diagnosis::NamesEffects(result.verdict)) return {};
+  return MeasureGain(recording, diagnosis::FromResult(result), output);
+}
+
+void RunOne(const Options& options, const std::vector<NamedRead>& reads, bool quiet) {
+  const InputRead& read = reads.front().read;
+  OutputFolder output = OutputOf(options);
+  output.Warn(read.warnings);
+  output.Beware(FindingsJson(read.findings));
+  const diagnosis::DiagnosisResult result =
+      diagnosis::Diagnose(read.recording, options.input.recording.string(),
+                          {.without = options.without, .plan = options.plan.Limits()});
+  output.Warn(result.warnings);
+  const auto gain = GainOf(options, read.recording, result, output);
+  WriteResult(output.folder(), DiagnosisJson(result, gain ? &*gain : nullptr), result);
+  Judgement judged = diagnosis::JudgeDiagnosis(result);
+  MentionFindings(read.findings, judged);
+  Finish(options, reads, judged, SummaryOf(result), output, quiet);
+}
+
+void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, bool quiet) {
+  if (options.plan.plan)
+    throw InputError(
+        "--plan-motion is of one recording, found several: plan from the last of them");
+  OutputFolder output = OutputOf(options);
+  std::vector<plausibility::Finding> findings;
+  std::vector<diagnosis::NamedRecording> recordings;
+  for (const NamedRead& one : reads) {
+    for (const std::string& warning : one.read.warnings) output.Warn(one.name + ": " + warning);
+    findings.insert(findings.end(), one.read.findings.begin(), one.read.findings.end());
+    recordings.push_back({one.name, one.read.recording});
+  }
+  output.Beware(FindingsJson(findings));
+  const diagnosis::SeveralResult several =
+      diagnosis::DiagnoseSeveral(recordings, {.without = options.without});
+  output.Warn(several.common.warnings);
+  const auto gain = GainOf(options, recordings.front().recording, several.common, output);
+  WriteResult(output.folder(), DiagnosisJson(several, gain ? &*gain : nullptr), several.common);
+  nlohmann::json summary = SummaryOf(several.common);
+  summary["recordings"] = several.names;
+  summary["changes"] = several.changes.size();
+  for (std::size_t r = 0; r < several.own.size(); ++r) {
+    const auto folder = output.folder() / "recordings" / several.names[r];
+    WriteResult(folder, DiagnosisJson(several.own[r]), several.own[r]);
+  }
+  Judgement judged = diagnosis::JudgeSeveral(several);
+  MentionFindings(findings, judged);
+  Finish(options, reads, judged, summary, output, quiet);
+}
+
+void RunArm(const Options& options, bool quiet) {
+  ArmRun run{{options.input.recording}, options.input.out, options.without, options.force, quiet};
+  run.recordings.insert(run.recordings.end(), options.others.begin(), options.others.end());
+  DiagnoseArm(run);
+}
+
+void Run(const Options& options, bool quiet) {
+  if (IsArmRecording(options.input.recording)) return RunArm(options, quiet);
+  const std::vector<NamedRead> reads = ReadAll(options, quiet);
+  reads.size() == 1 ? RunOne(options, reads, quiet) : RunSeveral(options, reads, quiet);
 }
 
 }  // namespace
@@ -97,7 +206,9 @@ void AddDiagnose(CLI::App& app, AppContext& context) {
       "diagnose", "What the simulation gets wrong, why, and what an extended model gains");
   auto options = std::make_shared<Options>();
   AddRecordingInput(*command, options->input);
-  command->add_option("more", options->more, "Further recordings of the same arm")
+  command
+      ->add_option("others", options->others,
+                   "More recordings of the same instrument, in order of time: judged together")
       ->type_name("RECORDING");
   command
       ->add_option("--without", options->without,
@@ -106,8 +217,12 @@ void AddDiagnose(CLI::App& app, AppContext& context) {
   command->add_flag("--no-closed-loop", options->no_closed_loop,
                     "Do not run the controllers with and without the model on a simulated plant "
                     "that has what was found");
+  AddMotionOptions(*command, options->plan);
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
-  command->footer("Example:\n  flextip diagnose recording -o diagnosis\n");
+  command->footer(
+      "Example:\n  flextip diagnose recording -o diagnosis\n"
+      "  flextip diagnose recording --plan-motion --plan-speed 0.05 -o diagnosis\n"
+      "  flextip diagnose monday tuesday friday -o week\n");
   OnRun(*command, context, [options, &context] { Run(*options, context.quiet); });
 }
 

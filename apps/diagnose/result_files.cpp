@@ -1,8 +1,12 @@
 #include "apps/diagnose/result_files.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "diagnosis/model/catalogue.h"
+#include "diagnosis/planning/motion_file.h"
 #include "diagnosis/replay/sample_input.h"
 #include "recording/text/csv.h"
 
@@ -74,6 +78,62 @@ Json Summaries(const DiagnosisResult& result) {
   return json;
 }
 
+/// A number, or null where there is none.
+Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json PlanOf(const NextMotion& plan) {
+  Json json = {
+      {"needed", plan.needed},           {"rivals", plan.rivals},
+      {"text", Sentence(plan)},          {"file", plan.places_m.empty() ? "" : "motion.yaml"},
+      {"seconds", plan.seconds},         {"seconds_to_certain", OrNull(plan.seconds_to_certain)},
+      {"probability", plan.probability}, {"least_sure", plan.least_sure},
+      {"tip_speed_m_s", plan.speed_m_s}, {"hung_weight_N", plan.load_N}};
+  json["library"] = {{"motion", plan.library_motion},
+                     {"seconds_to_certain", OrNull(plan.library_seconds_to_certain)},
+                     {"probability", plan.library_probability}};
+  return json;
+}
+
+Json TermNameJson(const TermName& name) {
+  return {{"channel", name.channel}, {"depends_on", name.depends_on}, {"form", name.form}};
+}
+
+/// A list, not an object of pairs, where there are two numbers.
+Json List(const Eigen::VectorXd& values) {
+  Json json = Json::array();
+  for (const double value : values) json.push_back(value);
+  return json;
+}
+
+/// What was found that has no name.
+Json DiscoveredJson(const std::vector<Discovered>& terms) {
+  Json json = Json::array();
+  for (const Discovered& one : terms) {
+    Json term = {
+        {"channel", one.name.channel}, {"direction", List(one.direction)}, {"frame", one.frame}};
+    term["depends_on"] = one.name.depends_on;
+    term["form"] = one.name.form;
+    term["parameters"] = Json::object();
+    for (const ReportedParameter& p : one.parameters)
+      term["parameters"][p.name] = {{"value", Value(p.value)}, {"sd", Value(p.sd)}};
+    term["text"] = one.text;
+    term["false_discovery"] = one.false_discovery;
+    term["stability"] = one.stability;
+    if (one.gain.measured)
+      term["gain"] = {{"heldout_error_ratio", one.gain.heldout_error_ratio},
+                      {"tip_error_ratio", one.gain.tip_error_ratio}};
+    term["region"] = {{"largest", one.region.largest},
+                      {"part_of_samples", one.region.part},
+                      {"insertion_depth_m", {one.region.depth_low_m, one.region.depth_high_m}},
+                      {"p_RE_low_m", List(one.region.p_RE_low)},
+                      {"p_RE_high_m", List(one.region.p_RE_high)}};
+    term["could_be"] = Json::array();
+    for (const TermName& other : one.could_be) term["could_be"].push_back(TermNameJson(other));
+    json.push_back(std::move(term));
+  }
+  return json;
+}
+
 nlohmann::json Deviations(double max_m, double rms_m) {
   return {{"max_deviation_m", max_m}, {"rms_deviation_m", rms_m}};
 }
@@ -84,9 +144,7 @@ nlohmann::json Compared(const simulation::ControllerGain& gain) {
           {"after", Deviations(gain.extended.max_m, gain.extended.rms_m)}};
 }
 
-}  // namespace
-
-std::string DiagnosisJson(const DiagnosisResult& result, const simulation::ClosedLoopGain* gain) {
+Json ResultJson(const DiagnosisResult& result, const simulation::ClosedLoopGain* gain) {
   const bool known = NamesEffects(result.verdict);
   Json json;
   json["verdict"] = result.verdict.front();
@@ -97,8 +155,10 @@ std::string DiagnosisJson(const DiagnosisResult& result, const simulation::Close
   json["indistinguishable"] = result.indistinguishable;
   json["separating_motion"] = result.separating_motion;
   json["separating_motion_score"] = result.separating_motion_score;
+  if (result.plan) json["planned_motion"] = PlanOf(*result.plan);
   json["parameters"] = known ? Fits(result.parameters) : Json::object();
   json["within_tolerance"] = Fits(result.within_tolerance);
+  json["discovered"] = DiscoveredJson(result.discovered);
   json["base"] = Score(result.base);
   json["extended"] = Score(result.extended);
   if (result.gain.measured)
@@ -129,6 +189,41 @@ std::string DiagnosisJson(const DiagnosisResult& result, const simulation::Close
     json["closed_loop_runs"] += Json(Compared(run));
     if (run.kind == ControllerKind::kRodTrack) json["closed_loop"] = Compared(run);
   }
+  return json;
+}
+
+/// How likely each effect is in each recording, in their order.
+Json PresenceIn(const SeveralResult& several) {
+  Json json = Json::object();
+  for (const std::string& effect : several.common.catalogue) {
+    for (const DiagnosisResult& own : several.own) {
+      const auto found = own.presence.find(effect);
+      json[effect] += found == own.presence.end() ? 0.0 : found->second;
+    }
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string DiagnosisJson(const DiagnosisResult& result, const simulation::ClosedLoopGain* gain) {
+  return ResultJson(result, gain).dump(2) + "\n";
+}
+
+std::string DiagnosisJson(const SeveralResult& several, const simulation::ClosedLoopGain* gain) {
+  Json json = ResultJson(several.common, gain);
+  json["recordings"] = several.names;
+  json["presence_in"] = PresenceIn(several);
+  json["changes"] = Json::array();
+  for (const FoundChange& change : several.changes) {
+    Json parameters = Json::object();
+    for (const ReportedParameter& p : change.parameters)
+      parameters[p.name] = {{"value", Value(p.value)}, {"sd", Value(p.sd)}};
+    json["changes"].push_back({{"effect", change.effect},
+                               {"first_in", several.names[change.first_in]},
+                               {"probability", change.probability},
+                               {"parameters", parameters}});
+  }
   return json.dump(2) + "\n";
 }
 
@@ -140,6 +235,33 @@ std::string ResidualsCsv(const ResidualTable& residuals) {
         csv.Add(residuals.rows[k][c], 6);
       } else {
         csv.AddEmpty();
+      }
+    }
+    csv.EndRow();
+  }
+  return csv.TakeText();
+}
+
+std::string DiscoveredCsv(const std::vector<Discovered>& terms) {
+  constexpr std::size_t kMostRows = 1000;
+  if (terms.empty()) return "";
+  std::vector<std::string> columns;
+  std::size_t rows = 0;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    for (const char* what : {"variable", "measured", "term"})
+      columns.push_back(fmt::format("{}.{}", i + 1, what));
+    rows = std::max(rows, terms[i].picture.variable.size());
+  }
+  CsvWriter csv(columns);
+  const std::size_t stride = 1 + rows / kMostRows;
+  for (std::size_t k = 0; k < rows; k += stride) {
+    for (const Discovered& one : terms) {
+      for (const auto* values : {&one.picture.variable, &one.picture.measured, &one.picture.term}) {
+        if (k < values->size()) {
+          csv.Add((*values)[k], 6);
+        } else {
+          csv.AddEmpty();
+        }
       }
     }
     csv.EndRow();

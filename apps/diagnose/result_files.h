@@ -4,6 +4,7 @@
 #include <string>
 
 #include "diagnosis/diagnose.h"
+#include "diagnosis/several/diagnose_several.h"
 #include "simulation/closed_loop/gain.h"
 
 namespace flextip {
@@ -13,7 +14,16 @@ namespace flextip {
 std::string DiagnosisJson(const diagnosis::DiagnosisResult& result,
                           const simulation::ClosedLoopGain* gain = nullptr);
 
+/// Returns diagnosis.json of several recordings: that of what all have in common, with
+/// `recordings`, `presence_in` (of each effect by recording) and `changes`.
+std::string DiagnosisJson(const diagnosis::SeveralResult& several,
+                          const simulation::ClosedLoopGain* gain = nullptr);
+
 /// Returns residuals.csv: the ResidualTable, six digits a number; an absent measurement is empty.
 std::string ResidualsCsv(const diagnosis::ResidualTable& residuals);
+
+/// Returns discovered.csv: of each term the variable, what the sensors say of it and what it says,
+/// sample by sample, thinned to a thousand; empty without terms.
+std::string DiscoveredCsv(const std::vector<diagnosis::Discovered>& terms);
 
 }  // namespace flextip

@@ -7,22 +7,27 @@
 
 namespace flextip::bench {
 
-Separation MeasureSeparation(TrueModel& truth) {
-  if (!truth.not_shown.empty())
-    return {0.0, diagnosis::Joined(diagnosis::VerdictOf({truth.present, false}, truth.layout))};
+std::optional<Eigen::MatrixXd> InformationAtTruth(TrueModel& truth) {
   diagnosis::Replay& replay = truth.replay;
-  if (!replay.Evaluate(Eigen::VectorXd::Zero(truth.layout.Size()))) return {0.0, ""};
+  if (!replay.Evaluate(Eigen::VectorXd::Zero(truth.layout.Size()))) return {};
   const diagnosis::SelectionOptions options;
   const diagnosis::Rows may_miss =
       diagnosis::MayMiss(diagnosis::ProblemHere(replay, diagnosis::GenericBasis(replay), options),
                          options.discrepancy, options);
-  if (!truth.StandAtTruth()) return {0.0, ""};
+  if (!truth.StandAtTruth()) return {};
   replay.SetNoiseScale(diagnosis::NoiseScale(replay));
   replay.Evaluate(truth.parameters.theta);
   const diagnosis::LinearProblem problem =
       diagnosis::MakeLinearProblem(replay, diagnosis::GenericBasis(replay), 1);
-  return NearestRival(WithoutGeneric(problem, diagnosis::GenericSd(problem, may_miss)),
-                      truth.parameters.theta, truth.layout, truth.present);
+  return WithoutGeneric(problem, diagnosis::GenericSd(problem, may_miss));
+}
+
+Separation MeasureSeparation(TrueModel& truth) {
+  if (!truth.not_shown.empty())
+    return {0.0, diagnosis::Joined(diagnosis::VerdictOf({truth.present, false}, truth.layout))};
+  const auto information = InformationAtTruth(truth);
+  if (!information) return {0.0, ""};
+  return NearestRival(*information, truth.parameters.theta, truth.layout, truth.present);
 }
 
 }  // namespace flextip::bench

@@ -1,6 +1,8 @@
 // Whether hidden effects could be told at all from what else the recording might hold.
 #pragma once
 
+#include <optional>
+
 #include "bench/diagnosis_matrix/rival.h"
 #include "bench/diagnosis_matrix/true_model.h"
 
@@ -11,5 +13,9 @@ namespace flextip::bench {
 /// one shows nowhere are not apart from the others by themselves. The rival's name is empty where
 /// the model has no equilibrium.
 Separation MeasureSeparation(TrueModel& truth);
+
+/// The parameters' normal matrix about the label's true parameters, generic terms at their best.
+/// Empty where the model has no equilibrium.
+std::optional<Eigen::MatrixXd> InformationAtTruth(TrueModel& truth);
 
 }  // namespace flextip::bench

@@ -74,7 +74,7 @@ class Commands:
     def words(self, name, out, force=False):
         """Returns the command's line; --force goes before what may end the options."""
         arguments, _ = self.lines[name]
-        verbs = 2 if arguments[0] in ("calibrate", "import", "export", "convert") else 1
+        verbs = 2 if arguments[0] in ("calibrate", "import", "export", "convert", "effect") else 1
         return [self.program, *arguments[:verbs], *(["--force"] if force else []),
                 *map(str, arguments[verbs:]), *self.target(name, out)]
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace flextip::diagnosis {
@@ -142,6 +143,24 @@ std::optional<ScannedParameter> PeriodicEffect::Scanned(const SampleSet& samples
                           .correction = FrequencyIndex(),
                           .first_input = oscillation_.first_input,
                           .inputs = 3};
+}
+
+std::vector<int> PeriodicEffect::OwnParameters() const {
+  std::vector<int> all(static_cast<std::size_t>(FrequencyIndex()) + 1);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+Eigen::VectorXd PeriodicEffect::TurnPhase(const Eigen::VectorXd& theta, double turn_rad) const {
+  Eigen::VectorXd turned = theta;
+  const auto turn = [&](int sine, int cosine, double angle) {
+    const Eigen::Vector3d a = theta.segment<3>(sine), b = theta.segment<3>(cosine);
+    turned.segment<3>(sine) = std::cos(angle) * a - std::sin(angle) * b;
+    turned.segment<3>(cosine) = std::sin(angle) * a + std::cos(angle) * b;
+  };
+  turn(kSine, kCosine, turn_rad);
+  if (HasOvertone()) turn(kOvertoneSine, kOvertoneCosine, 2.0 * turn_rad);
+  return turned;
 }
 
 Eigen::Vector2d PeriodicEffect::ScanShapes(double frequency_hz, const Instant& now) const {

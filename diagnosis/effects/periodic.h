@@ -36,6 +36,10 @@ class PeriodicEffect : public Effect {
   Eigen::Vector2d ScanShapes(double frequency_hz, const Instant& now) const override;
   double ScanCentre() const override { return frequency_hz_; }
   void SetScanCentre(double frequency_hz) override { frequency_hz_ = frequency_hz; }
+  /// All: breath and motor are as they are on that day.
+  std::vector<int> OwnParameters() const override;
+  bool HasPhase() const override { return true; }
+  Eigen::VectorXd TurnPhase(const Eigen::VectorXd& theta, double turn_rad) const override;
 
  protected:
   PeriodicEffect(std::string name, std::string summary, const Oscillation& oscillation);

@@ -98,6 +98,11 @@ void NormalSums::Add(const NormalSums& other, double weight) {
   rows += std::lround(weight * double(other.rows));
 }
 
+void LinearProblem::Know(const NormalSums& others) {
+  known = others;
+  total.Add(known);
+}
+
 void LinearProblem::CountAsOne(double samples) {
   const auto divide = [&](NormalSums& sums) {
     sums.H /= samples;

@@ -18,11 +18,14 @@ struct LinearProblem {
   std::vector<int> generic_row;    ///< of each generic unknown: the measured row
   std::vector<NormalSums> blocks;  ///< consecutive stretches of time
   NormalSums total;
+  NormalSums known;  ///< what other recordings say of the same unknowns, in `total`; empty: nothing
   /// Root mean square over the samples of what force and wrist noise leave of the residual as it
   /// stands, per measured row in its standard deviations.
   Rows residual_size = Rows::Zero();
 
   int Size() const { return parameters + int(generic_row.size()); }
+  /// Adds what other recordings say, to the total and to all that is made of parts.
+  void Know(const NormalSums& others);
   /// Lets `samples` of them count as one: all sums are divided by it.
   void CountAsOne(double samples);
 };

@@ -9,18 +9,6 @@ namespace {
 
 constexpr double kInNoPart = 0.05;  // of the bags together
 
-/// Sums over as many blocks as there are, drawn with replacement.
-NormalSums DrawBag(const LinearProblem& problem, std::mt19937_64& rng) {
-  const auto n = problem.blocks.size();
-  std::vector<int> count(n, 0);
-  for (std::size_t i = 0; i < n; ++i)
-    ++count[std::uniform_int_distribution<std::size_t>(0, n - 1)(rng)];
-  NormalSums sums(problem.Size());
-  for (std::size_t b = 0; b < n; ++b)
-    if (count[b] > 0) sums.Add(problem.blocks[b], count[b]);
-  return sums;
-}
-
 std::vector<double> Softmax(const std::vector<ScoredHypothesis>& scored, double temperature) {
   std::vector<double> p;
   p.reserve(scored.size());
@@ -41,7 +29,20 @@ void FillCredibleSet(double credible, Probabilities& result) {
   }
 }
 
-/// Leaves all that is known together the probability `known`, or less.
+}  // namespace
+
+NormalSums DrawBag(const LinearProblem& problem, std::mt19937_64& rng) {
+  const auto n = problem.blocks.size();
+  std::vector<int> count(n, 0);
+  for (std::size_t i = 0; i < n; ++i)
+    ++count[std::uniform_int_distribution<std::size_t>(0, n - 1)(rng)];
+  NormalSums sums(problem.Size());
+  if (problem.known.g.size() > 0) sums.Add(problem.known);
+  for (std::size_t b = 0; b < n; ++b)
+    if (count[b] > 0) sums.Add(problem.blocks[b], count[b]);
+  return sums;
+}
+
 void SayUnknown(double known, std::map<Verdict, double>& probability) {
   double& unknown = probability.at({"unknown"});
   const double now = 1.0 - unknown;
@@ -49,8 +50,6 @@ void SayUnknown(double known, std::map<Verdict, double>& probability) {
   for (auto& [verdict, p] : probability) p *= known / now;
   unknown = 1.0 - known;
 }
-
-}  // namespace
 
 std::map<Verdict, double> Agreed(const std::map<Verdict, double>& whole,
                                  const std::map<Verdict, double>& bagged) {

@@ -1,6 +1,10 @@
 // From evidence to probabilities that mean what they say.
 #pragma once
 
+#include <map>
+#include <random>
+#include <vector>
+
 #include "diagnosis/diagnose.h"
 #include "diagnosis/search/selection.h"
 
@@ -22,6 +26,12 @@ struct Probabilities {
   std::map<std::string, double> presence;
   std::vector<Verdict> credible_set;
 };
+
+/// Sums over as many blocks of time as there are, drawn with replacement, and over what is known.
+NormalSums DrawBag(const LinearProblem& problem, std::mt19937_64& rng);
+
+/// Leaves all that is known together the probability `known`, or less.
+void SayUnknown(double known, std::map<Verdict, double>& probability);
 
 /// The mean of what the whole recording says and what bags of its parts say together, each summing
 /// to one, with every verdict in `whole`. But something unknown that shows in the whole and, to

@@ -1,8 +1,11 @@
 #include "diagnosis/model/catalogue.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/error.h"
 
 namespace flextip::diagnosis {
 namespace {
@@ -71,6 +74,20 @@ std::unique_ptr<Effect> MakeEffect(const std::string& name, const EffectMakers& 
   for (auto& effect : AllEffects(own))
     if (effect->Name() == name) return std::move(effect);
   return nullptr;
+}
+
+void RequireEffects(const std::vector<std::string>& without, const EffectMakers& own) {
+  for (const std::string& effect : without) {
+    if (MakeEffect(effect, own)) continue;
+    throw InputError(
+        fmt::format("{}, to be left out: no effect of that name is in the catalogue", effect));
+  }
+}
+
+std::vector<std::string> EffectNames(const EffectMakers& own) {
+  std::vector<std::string> names;
+  for (const auto& effect : AllEffects(own)) names.push_back(effect->Name());
+  return names;
 }
 
 }  // namespace flextip::diagnosis

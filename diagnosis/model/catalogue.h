@@ -54,4 +54,10 @@ Catalogue MakeCatalogue(const SampleSet& samples, const std::vector<std::string>
 /// Returns the effect of that name; null for an unknown name.
 std::unique_ptr<Effect> MakeEffect(const std::string& name, const EffectMakers& own = {});
 
+/// Throws InputError for a name in `without` that no effect has.
+void RequireEffects(const std::vector<std::string>& without, const EffectMakers& own = {});
+
+/// Returns the names of all effects, in the order of docs.
+std::vector<std::string> EffectNames(const EffectMakers& own = {});
+
 }  // namespace flextip::diagnosis

@@ -18,6 +18,8 @@
 
 namespace flextip::diagnosis {
 
+struct SolvedSample;
+
 /// One parameter as reported. Some effects are fitted in another form than they are named in.
 struct ReportedParameter {
   std::string name;
@@ -28,10 +30,11 @@ struct ReportedParameter {
 /// The sample on which an effect acts, and the port's place as the last replay found it.
 struct Instant {
   const SampleSet& samples;
-  std::size_t k = 0;                 ///< index of the sample
-  double t_s = 0.0;                  ///< since the recording's start
-  double s_port_free_m = 0.0;        ///< of the port on the shaft if it had no friction
-  double ds_port_dfriction_m = 0.0;  ///< by rod_input::kPortFriction; 0 where not known yet
+  std::size_t k = 0;                     ///< index of the sample
+  double t_s = 0.0;                      ///< since the recording's start
+  double s_port_free_m = 0.0;            ///< of the port on the shaft if it had no friction
+  double ds_port_dfriction_m = 0.0;      ///< by rod_input::kPortFriction; 0 where not known yet
+  const SolvedSample* solved = nullptr;  ///< the shape as last found; null: not known yet
 };
 
 /// The memory of an effect from sample to sample.
@@ -107,6 +110,18 @@ class Effect {
   /// Returns the value about which the scanned parameter is fitted.
   virtual double ScanCentre() const { return 0.0; }
   virtual void SetScanCentre(double /*value*/) {}
+
+  /// Returns the fitted parameters that are each recording's own: a rate of drift, a phase, where
+  /// a play stood. All others are the instrument's and the room's.
+  virtual std::vector<int> OwnParameters() const { return {}; }
+  /// Returns those of them that are a state, which a prediction finds again.
+  virtual std::vector<int> StateParameters() const { return {}; }
+  /// Returns whether the effect has a phase, which a prediction finds again.
+  virtual bool HasPhase() const { return false; }
+  /// Returns theta with the phase turned by `turn_rad`.
+  virtual Eigen::VectorXd TurnPhase(const Eigen::VectorXd& theta, double /*turn_rad*/) const {
+    return theta;
+  }
 
   /// Returns whether Apply needs the port's place in `Instant`.
   virtual bool NeedsPortPlace() const { return false; }

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
+#include "diagnosis/effects/discovered/discovered_term.h"
 #include "diagnosis/model/extended_effect.h"
 #include "diagnosis/model/geometry.h"
 #include "diagnosis/replay/sensor_prediction.h"
@@ -48,7 +49,7 @@ ExtendedInstrument::~ExtendedInstrument() = default;
 
 ExtendedInstrument::ExtendedInstrument(const ExtendedModel& model, const Recording& base,
                                        const EffectMakers& own)
-    : start_ns_(model.start_ns) {
+    : start_ns_(model.start_ns), solved_(std::make_unique<SolvedSample>()) {
   set_.instrument = base.instrument;
   set_.p_RP = base.p_RP;
   set_.gravity_m_s2 = base.gravity_m_s2;
@@ -56,6 +57,14 @@ ExtendedInstrument::ExtendedInstrument(const ExtendedModel& model, const Recordi
   set_.has_camera = base.cam0 && base.cam0->has_T_RC;
   if (set_.has_camera) set_.T_RC = base.cam0->calibration.T_RC;
   set_.samples.resize(1);
+  for (const Term& term : model.discovered) {
+    auto effect = std::make_unique<DiscoveredTerm>(term, "discovered");
+    needs_port_place_ |= effect->NeedsPortPlace();
+    Acting acting;
+    acting.theta = effect->Theta();
+    acting.effect = std::move(effect);
+    acting_.push_back(std::move(acting));
+  }
   for (const auto* list : {&model.effects, &model.within_tolerance}) {
     for (const EffectFit& fit : *list) {
       Acting acting;
@@ -117,7 +126,12 @@ void ExtendedInstrument::SetSample(TimeNs t_ns, const Measurements& z,
 }
 
 void ExtendedInstrument::Apply(Acting& acting, double s_port_free_m, double ds_port_dfriction_m) {
-  const Instant now{set_, 0, set_.samples[0].t_s, s_port_free_m, ds_port_dfriction_m};
+  const Instant now{set_,
+                    0,
+                    set_.samples[0].t_s,
+                    s_port_free_m,
+                    ds_port_dfriction_m,
+                    has_shape_ ? solved_.get() : nullptr};
   columns_.clear();
   InputChange change(acting.theta.data(), 0, inputs_, columns_);
   const Eigen::Vector3d before_m = inputs_.segment<3>(kWrist);
@@ -134,6 +148,8 @@ void ExtendedInstrument::Apply(Acting& acting, double s_port_free_m, double ds_p
 void ExtendedInstrument::SolveShaft() {
   const SolvedSample solved = SolveSample(set_, 0, inputs_, set_.samples[0].f_tip_N, solver_);
   if (!solved.ok) return;
+  *solved_ = solved;
+  has_shape_ = true;
   ds_port_dfriction_m_ = solved.ds_port_dfriction_m;
   s_port_free_m_ = solved.s_port_m - ds_port_dfriction_m_ * friction_;
   R_RE_.col(0) = solved.at.segment<3>(place::kTipTangent);
@@ -180,7 +196,7 @@ void ExtendedInstrument::CorrectEm(const SampleInputs& u, EmMeasurement& em) con
       back * (em.T_RS.p - set_.centre - u.segment<3>(kEmShift)) - u.segment<3>(kEmOffset);
   const Eigen::Matrix3d unbend = (Eigen::Matrix3d::Identity() + G).inverse();
   em.T_RS.p = set_.centre + unbend * bent;
-  em.T_RS.R = back * em.T_RS.R;
+  em.T_RS.R = back * ExpRotation(-u.segment<3>(kEmReadTurn)) * em.T_RS.R;
   em.position_noise_m *= unbend.norm() / std::sqrt(3.0);  // the RMS over all directions
 }
 
@@ -214,12 +230,13 @@ void ExtendedInstrument::CorrectTip(const SampleInputs& u, Measurements& z) cons
     const double turn = u[kFocalTurn] + u[kLensTurn] * axis.squaredNorm();
     focal = ExpRotation(-turn * axis);
   }
-  tip.d_RE = camera * focal * vision_back * *tip.d_RE;
+  tip.d_RE = camera * focal * vision_back * ExpRotation(-u.segment<3>(kTipReadTurn)) * *tip.d_RE;
 }
 
 Measurements ExtendedInstrument::CorrectBy(const SampleInputs& u,
                                            const Measurements& measured) const {
   Measurements z = measured;
+  if (z.R_RW) z.R_RW = ExpRotation(-u.segment<3>(kWristReadTurn)) * *z.R_RW;
   if (z.em) CorrectEm(u, *z.em);
   if (z.port_direction) z.port_direction = ExpRotation(-u.segment<3>(kEmTurn)) * *z.port_direction;
   if (z.tip && z.tip->status != TipStatus::kLost) CorrectTip(u, z);
@@ -281,6 +298,9 @@ void ExtendedInstrument::VisitState(StateText& state) {
   state(s_port_free_m_);
   state(ds_port_dfriction_m_);
   state(R_RE_);
+  state(has_shape_);
+  state(solved_->at);
+  state(solved_->lateral_force_N);
 }
 
 double ExtendedInstrument::LengthSd() const {

@@ -55,6 +55,8 @@ class ExtendedInstrument : public InstrumentModel {
   double friction_ = 0.0;  // the last instant's
   EffectRodSolver solver_;
   double s_port_free_m_ = 0.0, ds_port_dfriction_m_ = 0.0;
+  std::unique_ptr<SolvedSample> solved_;  // the last shape, once there is one
+  bool has_shape_ = false;
   Eigen::Matrix3d R_RE_ = Eigen::Matrix3d::Identity();
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "diagnosis/model/discovered_terms.h"
 #include "diagnosis/model/extended_effect.h"
 #include "recording/text/text.h"
 #include "recording/text/yaml_map.h"
@@ -188,7 +189,9 @@ const EffectFit* ExtendedModel::Find(const std::string& effect) const {
 }
 
 ExtendedModel FromResult(const DiagnosisResult& result) {
-  return {result.parameters,       result.within_tolerance, result.covariance,
+  std::vector<Term> terms;
+  for (const Discovered& found : result.discovered) terms.push_back(found.term);
+  return {result.parameters,       result.within_tolerance, std::move(terms), result.covariance,
           result.sensor_tolerance, result.centre_m,         result.start_ns};
 }
 
@@ -211,6 +214,7 @@ std::string ModelYaml(const ExtendedModel& model) {
   text += fmt::format("start_ns: {}\n", model.start_ns);
   text += Section("effects", model.effects, &ReportedParameter::value);
   text += Section("within_tolerance", model.within_tolerance, &ReportedParameter::value);
+  text += TermsYaml(model.discovered);
   text += Section("sd", with_sd, &ReportedParameter::sd);
   text += Covariance("covariance", model.effects, model.covariance);
   const std::vector<EffectFit> sensors = SensorsOf(model);
@@ -236,6 +240,7 @@ ExtendedModel ReadModel(const std::filesystem::path& file, const EffectMakers& o
       throw top.Map("within_tolerance").Error(fit.effect, "is among the effects too");
     }
   }
+  if (top.Has("discovered")) model.discovered = ReadTerms(top);
   if (top.Has("sd")) {
     const YamlMap section = top.Map("sd");
     std::vector<EffectFit> all = model.effects;

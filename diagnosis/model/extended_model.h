@@ -15,6 +15,7 @@ namespace flextip::diagnosis {
 struct ExtendedModel {
   std::vector<EffectFit> effects;           ///< beyond tolerance: the verdict's
   std::vector<EffectFit> within_tolerance;  ///< of the others, as far as the data moved them
+  std::vector<Term> discovered;             ///< without a name, see discovery
   Eigen::MatrixXd covariance;               ///< of the numbers of `effects` in order; may be empty
   SensorTolerance sensor_tolerance;         ///< of `within_tolerance`; may be empty
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< which EM gradients are about

@@ -4,6 +4,7 @@
 
 #include "core/levenberg_marquardt.h"
 #include "core/linear_algebra.h"
+#include "core/median.h"
 #include "diagnosis/replay/replay.h"
 #include "diagnosis/replay/sample_loops.h"
 
@@ -19,9 +20,11 @@ constexpr double kMaxForceStep = 0.5;  // in the same units
 constexpr int kForceSteps = 6;
 // Fall of the squared residual that is worth a step; the rest is taken off to first order.
 constexpr double kForceRest = 0.05;
-constexpr int kAlikeReach = 4;             // samples to look for one with the same sensors
-constexpr std::size_t kMendedAtMost = 20;  // one sample in so many
+constexpr int kAlikeReach = 4;            // samples to look for one with the same sensors
+constexpr std::size_t kMendedAtMost = 8;  // one sample in so many
 constexpr double kBadFit = 3.0;  // against the neighbour's, that looks like a wrong minimum
+// Forces farther out than so many times those of nine samples in ten are wrong minima.
+constexpr double kWildForce = 2.0;
 
 }  // namespace
 
@@ -93,24 +96,34 @@ std::size_t Replay::NextAlike(std::size_t k, int step) const {
   return k;
 }
 
+/// Whether the force of sample `k` looks like a wrong minimum beside that of sample `next`.
+bool Replay::LooksWrong(std::size_t k, std::size_t next) const {
+  if (!replayed_[k].ok) return true;
+  const double rows = double(samples_.samples[k].present.count());
+  return replayed_[next].ok &&
+         replayed_[k].force_merit >= kBadFit * (replayed_[next].force_merit + rows);
+}
+
+/// Fits the force of sample `k` from `start_N` too, and takes the better of the two.
+void Replay::FitBetter(std::size_t k, const Eigen::Vector3d& start_N, EffectRodSolver& solver) {
+  const ReplayedSample own = replayed_[k];
+  replayed_[k].f_tip_N = start_N;
+  FitForce(k, solver);
+  if (own.ok && (!replayed_[k].ok || own.force_merit < replayed_[k].force_merit))
+    replayed_[k] = own;
+}
+
 /// Refits sample `k` from the force and the shape of one next to it where its own fit looks like a
 /// wrong minimum; false where it does not.
 bool Replay::MendForce(std::size_t k) {
   bool is_suspect = false;
   for (const int step : {-1, 1}) {
     const std::size_t next = NextAlike(k, step);
-    const double rows = double(samples_.samples[k].present.count());
-    if (next == k || (replayed_[k].ok &&
-                      replayed_[k].force_merit < kBadFit * (replayed_[next].force_merit + rows)))
-      continue;
+    if (next == k || !LooksWrong(k, next)) continue;
     is_suspect = true;
-    const ReplayedSample own = replayed_[k];
     EffectRodSolver solver;
     SolveSample(samples_, next, replayed_[next].inputs, replayed_[next].f_tip_N, solver);
-    replayed_[k].f_tip_N = replayed_[next].f_tip_N;
-    FitForce(k, solver);
-    if (own.ok && (!replayed_[k].ok || own.force_merit < replayed_[k].force_merit))
-      replayed_[k] = own;
+    FitBetter(k, replayed_[next].f_tip_N, solver);
   }
   return is_suspect;
 }
@@ -145,6 +158,7 @@ void Replay::FitForces() {
       const Eigen::Vector3d before_N = replayed_[k].f_tip_N;
       replayed_[k].f_tip_N += moved_N;
       FitForce(k, solver);
+      if (k > begin && !moved_N.isZero(0) && LooksWrong(k, k - 1)) FitBetter(k, before_N, solver);
       moved_N = replayed_[k].ok ? Eigen::Vector3d(replayed_[k].f_tip_N - before_N)
                                 : Eigen::Vector3d::Zero();
     }
@@ -170,6 +184,8 @@ void Replay::FixNoiseModel() {
     across.push_back((f - f.dot(t) * t).norm() / ForceUnit(k) / std::sqrt(2.0));
   }
   if (across.empty()) return;
+  const double wild = kWildForce * LowerQuantile(across, 0.9);
+  std::erase_if(across, [&](double f) { return f > wild; });
   double squares = 0.0;
   for (const double f : across) squares += f * f / double(across.size());
   along_prior_ = std::max(kLeastAlong, kAlongOverAcross * std::sqrt(squares));

@@ -100,7 +100,10 @@ double Replay::ApplyEffects(const Eigen::VectorXd& theta) {
   for (std::size_t k = 0; k < replayed_.size(); ++k) {
     ReplayedSample& sample = replayed_[k];
     Instant now{samples_, k, samples_.samples[k].t_s, s_port_free_m[k], 0.0};
-    if (sample.ok) now.ds_port_dfriction_m = sample.solved.ds_port_dfriction_m;
+    if (sample.ok) {
+      now.ds_port_dfriction_m = sample.solved.ds_port_dfriction_m;
+      now.solved = &sample.solved;
+    }
     const double friction = sample.inputs[sample_input::kPortFriction];
     sample.inputs.setZero();
     sample.columns.clear();
@@ -177,11 +180,11 @@ TimedGeometry Replay::WithRate(std::size_t k) const {
   return timed;
 }
 
-void Replay::TakeSettings(const Replay& other) {
-  noise_scale_ = other.noise_scale_;
-  along_prior_ = other.along_prior_;
-  input_noise_ = other.input_noise_;
-  left_out_ = other.left_out_;
+void Replay::Use(const Settings& settings) {
+  noise_scale_ = settings.noise_scale;
+  along_prior_ = settings.along_prior;
+  input_noise_ = settings.input_noise;
+  left_out_ = settings.left_out;
 }
 
 void Replay::LeaveOut(const std::vector<std::size_t>& samples) {

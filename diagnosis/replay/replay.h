@@ -82,6 +82,10 @@ class Replay {
   /// enters the rows.
   void FixNoiseModel();
 
+  /// Sets, until FixNoiseModel, how wide the prior of an unknown force along the shaft is, in units
+  /// of EI / L^2.
+  void SetAlongPrior(double units) { along_prior_ = units; }
+
   /// `sensors_used`: rows of absent sensors are left out, besides the absent ones.
   WhitenedRows Whiten(const std::bitset<row::kCount>& rows_used = AllRows()) const;
 
@@ -108,9 +112,17 @@ class Replay {
   /// around, without the noise of a sample's own force; or the sample's own, as differences have
   /// them.
   void TakeOwnDerivatives(bool own) { own_derivatives_ = own; }
-  /// Noise factors, what FixNoiseModel set and samples left out, as another replay of the same
-  /// samples has them.
-  void TakeSettings(const Replay& other);
+  /// Noise factors, what FixNoiseModel set and samples left out.
+  struct Settings {
+    std::array<double, kChannelCount> noise_scale{};
+    double along_prior = 1.0;
+    std::vector<Eigen::Matrix<double, row::kCount, 6>> input_noise = {};
+    std::vector<bool> left_out = {};
+  };
+  Settings SettingsNow() const { return {noise_scale_, along_prior_, input_noise_, left_out_}; }
+  void Use(const Settings& settings);
+  /// As another replay of the same samples has them.
+  void TakeSettings(const Replay& other) { Use(other.SettingsNow()); }
 
   /// Standard deviation of each row's own noise in sample `k` (the diagonal).
   Rows RowNoise(std::size_t k) const;
@@ -134,6 +146,8 @@ class Replay {
   Eigen::Vector3d ShortStep(std::size_t k, const Eigen::Vector3d& step_N) const;
   void FitForce(std::size_t k, EffectRodSolver& solver);
   std::size_t NextAlike(std::size_t k, int step) const;
+  bool LooksWrong(std::size_t k, std::size_t next) const;
+  void FitBetter(std::size_t k, const Eigen::Vector3d& start_N, EffectRodSolver& solver);
   bool MendForce(std::size_t k);
   bool TryForce(std::size_t k, const Eigen::Vector3d& f_N, EffectRodSolver& solver);
   void CompareSamples();

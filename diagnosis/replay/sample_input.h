@@ -37,7 +37,11 @@ inline constexpr int kEmTurn = kStrainCross + 12;  ///< EM frame in R about the 
 inline constexpr int kEmShift = kEmTurn + 3;       ///< EM frame in R
 inline constexpr int kVisionTurn = kEmShift + 3;   ///< vision's frame in R about the centre
 inline constexpr int kVisionShift = kVisionTurn + 3;
-inline constexpr int kCount = kVisionShift + 3;
+/// Turns of a direction as it is read, alone (rad): of the EM sensor, the seen tip, the wrist.
+inline constexpr int kEmReadTurn = kVisionShift + 3;
+inline constexpr int kTipReadTurn = kEmReadTurn + 3;
+inline constexpr int kWristReadTurn = kTipReadTurn + 3;
+inline constexpr int kCount = kWristReadTurn + 3;
 }  // namespace sample_input
 
 /// The input by which gage `gage` reads the moment of another gage.

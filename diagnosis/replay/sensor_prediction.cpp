@@ -171,9 +171,11 @@ SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const
   const TimedGeometry em = geometry.After(z.dt_em_s - u[kEmDelay]);
   const TimedGeometry tip = geometry.After(z.dt_tip_s - u[kCameraDelay]);
   const TimedGeometry gages = geometry.After(z.dt_strain_s), port = geometry.After(z.dt_port_s);
-  if (z.Has(row::kWristDirection))
-    AddDirection(z.d_wrist, Predicted(geometry, by_inputs, place::kWristTangent),
-                 row::kWristDirection, out);
+  if (z.Has(row::kWristDirection)) {
+    Predicted d(geometry, by_inputs, place::kWristTangent);
+    d.Turn(u, kWristReadTurn, 1.0);
+    AddDirection(z.d_wrist, d, row::kWristDirection, out);
+  }
   if (z.Has(row::kPortDirection))
     AddDirection(z.d_port, Predicted(port, by_inputs, place::kPortTangent), row::kPortDirection,
                  out);
@@ -183,6 +185,7 @@ SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const
     Predicted d(em, by_inputs, place::kEmTangent);
     d.Delay(em, place::kEmTangent, kEmDelay);
     d.Turn(u, kEmTurn, 1.0);
+    d.Turn(u, kEmReadTurn, 1.0);
     AddDirection(z.d_em, d, row::kEmDirection, out);
   }
   const Eigen::Matrix4d bridge = StrainBridge(u);
@@ -206,6 +209,7 @@ SampleResidual Compare(const SampleSet& samples, const DiagnosisSample& z, const
     d.Turn(u, kCameraTurn, -1.0);
     if (samples.has_camera) TurnBySight(samples, u, SeenByCamera(tip, by_inputs, place::kTip), d);
     d.Turn(u, kVisionTurn, 1.0);
+    d.Turn(u, kTipReadTurn, 1.0);
     AddDirection(z.d_tip, d, row::kTipDirection, out);
   }
   return out;

@@ -53,6 +53,17 @@ double ScaleOf(const WhitenedRows& rows, int r) {
   return std::sqrt(std::max(1.0, variance) * (1.0 + phi) / (1.0 - phi));
 }
 
+/// Of each sample's whitened rows.
+std::vector<double> MeanSquares(const Replay& replay) {
+  const WhitenedRows rows = replay.Whiten();
+  std::vector<double> mean_squares;
+  for (std::size_t k = 0; k + 1 < rows.first_row.size(); ++k) {
+    const double squares = rows.e.segment(rows.first_row[k], rows.Rows(k)).squaredNorm();
+    mean_squares.push_back(squares / std::max(1, rows.Rows(k)));
+  }
+  return mean_squares;
+}
+
 }  // namespace
 
 std::array<double, kChannelCount> NoiseScale(const Replay& replay) {
@@ -70,12 +81,7 @@ std::array<double, kChannelCount> NoiseScale(const Replay& replay) {
 }
 
 std::vector<std::size_t> FarSamples(const Replay& replay) {
-  const WhitenedRows rows = replay.Whiten();
-  std::vector<double> mean_squares;
-  for (std::size_t k = 0; k + 1 < rows.first_row.size(); ++k) {
-    const double squares = rows.e.segment(rows.first_row[k], rows.Rows(k)).squaredNorm();
-    mean_squares.push_back(squares / std::max(1, rows.Rows(k)));
-  }
+  const std::vector<double> mean_squares = MeanSquares(replay);
   if (mean_squares.empty()) return {};
   const double limit = kFar * std::max(1.0, Median(mean_squares));
   std::vector<std::size_t> far;
@@ -84,5 +90,7 @@ std::vector<std::size_t> FarSamples(const Replay& replay) {
   if (double(far.size()) > kFewFar * double(mean_squares.size())) far.clear();
   return far;
 }
+
+double MedianMisfit(const Replay& replay) { return std::sqrt(Median(MeanSquares(replay))); }
 
 }  // namespace flextip::diagnosis

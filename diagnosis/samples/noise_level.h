@@ -19,4 +19,7 @@ std::array<double, kChannelCount> NoiseScale(const Replay& replay);
 /// many: then it is the model.
 std::vector<std::size_t> FarSamples(const Replay& replay);
 
+/// Returns the median over the samples of the root mean square of a sample's whitened rows.
+double MedianMisfit(const Replay& replay);
+
 }  // namespace flextip::diagnosis

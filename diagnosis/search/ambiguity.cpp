@@ -7,6 +7,7 @@
 
 #include "core/linear_algebra.h"
 #include "diagnosis/evidence/generic_basis.h"
+#include "diagnosis/planning/imagined_samples.h"
 #include "diagnosis/search/motion_library.h"
 
 namespace flextip::diagnosis {
@@ -61,10 +62,11 @@ std::vector<int> AlikeTo(int effect, const LinearProblem& problem, const Paramet
 /// The motion of the library with the largest worst separation within the groups.
 void FindMotion(const Replay& replay, const ParameterLayout& layout,
                 const WeighedHypothesis& weighed, Ambiguity& ambiguity) {
-  const auto motions = MotionLibrary(replay.Set());
+  auto motions = MotionLibrary(replay.Set());
   const Eigen::VectorXd& theta = replay.Theta();
   std::vector<double> worst(motions.size(), -1.0);
   for (std::size_t m = 0; m < motions.size(); ++m) {
+    if (!MeasureByModel(motions[m].samples, layout, theta)) continue;
     Replay imagined(motions[m].samples, layout);
     if (!imagined.Evaluate(theta)) continue;
     const LinearProblem problem = MakeLinearProblem(imagined, {}, 1);
@@ -103,7 +105,8 @@ double Separation(const LinearProblem& problem, const ParameterLayout& layout,
 }
 
 Ambiguity FindAmbiguity(const Replay& replay, const ParameterLayout& layout,
-                        const Selection& selection, const WeighedHypothesis& weighed) {
+                        const Selection& selection, const WeighedHypothesis& weighed,
+                        bool find_motion) {
   Ambiguity ambiguity;
   bool any = false;
   for (const int effect : weighed.hypothesis.effects) {
@@ -111,7 +114,7 @@ Ambiguity FindAmbiguity(const Replay& replay, const ParameterLayout& layout,
         AlikeTo(effect, selection.problem, layout, selection, replay.Theta(), weighed));
     any = any || ambiguity.groups.back().size() > 1;
   }
-  if (any) FindMotion(replay, layout, weighed, ambiguity);
+  if (any && find_motion) FindMotion(replay, layout, weighed, ambiguity);
   return ambiguity;
 }
 

@@ -23,8 +23,9 @@ struct Ambiguity {
   double separating_score = 0.0;  ///< the worst separation with that motion
 };
 
-/// For the verdict `weighed`, at the point where `replay` stands.
+/// For the verdict `weighed`, at the point where `replay` stands; the motion only where asked for.
 Ambiguity FindAmbiguity(const Replay& replay, const ParameterLayout& layout,
-                        const Selection& selection, const WeighedHypothesis& weighed);
+                        const Selection& selection, const WeighedHypothesis& weighed,
+                        bool find_motion = true);
 
 }  // namespace flextip::diagnosis

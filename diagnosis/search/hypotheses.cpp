@@ -6,7 +6,6 @@
 #include <cmath>
 
 namespace flextip::diagnosis {
-namespace {
 
 double LogPrior(const Hypothesis& h, int effects, const SelectionOptions& options) {
   const double n = std::max(1, effects);
@@ -15,8 +14,6 @@ double LogPrior(const Hypothesis& h, int effects, const SelectionOptions& option
   if (h.effects.size() == 1) return std::log(options.prior_singles / n);
   return std::log(options.prior_pairs / (n * std::max(1.0, n - 1.0) / 2.0));
 }
-
-}  // namespace
 
 std::vector<Hypothesis> KnownHypotheses(int effects, bool pairs) {
   std::vector<Hypothesis> known = {{{}, false}};

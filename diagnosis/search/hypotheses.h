@@ -28,6 +28,9 @@ struct Correction {
   double log = 0.0;
 };
 
+/// log of the prior odds of a hypothesis among `effects` ones of the catalogue.
+double LogPrior(const Hypothesis& h, int effects, const SelectionOptions& options);
+
 /// None, every single effect and, with `pairs`, every two.
 std::vector<Hypothesis> KnownHypotheses(int effects, bool pairs);
 

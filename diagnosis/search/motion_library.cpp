@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
-#include "core/rotation.h"
+#include "diagnosis/planning/imagined_samples.h"
 
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kSeconds = 20.0, kRate_hz = 12.5;
+constexpr double kSeconds = 20.0;
 // What may hang from an instrument, however stiff it is; a slender one carries a part of EI / L^2.
 constexpr double kSmallMost_N = 2.0, kLargeMost_N = 6.0;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
@@ -69,41 +69,19 @@ struct Condition {
   bool roll = false;
 };
 
-DiagnosisSample SampleAt(const SampleSet& recorded, const Path& path, const Condition& condition,
-                         const Eigen::Matrix3d& R_mean, int k) {
-  const double u = k / (kSeconds * kRate_hz);
-  const Aim aim = path.at(u);
+/// Where the wrist of the straight shaft is.
+Eigen::Vector3d WristOf(const Aim& aim, const SampleSet& recorded, const Eigen::Matrix3d& R_mean) {
   const Eigen::Vector3d d =
       R_mean * Eigen::Vector3d(std::cos(aim.yaw_rad) * std::cos(aim.pitch_rad),
                                std::sin(aim.yaw_rad) * std::cos(aim.pitch_rad),
                                std::sin(aim.pitch_rad));
-  DiagnosisSample sample = recorded.samples[recorded.samples.size() / 2];
-  sample.t_s = k / kRate_hz;
-  sample.p_RW = recorded.p_RP - (1.0 - aim.inserted) * recorded.instrument.length_m * d;
-  const double roll = condition.roll ? kTwoPi * u : 0.0;
-  sample.y_wrist = ExpRotation(roll * d) * R_mean.col(1);
-  for (const auto& other : recorded.samples) sample.present |= other.present;
-  const Eigen::Vector3d down = recorded.gravity_m_s2.norm() > 0.0
-                                   ? Eigen::Vector3d(recorded.gravity_m_s2.normalized())
-                                   : Eigen::Vector3d(R_mean.col(2));
-  sample.f_tip_N = condition.load_N * down;
-  sample.dt_em_s = sample.dt_strain_s = sample.dt_tip_s = sample.dt_port_s = 0.0;
-  if (recorded.has_tip && !sample.p_RE_covariance_m2.diagonal().all()) {
-    for (const auto& other : recorded.samples)
-      if (other.Has(row::kTipPosition)) sample.p_RE_covariance_m2 = other.p_RE_covariance_m2;
-  }
-  return sample;
+  return recorded.p_RP - (1.0 - aim.inserted) * recorded.instrument.length_m * d;
 }
 
 }  // namespace
 
-std::vector<ImaginedMotion> MotionLibrary(const SampleSet& recorded) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const auto& sample : recorded.samples) mean += (recorded.p_RP - sample.p_RW).normalized();
-  mean.normalize();
-  Eigen::Matrix3d R_mean;
-  R_mean.col(0) = mean;
-  R_mean.rightCols<2>() = NormalBasis(mean);
+std::vector<LibraryMotion> MotionLibrary(const SampleSet& recorded) {
+  const Eigen::Matrix3d R_mean = MeanShaftFrame(recorded);
   const double unit_N =
       recorded.instrument.bending_stiffness_Nm2 / std::pow(recorded.instrument.length_m, 2);
   const double small_N = std::min(kSmallMost_N, 0.4 * unit_N);
@@ -116,17 +94,16 @@ std::vector<ImaginedMotion> MotionLibrary(const SampleSet& recorded) {
            "with {:.2g} N hung from the tip and a full turn of the instrument about its axis",
            small_N),
        small_N, true}};
-  std::vector<ImaginedMotion> motions;
+  std::vector<LibraryMotion> motions;
   for (const Path& path : Paths()) {
     for (const Condition& condition : conditions) {
-      ImaginedMotion motion{path.text + ", " + condition.text, recorded};
-      motion.samples.samples.clear();
-      motion.samples.period_s = 1.0 / kRate_hz;
-      motion.samples.resolved_in_time = true;
-      motion.samples.has_load = recorded.has_load || condition.load_N > 0.0;
-      for (int k = 0; k < int(kSeconds * kRate_hz); ++k)
-        motion.samples.samples.push_back(SampleAt(recorded, path, condition, R_mean, k));
-      motions.push_back(std::move(motion));
+      const ImaginedMotion motion{
+          .seconds = kSeconds, .load_N = condition.load_N, .at = [&](double t_s) {
+            const double u = t_s / kSeconds;
+            return ImaginedInstant{WristOf(path.at(u), recorded, R_mean),
+                                   condition.roll ? kTwoPi * u : 0.0};
+          }};
+      motions.push_back({path.text + ", " + condition.text, ImagineSamples(recorded, motion)});
     }
   }
   return motions;

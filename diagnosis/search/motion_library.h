@@ -9,13 +9,13 @@
 
 namespace flextip::diagnosis {
 
-struct ImaginedMotion {
+struct LibraryMotion {
   std::string text;   ///< what to do, for a person
-  SampleSet samples;  ///< measured values mean nothing, only which of them there are
+  SampleSet samples;  ///< imagined (planning/imagined_samples.h)
 };
 
 /// Some thirty motions about the port of `recorded`, 20 s each: insertions, sweeps, circles, slow
 /// and fast, with and without a mass hung from the tip or a roll of the instrument.
-std::vector<ImaginedMotion> MotionLibrary(const SampleSet& recorded);
+std::vector<LibraryMotion> MotionLibrary(const SampleSet& recorded);
 
 }  // namespace flextip::diagnosis

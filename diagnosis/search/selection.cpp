@@ -19,10 +19,12 @@ constexpr int kFirstRounds = 6;       // of the fit from the base simulation
 constexpr int kScans = 3;  // of them, before the second and third of which frequencies are scanned
 constexpr int kFitRounds = 4;  // of a fit from where another hypothesis fits
 constexpr int kMostFits = 12;
-constexpr int kFreshFits = 6;          // from the base, where nothing explains the recording
-constexpr double kRival = 2.0;         // log odds below the best that are worth a fit
-constexpr double kNearRest = 3.0;      // distance, in standard deviations
-constexpr double kUnexplained = 10.0;  // log odds of something unknown
+constexpr int kFreshFits = 6;           // from the base, where nothing explains the recording
+constexpr double kRival = 2.0;          // log odds below the best that are worth a fit
+constexpr double kNearRest = 3.0;       // distance, in standard deviations
+constexpr double kFarMisfit = 6.0;      // of a sample's rows, in standard deviations
+constexpr double kTemperedAlong = 0.3;  // of a force along the shaft, in units of EI / L^2
+constexpr double kUnexplained = 10.0;   // log odds of something unknown
 
 class Search {
  public:
@@ -32,18 +34,20 @@ class Search {
   Selection Run() {
     replay_.Evaluate(Eigen::VectorXd::Zero(layout_.Size()));
     LeaveOutFarSamples();
-    replay_.FixNoiseModel();
+    Temper();
+    if (tempered_by_ == 1.0) replay_.FixNoiseModel();
     for (const int block : layout_.ScannedBlocks()) ScanAgain(replay_, layout_, block);
     base_ = PlaceOf(replay_);
     basis_ = GenericBasis(replay_);
     LinearProblem base = ProblemHere(replay_, basis_, options_);
     // The same for all hypotheses: what is large in the base's residual may be missed by more.
     may_miss_ = MayMiss(base, options_.discrepancy, options_);
+    const Rows base_size = tempered_by_ * base.residual_size;
     const Rows at_first = MayMiss(base, options_.first_discrepancy, options_);
     const Weighing first = Weigh(replay_, std::move(base),
                                  KnownHypotheses(layout_.EffectCount(), false), options_, at_first);
     FitLeadersFromBase(first);
-    FixMeasure();
+    FixMeasure(base_size);
     FitRivals();
     FitPartsOfBest();
     if (Unexplained()) {
@@ -71,9 +75,37 @@ class Search {
     if (Tried({}) == nullptr) FitFromBase({});
   }
 
+  /// Far from any answer an unknown force takes up what it can of the misfit, most of it by pulling
+  /// the shaft straight, and nothing can be seen from there. The noise is then taken as large as
+  /// the misfit, and hardly any force along the shaft as likely, until the leaders are fitted.
+  void Temper() {
+    const double misfit = MedianMisfit(replay_);
+    if (replay_.Set().has_load || misfit < kFarMisfit) return;
+    tempered_by_ = misfit;
+    SetNoise(misfit);
+    replay_.SetAlongPrior(kTemperedAlong);
+    replay_.SetForces(
+        std::vector<Eigen::Vector3d>(replay_.Samples().size(), Eigen::Vector3d::Zero().eval()));
+    replay_.Evaluate(Eigen::VectorXd::Zero(layout_.Size()));
+    LeaveOutFarSamples();
+  }
+
+  void SetNoise(double scale) {
+    std::array<double, kChannelCount> scales;
+    scales.fill(scale);
+    replay_.SetNoiseScale(scales);
+  }
+
   /// Where the best leader fits, noise and forces are known better; from here on they stay as they
   /// are, and what is fitted is comparable. What was fitted before is not.
-  void FixMeasure() {
+  void FixMeasure(const Rows& base_size) {
+    if (tempered_by_ != 1.0) {
+      SetNoise(1.0);
+      replay_.SetAlongPrior(1.0);
+      LinearProblem base;
+      base.residual_size = base_size;
+      may_miss_ = MayMiss(base, options_.discrepancy, options_);
+    }
     GoTo(replay_, layout_, best_.place);
     LeaveOutFarSamples();
     replay_.SetNoiseScale(NoiseScale(replay_));
@@ -248,6 +280,7 @@ class Search {
   Place base_;
   Eigen::MatrixXd basis_;
   Rows may_miss_ = Rows::Zero();
+  double tempered_by_ = 1.0;  // noise taken over the stated noise, while leaders are fitted
   std::vector<HypothesisFit> tried_;
   HypothesisFit best_;
   bool rivals_left_ = false;

@@ -282,12 +282,8 @@ void Cycle::MakePath() {
   Pose T_RE;
   T_RE.p = sum_p_ / averaged_;
   T_RE.R = RotationWithoutTwist(Eigen::Vector3d::UnitX(), sum_d_.normalized());
-  PathSetup setup = session_.task.path;
-  if (session_.path->frame == PathFrame::kRobot) {
-    if (session_.path->p_start) T_RE.p = *session_.path->p_start;
-    for (auto& waypoint : setup.waypoints_m) waypoint -= T_RE.p;
-  }
-  path_.emplace(setup, T_RE, session_.rate_hz);
+  if (session_.path->p_start) T_RE.p = *session_.path->p_start;
+  path_.emplace(session_.task.path, T_RE, session_.rate_hz);
 }
 
 void Cycle::Command(const ControllerCommand& command, double dt_s, CycleOutputs& outputs) {

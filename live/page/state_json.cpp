@@ -146,23 +146,24 @@ Json SessionJson(const Session& session, bool can_command) {
   Json workspace;
   if (const auto& box = session.limits.workspace)
     workspace = {{"lower_m", VectorJson(box->lower_m)}, {"upper_m", VectorJson(box->upper_m)}};
-  return {{"file", session.file.filename().string()},
-          {"controller", Name(session.task.controller.kind)},
-          {"rate_hz", session.rate_hz},
-          {"lockstep", session.robot.lockstep.has_value()},
-          {"length_m", session.base.instrument.length_m},
-          {"port_m", VectorJson(session.base.p_RP)},
-          {"camera", session.camera.has_value()},
-          {"tip_from", session.camera                 ? "cam0"
-                       : session.Of(StreamName::kTip) ? "vision0"
-                       : session.EmIsTip()            ? "em0"
-                                                      : ""},
-          {"tracks", UsesTipMeasurement(session.task.controller.kind)},
-          {"path", session.path ? session.path->frame == PathFrame::kStart ? "start" : "R" : ""},
-          {"waypoints_m", std::move(waypoints)},
-          {"workspace", std::move(workspace)},
-          {"says_state", session.robot.state.has_value()},
-          {"can_command", can_command && session.robot.command_state.has_value()}};
+  return {
+      {"file", session.file.filename().string()},
+      {"controller", Name(session.task.controller.kind)},
+      {"rate_hz", session.rate_hz},
+      {"lockstep", session.robot.lockstep.has_value()},
+      {"length_m", session.base.instrument.length_m},
+      {"port_m", VectorJson(session.base.p_RP)},
+      {"camera", session.camera.has_value()},
+      {"tip_from", session.camera                 ? "cam0"
+                   : session.Of(StreamName::kTip) ? "vision0"
+                   : session.EmIsTip()            ? "em0"
+                                                  : ""},
+      {"tracks", UsesTipMeasurement(session.task.controller.kind)},
+      {"path", session.path ? session.task.path.frame == PathFrame::kStart ? "start" : "R" : ""},
+      {"waypoints_m", std::move(waypoints)},
+      {"workspace", std::move(workspace)},
+      {"says_state", session.robot.state.has_value()},
+      {"can_command", can_command && session.robot.command_state.has_value()}};
 }
 
 }  // namespace

@@ -71,14 +71,8 @@ struct LimitSetup {
   double resume_after_s = 0.1;            ///< a hold ends so long after its cause
 };
 
-enum class PathFrame : std::uint8_t {
-  kStart,  ///< waypoints count from where the tip is when motion is first allowed
-  kRobot,  ///< waypoints are places in R
-};
-
 struct PathPlace {
-  PathFrame frame = PathFrame::kStart;
-  std::optional<Eigen::Vector3d> p_start;  ///< kRobot: where the first leg starts (m, in R)
+  std::optional<Eigen::Vector3d> p_start;  ///< of a path in R: where the first leg starts (m, in R)
   double average_s = 0.5;                  ///< the tip at the start is the mean over so long
 };
 

@@ -172,13 +172,12 @@ class SessionReader {
       reader.FinishDirection(controller, controller, "kind", {file_.session.task.controller.kind});
       return;
     }
-    const YamlMap map = file_.Section(file_.top, "path");
+    const YamlMap map = reader.PathSection(file_.top);
     PathPlace& place = file_.session.path.emplace();
-    place.frame =
-        ReadChoice(map, "frame", {"start", "R"}) == 1 ? PathFrame::kRobot : PathFrame::kStart;
+    const bool in_robot_frame = reader.ReadPathFrame(map) == PathFrame::kRobot;
     place.average_s = NumberInOr(map, "average_s", kTime, place.average_s);
     if (map.Has("start_m")) {
-      if (place.frame != PathFrame::kRobot) {
+      if (!in_robot_frame) {
         throw map.Error("start_m", "needs frame: R");
       }
       place.p_start = VectorIn(map, "start_m", kPlace);
@@ -189,7 +188,7 @@ class SessionReader {
       return;
     }
     reader.ReadPath(map);
-    const Plausible& range = place.frame == PathFrame::kRobot ? kPlace : kWay;
+    const Plausible& range = in_robot_frame ? kPlace : kWay;
     for (const auto& waypoint : file_.session.task.path.waypoints_m) {
       RequireIn(map, "waypoints", range, waypoint.norm());
     }

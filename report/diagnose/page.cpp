@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "report/diagnose/discovered.h"
 #include "report/diagnose/head.h"
 #include "report/diagnose/parts.h"
+#include "report/diagnose/recordings.h"
 #include "report/diagnose/residuals.h"
 #include "report/diagnose/result.h"
 #include "report/diagnose/words.h"
@@ -262,8 +264,10 @@ void WriteDiagnoseReport(const fs::path& folder) {
     report.AddHeading("Causes");
     AddProbabilities(report, result);
   }
+  AddDiscovered(report, folder, result);
   if (fs::exists(folder / "figures.json"))
     report.AddFigureFile(folder / "figures.json", "Joint by joint");
+  AddRecordings(report, folder);
   AddWhatIsWrong(report, result, residuals);
   report.AddHeading(result.Is("none") || result.Is("unknown") ? "How well the models predict"
                                                               : "What the extended model gains");

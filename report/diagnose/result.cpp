@@ -156,6 +156,31 @@ void ReadVerdict(const Json& json, DiagnosedResult& result) {
     result.indistinguishable.push_back(group.get<std::vector<std::string>>());
   }
   result.separating_motion = TextIn(json, "separating_motion");
+  if (const auto plan = json.find("planned_motion"); plan != json.end())
+    result.planned_motion = TextIn(*plan, "text");
+}
+
+DiagnosedTermName TermNameIn(const Json& json) {
+  return {TextIn(json, "channel"), TextIn(json, "form"), TextsIn(json, "depends_on")};
+}
+
+std::vector<DiagnosedTerm> DiscoveredIn(const Json& json) {
+  std::vector<DiagnosedTerm> terms;
+  for (const auto& found : Member(json, "discovered")) {
+    DiagnosedTerm term{.name = TermNameIn(found), .text = TextIn(found, "text")};
+    for (const auto& [name, stated] : Member(found, "parameters").items())
+      term.parameters.push_back({.name = name,
+                                 .value = NumberOrList(Member(stated, "value")),
+                                 .sd = NumberOrList(Member(stated, "sd"))});
+    term.false_discovery = NumberIn(found, "false_discovery").value_or(1.0);
+    term.heldout_error_ratio = NumberIn(Member(found, "gain"), "heldout_error_ratio");
+    const Json& region = Member(found, "region");
+    term.part_of_samples = NumberIn(region, "part_of_samples").value_or(0.0);
+    term.depth_m = NumberOrList(Member(region, "insertion_depth_m"));
+    for (const auto& other : Member(found, "could_be")) term.could_be.push_back(TermNameIn(other));
+    terms.push_back(std::move(term));
+  }
+  return terms;
 }
 
 void ReadSignatures(const Json& json, DiagnosedResult& result) {
@@ -233,6 +258,7 @@ DiagnosedResult ReadDiagnosedResult(const std::filesystem::path& path) {
     result.extended = ScoreIn(json, "extended");
     ReadGain(json, result);
     ReadSignatures(json, result);
+    result.discovered = DiscoveredIn(json);
     result.adequate = json.value("adequate", true);
     result.noise_scale = MapIn<double>(json, "noise_scale");
     result.noise_sd = MapIn<double>(json, "noise_sd");

@@ -33,6 +33,21 @@ struct DiagnosedSignature {
   double score = 0.0;
 };
 
+/// A term without a name, as `discovered` has it.
+struct DiagnosedTermName {
+  std::string channel, form;
+  std::vector<std::string> depends_on;
+};
+struct DiagnosedTerm {
+  DiagnosedTermName name;
+  std::string text;
+  std::vector<DiagnosedParameter> parameters;
+  double false_discovery = 1.0, part_of_samples = 0.0;
+  std::optional<double> heldout_error_ratio;
+  std::vector<double> depth_m;  ///< where it is large, from and to
+  std::vector<DiagnosedTermName> could_be;
+};
+
 /// `closed_loop` of the file: how far one controller strays from its path with either model.
 struct DiagnosedLoop {
   std::string controller;
@@ -49,7 +64,9 @@ struct DiagnosedResult {
   std::vector<std::string> credible_set;                      ///< names as in probabilities
   std::vector<std::vector<std::string>> indistinguishable;    ///< one group for each verdict
   std::string separating_motion;
+  std::string planned_motion;  ///< a sentence; empty: none was asked for
   std::vector<DiagnosedParameter> parameters, within_tolerance;
+  std::vector<DiagnosedTerm> discovered;
   DiagnosedScore base, extended;
   std::optional<double> heldout_error_ratio, tip_error_ratio;
   std::optional<std::pair<double, double>> heldout_error_interval;

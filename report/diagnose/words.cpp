@@ -228,6 +228,7 @@ std::string Advice(const DiagnosedResult& result) {
   } else if (alike) {
     advice = "No motion is known that would tell them apart.";
   }
+  if (!result.planned_motion.empty()) advice += (advice.empty() ? "" : " ") + result.planned_motion;
   return advice;
 }
 
@@ -261,7 +262,12 @@ Headline MakeHeadline(const DiagnosedResult& result) {
     headline.gain = SayWhatIsLeft(result);
   } else if (result.Is("unknown")) {
     SayUnknown(result, probability, headline);
-    headline.gain = "There is no extended model to trust; see below what the residuals depend on.";
+    for (const DiagnosedTerm& term : result.discovered)
+      headline.verdict += " In the residuals: " + term.text + ".";
+    headline.gain =
+        result.discovered.empty()
+            ? "There is no extended model to trust; see below what the residuals depend on."
+            : GainSentence(result);
   } else {
     SayEffects(result, probability, headline);
     for (std::size_t i = 0; i < result.verdicts.size(); ++i) {

@@ -105,6 +105,9 @@ constexpr const char* kRegistration = "registration";  // of the recording's sen
 /// `model` with what the simulation knows of it; the effects it does not know go to `left_out`.
 diagnosis::ExtendedModel Simulated(diagnosis::ExtendedModel model,
                                    std::vector<std::string>& left_out) {
+  for (const diagnosis::Term& term : model.discovered)
+    left_out.push_back(std::string("the term of ") + diagnosis::InfoOf(term.target).channel);
+  model.discovered.clear();  // the plant does not have it
   for (auto* list : {&model.effects, &model.within_tolerance}) {
     std::erase_if(*list, [&](const diagnosis::EffectFit& fit) {
       const bool known = fit.effect == kRegistration || NeutralEffects().contains(fit.effect);

@@ -263,7 +263,7 @@ class ScenarioReader {
   void ReadTask() {
     TipTask task;
     TaskReader reader(file_.parent_path(), task, sections_);
-    reader.ReadPath(Section(top_, "path"));
+    reader.ReadPath(reader.PathSection(top_));
     ReadControllers();
     std::optional<YamlMap> control;
     if (top_.Has("control")) control = Section(top_, "control");
@@ -286,7 +286,7 @@ class ScenarioReader {
     if (task.watch.running) Watch(task.watch);
     // A loop that is held does not come to its path's end.
     if (loop.supervision.kind != SupervisionKind::kNone)
-      loop.max_s = PathSeconds(loop.path, loop.update_rate_hz) + kLongestHeld_s;
+      loop.max_s = PathSeconds(loop) + kLongestHeld_s;
   }
 
   void Watch(const WatchTask& watch) {
@@ -372,6 +372,12 @@ class ScenarioReader {
 };
 
 }  // namespace
+
+double PathSeconds(const LoopSetup& loop) {
+  const Eigen::Vector3d to_port = (loop.base.p_RP - loop.p_RW_start).normalized();
+  const Eigen::Vector3d p_straight = loop.p_RW_start + loop.base.instrument.length_m * to_port;
+  return PathSeconds(loop.path, loop.update_rate_hz, p_straight);
+}
 
 Scenario ReadScenario(const std::filesystem::path& file) { return ScenarioReader(file).Read(); }
 

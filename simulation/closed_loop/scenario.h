@@ -19,6 +19,9 @@ struct Scenario {
   std::vector<std::string> warnings;
 };
 
+/// Returns the longest time (s) that the loop's path takes.
+double PathSeconds(const LoopSetup& loop);
+
 /// Throws InputError with file and line for keys that are missing, unknown or of the wrong kind,
 /// values out of range, and a port that the shaft cannot reach.
 Scenario ReadScenario(const std::filesystem::path& file);

@@ -8,7 +8,6 @@
 #include "diagnosis/model/extended_instrument.h"
 #include "simulation/sensors/camera_view.h"
 #include "simulation/sensors/sensors.h"
-#include "task/path_time.h"
 
 namespace flextip::simulation {
 
@@ -28,7 +27,7 @@ void RequireRunnable(const Scenario& scenario, const std::filesystem::path& file
 
 void RequireShort(const Scenario& scenario, const std::filesystem::path& file) {
   const LoopSetup& loop = scenario.loop;
-  const double seconds = PathSeconds(loop.path, loop.update_rate_hz);
+  const double seconds = PathSeconds(loop);
   const double rate_hz = SamplesPerSecond(loop.sensors) + loop.update_rate_hz;
   const double samples = seconds * rate_hz * static_cast<double>(scenario.controllers.size());
   if (samples <= kMostSamples) return;

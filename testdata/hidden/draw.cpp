@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/rotation.h"
+#include "testdata/hidden/forms.h"
 
 namespace flextip::hidden {
 namespace {
@@ -182,10 +183,11 @@ bool Has(const std::vector<std::string>& names, const std::string& name) {
 
 void CheckNames(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    if (!Has(simulation::CatalogueEffects(), name) && !Has(OtherForms(), name)) {
-      throw InputError(
-          fmt::format("effect \"{}\" is unknown: expected a name of docs/effects.md, or one of {}",
-                      name, fmt::join(OtherForms(), ", ")));
+    if (!Has(simulation::CatalogueEffects(), name) && !Has(OtherForms(), name) &&
+        !Has(LaterForms(), name)) {
+      throw InputError(fmt::format(
+          "effect \"{}\" is unknown: expected a name of docs/effects.md, or one of {}, {}", name,
+          fmt::join(OtherForms(), ", "), fmt::join(LaterForms(), ", ")));
     }
   }
 }

@@ -19,6 +19,8 @@ struct Arguments {
   std::uint64_t seed = 1;
   int count = 1;
   bool no_load = false, truth = false;
+  int recordings = 1, begin = 1;
+  std::vector<std::string> later;
   std::filesystem::path out, label;
 };
 
@@ -95,6 +97,12 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--noise-correlation", options.noise_correlation,
                  "AR(1) coefficient from sample to sample")
       ->check(CLI::Range(0.0, 0.999));
+  app.add_option("--recordings", arguments.recordings,
+                 "Of each instrument, with motions of their own: rec_0000_0, rec_0000_1, ...")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--later", arguments.later, "Effects that begin with recording --begin")
+      ->delimiter(',');
+  app.add_option("--begin", arguments.begin, "Counted from 0")->check(CLI::PositiveNumber);
   app.add_flag("--truth", arguments.truth, "Write truth0 too");
   app.add_option("-o,--output", arguments.out, "Folder for rec_0000, rec_0001, ...")->required();
   app.add_option("--label", arguments.label, "File for the labels, outside that folder")
@@ -133,6 +141,16 @@ void Run(Arguments& arguments) {
   for (int i = 0; i < arguments.count; ++i) {
     const std::uint64_t seed = arguments.seed + static_cast<std::uint64_t>(i);
     const std::string name = fmt::format("rec_{:04}", i);
+    if (arguments.recordings > 1) {
+      const auto all = MakeHiddenSeries(
+          {arguments.options, arguments.recordings, arguments.later, arguments.begin}, seed);
+      for (std::size_t r = 0; r < all.size(); ++r) {
+        const std::string own = fmt::format("{}_{}", name, r);
+        WriteHidden(arguments.out / own, all[r], arguments.truth);
+        labels[own] = Json(all[r], seed);
+      }
+      continue;
+    }
     const HiddenRecording hidden = MakeHidden(arguments.options, seed);
     WriteHidden(arguments.out / name, hidden, arguments.truth);
     labels[name] = Json(hidden, seed);

@@ -7,14 +7,15 @@
 
 #include "core/error.h"
 #include "recording/recording_writer.h"
-#include "simulation/plant/plant.h"
+#include "testdata/hidden/drawn.h"
+#include "testdata/hidden/run.h"
 
 namespace flextip::hidden {
 namespace {
 
 using Rng = std::mt19937_64;
 constexpr int kAttempts = 20;
-constexpr double kLeadIn_s = 0.5;  // friction, play and latency have a past
+constexpr int kMotions = 5;  // tried for a further recording
 
 bool Has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -22,13 +23,6 @@ bool Has(const std::vector<std::string>& names, const std::string& name) {
 
 double Uniform(Rng& rng, double from, double to) {
   return std::uniform_real_distribution<double>(from, to)(rng);
-}
-
-/// One generator for each purpose, from seed and attempt.
-Rng Generator(std::uint64_t seed, int attempt, int purpose) {
-  std::seed_seq sequence{std::uint32_t(seed), std::uint32_t(seed >> 32), std::uint32_t(attempt),
-                         std::uint32_t(purpose)};
-  return Rng(sequence);
 }
 
 void CheckOptions(const HiddenOptions& options) {
@@ -49,88 +43,6 @@ void CheckOptions(const HiddenOptions& options) {
     throw InputError(
         fmt::format("duration {} s: expected 1 s to an hour", options.scene.duration_s));
   }
-}
-
-/// Whether the sensor an effect acts on alone is there.
-bool CanShow(const std::string& effect, const HiddenOptions& options) {
-  const std::string sensor = SensorOf(effect);
-  return sensor == "load0" ? options.with_load : !Has(options.left_out, sensor);
-}
-
-std::vector<std::string> PresentEffects(const HiddenOptions& options, Rng& rng) {
-  std::vector<std::string> present = options.effects, candidates;
-  for (const std::string& name : simulation::CatalogueEffects()) {
-    if (!Has(present, name) && CanShow(name, options)) candidates.push_back(name);
-  }
-  std::shuffle(candidates.begin(), candidates.end(), rng);
-  for (int i = 0; i < options.drawn_effects && i < static_cast<int>(candidates.size()); ++i) {
-    present.push_back(candidates[i]);
-  }
-  return present;
-}
-
-/// What the plant was at every tick, from the lead-in on.
-struct Run {
-  std::vector<double> t_s;
-  std::vector<simulation::PlantShape> shapes;
-};
-
-simulation::PlantSetup MakePlantSetup(const HiddenScene& scene,
-                                      const simulation::PlantEffects& effects) {
-  simulation::PlantSetup setup;
-  setup.instrument = scene.instrument;
-  setup.p_RP = scene.p_RP;
-  setup.weight_N_m = scene.instrument.mass_per_length_kg_m * scene.gravity_m_s2;
-  setup.load = scene.load.At(-kLeadIn_s);
-  setup.roll_rad = scene.RollAt(-kLeadIn_s);
-  setup.gravity_m_s2 = scene.gravity_m_s2;
-  setup.effects = effects;
-  return setup;
-}
-
-/// Empty where the plant loses its equilibrium, or bends as no instrument is bent.
-std::optional<Run> RunPlant(const HiddenScene& scene, const simulation::PlantSetup& setup,
-                            const HiddenOptions& options) {
-  simulation::Plant plant(setup, {options.links_per_side, options.links_per_side});
-  const WristCourse motion = scene.Motion();
-  Run run;
-  const int lead_in = static_cast<int>(std::lround(kLeadIn_s * options.tick_rate_hz));
-  const int ticks = static_cast<int>(std::lround(scene.duration_s * options.tick_rate_hz));
-  for (int tick = -lead_in; tick < ticks; ++tick) {
-    const double t = tick / options.tick_rate_hz;
-    plant.SetLoad(scene.load.At(t));
-    plant.SetRoll(scene.RollAt(t));
-    run.t_s.push_back(t);
-    run.shapes.push_back(plant.Solve(motion.At(t), t));
-    const simulation::PlantShape& shape = run.shapes.back();
-    constexpr double kMostTurn = 0.3;  // cosine of the turn from wrist to tip
-    if (!shape.IsUsable()) return {};
-    if (shape.Tangent(0.0).dot(shape.Tangent(shape.length_m)) < kMostTurn) return {};
-  }
-  return run;
-}
-
-/// The middle of the places where the EM sensor was while it was recorded.
-Eigen::Vector3d EmCentre(const Run& run, const EmStream& em) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  int count = 0;
-  for (std::size_t i = 0; i < run.shapes.size(); ++i) {
-    if (run.t_s[i] < 0) continue;
-    sum += run.shapes[i].Position(run.shapes[i].length_m - em.distance_from_tip_m);
-    ++count;
-  }
-  return sum / count;
-}
-
-double HighestMoment(const Run& run, const StrainStream& strain) {
-  double highest = 0.0;
-  for (const simulation::PlantShape& shape : run.shapes) {
-    for (const double s : strain.station_from_wrist_m) {
-      const Eigen::Vector3d local = shape.Frame(s).R.transpose() * shape.Moment(s);
-      highest = std::max(highest, local.tail<2>().cwiseAbs().maxCoeff());
-    }
-  }
-  return highest;
 }
 
 simulation::SensorEffects MakeSensorEffects(const HiddenLabel& label, const HiddenScene& scene,
@@ -178,40 +90,60 @@ void LeaveOut(const HiddenOptions& options, Recording& recording) {
   }
 }
 
-std::optional<HiddenRecording> Attempt(const HiddenOptions& options, std::uint64_t seed,
-                                       int attempt) {
-  const auto generator = [&](int purpose) { return Generator(seed, attempt, purpose); };
-  Rng scene_rng = generator(1), choice_rng = generator(2), effect_rng = generator(3),
-      form_rng = generator(4), sensor_rng = generator(5);
+/// A recording of `drawn`, and what its sensors do.
+HiddenRecording Sampled(const DrawnCase& drawn, const Run& run,
+                        const simulation::SensorEffects& effects, std::uint64_t noise_seed,
+                        const HiddenOptions& options) {
   HiddenRecording hidden;
-  hidden.attempt = attempt;
-  hidden.scene = DrawScene(options.scene, scene_rng);
-  const HiddenScene& scene = hidden.scene;
-  EffectDraw draw;
-  draw.present = PresentEffects(options, choice_rng);
-  draw.size = options.size;
-  draw.exact = options.exact;
-  draw.massless = scene.instrument.mass_per_length_kg_m == 0.0;
-  draw.mean_axis = scene.motion_setup.axis;
-  hidden.label = DrawEffects(draw, effect_rng);
-  simulation::PlantEffects effects = simulation::EffectsOf(hidden.label.parameters).plant;
-  effects.wrist_reading.about_m = scene.Motion().At(0.0);  // where the recording begins
-  effects.port_motion.second_harmonic = Uniform(form_rng, 0.1, 0.2);
-  for (const std::string& form : draw.present) AddShaftForm(form, scene, form_rng, effects);
-
-  const std::optional<Run> run = RunPlant(scene, MakePlantSetup(scene, effects), options);
-  if (!run) return {};
-  const simulation::SensorEffects sensor_effects =
-      MakeSensorEffects(hidden.label, scene, *run, options, sensor_rng);
-  hidden.recording.instrument = scene.instrument;
-  hidden.recording.p_RP = scene.p_RP;
-  hidden.recording.gravity_m_s2 = scene.gravity_m_s2;
+  hidden.attempt = drawn.attempt;
+  hidden.scene = drawn.scene;
+  hidden.label = drawn.label;
+  hidden.recording.instrument = drawn.scene.instrument;
+  hidden.recording.p_RP = drawn.scene.p_RP;
+  hidden.recording.gravity_m_s2 = drawn.scene.gravity_m_s2;
   hidden.recording.cam0.emplace();
   hidden.recording.cam0->comment = "laparoscope";
-  hidden.recording.cam0->calibration = scene.camera;
-  SampleRun(*run, scene, sensor_effects, sensor_rng(), hidden);
+  hidden.recording.cam0->calibration = drawn.scene.camera;
+  SampleRun(run, drawn.scene, effects, noise_seed, hidden);
+  for (const HiddenForm& form : drawn.forms) form.ActOnReadings(hidden.recording);
   LeaveOut(options, hidden.recording);
   return hidden;
+}
+
+/// One recording as it was made, and what others of the same instrument need of it.
+struct Made {
+  HiddenRecording hidden;
+  DrawnCase drawn;
+  simulation::SensorEffects sensors;
+};
+
+std::optional<Made> Attempt(const HiddenOptions& options, std::uint64_t seed, int attempt) {
+  const DrawnCase drawn = DrawCase(options, seed, attempt);
+  const std::optional<Run> run = RunPlant(drawn.scene, drawn.plant, drawn.forms, options);
+  if (!run) return {};
+  Rng sensor_rng = GeneratorFor(seed, attempt, 5);
+  const simulation::SensorEffects sensors =
+      MakeSensorEffects(drawn.label, drawn.scene, *run, options, sensor_rng);
+  return Made{Sampled(drawn, *run, sensors, sensor_rng(), options), drawn, sensors};
+}
+
+/// Recording `index` of the instrument of `first`; another motion where one has no equilibrium.
+std::optional<HiddenRecording> AttemptNext(const HiddenSeries& series, std::uint64_t seed,
+                                           const Made& first, int index) {
+  for (int motion = 0; motion < kMotions; ++motion) {
+    const DrawnCase drawn = DrawNextCase(series, seed, first.drawn, index, motion);
+    const std::optional<Run> run = RunPlant(drawn.scene, drawn.plant, drawn.forms, series.options);
+    if (!run) continue;
+    simulation::SensorEffects sensors = simulation::EffectsOf(drawn.label.parameters).sensors;
+    sensors.em_centre_m = first.sensors.em_centre_m;  // the room's field stays where it is
+    sensors.em_curvature = first.sensors.em_curvature;
+    sensors.strain_limit_Nm = first.sensors.strain_limit_Nm;
+    sensors.noise_scale = first.sensors.noise_scale;
+    sensors.noise_correlation = first.sensors.noise_correlation;
+    const std::uint64_t noise_seed = GeneratorFor(seed, first.drawn.attempt, 1000 + index)();
+    return Sampled(drawn, *run, sensors, noise_seed, series.options);
+  }
+  return {};
 }
 
 }  // namespace
@@ -219,7 +151,24 @@ std::optional<HiddenRecording> Attempt(const HiddenOptions& options, std::uint64
 HiddenRecording MakeHidden(const HiddenOptions& options, std::uint64_t seed) {
   CheckOptions(options);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    if (auto hidden = Attempt(options, seed, attempt)) return std::move(*hidden);
+    if (auto made = Attempt(options, seed, attempt)) return std::move(made->hidden);
+  }
+  throw WorkError(fmt::format("seed {}: {} draws in a row have no equilibrium", seed, kAttempts));
+}
+
+std::vector<HiddenRecording> MakeHiddenSeries(const HiddenSeries& series, std::uint64_t seed) {
+  CheckOptions(series.options);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    auto first = Attempt(series.options, seed, attempt);
+    if (!first) continue;
+    std::vector<HiddenRecording> all;
+    all.push_back(first->hidden);
+    for (int index = 1; index < series.recordings; ++index) {
+      auto next = AttemptNext(series, seed, *first, index);
+      if (!next) break;
+      all.push_back(std::move(*next));
+    }
+    if (static_cast<int>(all.size()) == series.recordings) return all;
   }
   throw WorkError(fmt::format("seed {}: {} draws in a row have no equilibrium", seed, kAttempts));
 }

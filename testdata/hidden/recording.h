@@ -45,6 +45,19 @@ struct HiddenRecording {
 /// InputError for options that make no sense, WorkError where 20 draws have no equilibrium.
 HiddenRecording MakeHidden(const HiddenOptions& options, std::uint64_t seed);
 
+/// Recordings of one instrument in one room, one after the other.
+struct HiddenSeries {
+  HiddenOptions options = {};  ///< of the first, as MakeHidden takes them
+  int recordings = 3;
+  std::vector<std::string> later = {};  ///< effects that begin
+  int begin = 1;                        ///< with this recording, counted from zero; at least 1
+};
+
+/// The first is MakeHidden's. The others have its instrument, room, effects, tolerances and stated
+/// noise; motion, load, roll and the phases of breath and interference are their own. Throws as
+/// MakeHidden.
+std::vector<HiddenRecording> MakeHiddenSeries(const HiddenSeries& series, std::uint64_t seed);
+
 /// Writes the folder, which must not exist or be empty: the recording, without its label, and
 /// without truth0 unless asked for.
 void WriteHidden(const std::filesystem::path& folder, const HiddenRecording& hidden,

@@ -13,6 +13,7 @@ namespace {
 
 using Rng = std::mt19937_64;
 constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kOtherAxis_rad = 0.2;  // of a further motion from the first one's axis
 
 double Uniform(Rng& rng, double from, double to) {
   return std::uniform_real_distribution<double>(from, to)(rng);
@@ -54,6 +55,13 @@ Instrument DrawInstrument(Rng& rng) {
     const double unit_force = stiffness / (shaft.length_m * shaft.length_m);
     if (stiffness > 0.1 && stiffness < 1.5 && unit_force < 4.0) return shaft;
   }
+}
+
+void DrawRoll(Rng& rng, HiddenScene& scene) {
+  scene.roll_rad = Uniform(rng, -0.5 * kTurn, 0.5 * kTurn);
+  scene.roll_swing_rad = Chance(rng, 0.4) ? Uniform(rng, 0.2, 1.2) : 0.0;
+  scene.roll_frequency_hz = Uniform(rng, 0.03, 0.1);
+  scene.roll_phase_rad = Uniform(rng, 0.0, kTurn);
 }
 
 MotionSetup DrawMotion(const SceneDraw& draw, const HiddenScene& scene, Rng& rng) {
@@ -236,16 +244,23 @@ HiddenScene DrawScene(const SceneDraw& draw, Rng& rng) {
   Rng& place = parts[1];
   for (double& x : scene.p_RP) x = Uniform(place, -0.02, 0.02);
   if (Chance(place, 0.25)) scene.gravity_m_s2 = 9.81 * Direction(place);
-  scene.roll_rad = Uniform(place, -0.5 * kTurn, 0.5 * kTurn);
-  scene.roll_swing_rad = Chance(place, 0.4) ? Uniform(place, 0.2, 1.2) : 0.0;
-  scene.roll_frequency_hz = Uniform(place, 0.03, 0.1);
-  scene.roll_phase_rad = Uniform(place, 0.0, kTurn);
+  DrawRoll(place, scene);
   scene.motion_setup = DrawMotion(draw, scene, parts[2]);
   scene.motion_seed = parts[2]();
   scene.load = DrawLoad(draw, scene, parts[3]);
   scene.camera = DrawCamera(scene, parts[4]);
   scene.sensors = DrawSensors(scene, parts[5]);
   return scene;
+}
+
+HiddenScene WithOtherMotion(const HiddenScene& scene, const SceneDraw& draw, Rng& rng) {
+  HiddenScene other = scene;
+  DrawRoll(rng, other);
+  other.motion_setup = DrawMotion(draw, other, rng);
+  other.motion_setup.axis = Beside(scene.motion_setup.axis, Uniform(rng, 0.0, kOtherAxis_rad), rng);
+  other.motion_seed = rng();
+  other.load = DrawLoad(draw, other, rng);
+  return other;
 }
 
 void AddShaftForm(const std::string& form, const HiddenScene& scene, Rng& rng,

@@ -70,6 +70,10 @@ struct HiddenScene {
 /// mean place where it then has the whole motion in view, else farther.
 HiddenScene DrawScene(const SceneDraw& draw, std::mt19937_64& rng);
 
+/// The same instrument, port, camera and sensors; motion about nearly the same axis, load and roll
+/// are drawn anew.
+HiddenScene WithOtherMotion(const HiddenScene& scene, const SceneDraw& draw, std::mt19937_64& rng);
+
 /// Sets the forms outside the catalogue that act on the shaft, in sizes that matter for this scene:
 /// port_grip (the middle of the stretch that slides through the port, up to twice EI / L^2), taper,
 /// shaft_tissue, second_contact (touched for part of the motion). Others are ignored.

@@ -268,6 +268,46 @@ TEST(TipPath, ContinuousFollowsItsLegsAtItsSpeed) {
   EXPECT_NEAR(path.Deviation(Eigen::Vector3d(1.013, 2.01, 3)), 0.003, 1e-12);
 }
 
+TEST(TipPath, PlacesInRobotFrameAreGoneToFromWhereverTheTipIs) {
+  PathSetup setup;
+  setup.frame = PathFrame::kRobot;
+  setup.waypoints_m = {{1.01, 2, 3}, {1.01, 2.02, 3}};
+  setup.speed_m_s = 0.03;
+  TipPath path(setup, {Eigen::Matrix3d::Identity(), {1, 2, 3}}, 30.0);
+  EXPECT_LT((path.Advance({0, 0, 0}) - Eigen::Vector3d(1.001, 2, 3)).norm(), 1e-12);
+  Eigen::Vector3d last(0, 0, 0);
+  while (!path.Done()) last = path.Advance({0, 0, 0});
+  EXPECT_LT((last - Eigen::Vector3d(1.01, 2.02, 3)).norm(), 1e-12);
+}
+
+TEST(Scenario, ReadsAPathFromAFile) {
+  const fs::path motion =
+      fs::path(testing::TempDir()) / ("scenario_motion_" + std::to_string(::getpid()) + ".yaml");
+  const auto write = [&](const std::string& speed) {
+    std::ofstream(motion) << "frame: R\n" << speed << "waypoints:\n  - {to_m: [0.24, 0, -0.01]}\n";
+  };
+  std::string text = PressText();
+  const std::size_t from = text.find("path:"), to = text.find("controllers:");
+  ASSERT_LT(from, to);
+  text.replace(from, to - from, "path: {file: " + motion.string() + "}\n");
+  const fs::path file =
+      fs::path(testing::TempDir()) / ("scenario_path_" + std::to_string(::getpid()) + ".yaml");
+  std::ofstream(file) << text;
+  write("speed_m_s: 0.02\n");
+  const PathSetup path = ReadScenario(file).loop.path;
+  EXPECT_EQ(path.frame, PathFrame::kRobot);
+  EXPECT_EQ(path.speed_m_s, 0.02);
+  ASSERT_EQ(path.waypoints_m.size(), 1u);
+  EXPECT_EQ(path.waypoints_m[0], Eigen::Vector3d(0.24, 0, -0.01));
+  write("spee_m_s: 0.02\n");
+  try {
+    ReadScenario(file);
+    ADD_FAILURE() << "read a key that is unknown";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(motion.string() + ":2: unknown key"));
+  }
+}
+
 TEST(TipPath, DirectionsTurnEvenlyAlongALeg) {
   PathSetup setup;
   setup.waypoints_m = {{0.02, 0, 0}, {0.02, 0.02, 0}};

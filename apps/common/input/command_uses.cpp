@@ -34,6 +34,12 @@ CommandUse UseOfDiagnose() {
   return {"diagnose", With(kShaft, {"em0", "em1", "strain0", "load0", "vision0", "cam0"}), {}};
 }
 
+CommandUse UseOfPredict() {
+  CommandUse use = UseOfDiagnose();
+  use.command = "predict";
+  return use;
+}
+
 // Boards and collars need no port, and the camera's place is what is asked for.
 CommandUse UseOfHandEye(bool collar) {
   Subjects needs{"cam0", "wrist0"};

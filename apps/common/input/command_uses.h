@@ -10,6 +10,7 @@ namespace flextip {
 plausibility::CommandUse UseOfTrack(bool with_model);
 plausibility::CommandUse UseOfEstimate();
 plausibility::CommandUse UseOfDiagnose();
+plausibility::CommandUse UseOfPredict();
 plausibility::CommandUse UseOfHandEye(bool collar);
 /// `sensor`: "wrist0", "em0" or "tags0".
 plausibility::CommandUse UseOfTip(const std::string& sensor);

@@ -23,6 +23,7 @@ class CameraDrift : public DirectEffect {
       change.Linear(3 + i, sample_input::kCameraShift + i, now.t_s);
     }
   }
+  std::vector<int> OwnParameters() const override { return {0, 1, 2, 3, 4, 5}; }
 
  protected:
   std::vector<Named> Names() const override {

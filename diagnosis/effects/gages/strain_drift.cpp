@@ -16,6 +16,7 @@ class StrainDrift : public DirectEffect {
   void Apply(const double*, const Instant& now, EffectMemory&, InputChange& change) const override {
     for (int i = 0; i < 4; ++i) change.Linear(i, sample_input::kStrainOffset + i, now.t_s);
   }
+  std::vector<int> OwnParameters() const override { return {0, 1, 2, 3}; }
 
  protected:
   std::vector<Named> Names() const override { return {{"rate_Nm_s", 4}}; }

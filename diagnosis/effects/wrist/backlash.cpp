@@ -44,6 +44,8 @@ class Backlash : public DirectEffect {
       if (start == theta[1 + i]) change.Derivative(1 + i, sample_input::kWrist + i, 1.0);
     }
   }
+  std::vector<int> OwnParameters() const override { return {1, 2, 3}; }
+  std::vector<int> StateParameters() const override { return {1, 2, 3}; }
   double WristPlay(const Eigen::VectorXd& theta) const override { return theta[0]; }
 
  protected:

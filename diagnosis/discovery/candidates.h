@@ -1,0 +1,32 @@
+// The forms that explain a residual best, one of each kind, refined.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "diagnosis/discovery/target_scan.h"
+
+namespace flextip::diagnosis {
+
+struct Candidate {
+  Term term;
+  double gain = 0.0;       ///< what it takes off the cost, the offset's part included
+  double criterion = 0.0;  ///< twice the log of its odds against no term: gain less complexity
+  std::vector<double> at_sd = {};  ///< of the shape's parameters
+};
+
+using StatesByTarget = std::map<TermTarget, std::vector<TermState>>;
+
+/// Returns one candidate of each target, shape and variable that may matter, best first. A gain
+/// counts in the variance that the best candidate leaves, at least the noise's; each number found
+/// costs the logarithm of the samples.
+/// `waves_only`: periodic ones alone.
+std::vector<Candidate> FindCandidates(const WeightedProblem& weighted, const StatesByTarget& states,
+                                      bool waves_only = false);
+
+/// The variance (of whitened rows) that the best leaves, at least one.
+double VarianceLeft(const WeightedProblem& weighted, double gain);
+/// Twice the log odds.
+double Criterion(const Candidate& candidate, double variance, double samples);
+
+}  // namespace flextip::diagnosis

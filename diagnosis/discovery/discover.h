@@ -1,0 +1,47 @@
+// What the residuals of an answer hold that no effect of the catalogue explains: the terms, one
+// after the other, as long as there is one that holds on blocks of time that it was not found on.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/discovery/candidates.h"
+
+namespace flextip::diagnosis {
+
+struct DiscoverOptions {
+  int blocks = 20;
+  int most_terms = 3;
+  double most_false = 0.005;  ///< of a term: the probability that it is none
+  double worth = 12.0;        ///< twice the log odds of the best form against no term
+  /// Of what the base within its tolerances leaves, squared: less does not matter.
+  double least_part = 0.01;
+  double least_tolerances = 3.0;  ///< half of a term's range, in the target's tolerances
+  bool waves_only = false;        ///< periodic terms alone
+  double alike = 9.0;             ///< twice the log odds within which forms cannot be told apart
+  int bags = 8;
+};
+
+struct FoundTerm {
+  Term term;
+  std::vector<double> at_sd;
+  double false_discovery = 1.0, stability = 0.0;
+  std::vector<Candidate> rivals;  ///< other targets, variables or forms that explain as much
+};
+
+struct TermSearch {
+  std::vector<FoundTerm> terms;
+  double cost = 0.0;        ///< what the model and the terms leave, squared
+  double complexity = 0.0;  ///< of the model's priors and of the terms, twice a logarithm
+  double rows = 0.0;
+};
+
+/// Searches about the point where `replay` stands, its parameters with the priors `prior_sd`.
+/// `before`: terms that are known already; they count with the model.
+TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
+                       const std::vector<FoundTerm>& before, const DiscoverOptions& options = {});
+
+/// Twice the log odds of one search's model over another's of the same measurements. What the
+/// better one leaves beyond the noise counts as noise.
+double LogOdds(const TermSearch& one, const TermSearch& other);
+
+}  // namespace flextip::diagnosis

@@ -1,0 +1,48 @@
+// Terms as effects like others: a model of the answer's effects and the terms, fitted together.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "diagnosis/diagnose.h"
+#include "diagnosis/discovery/discover.h"
+#include "diagnosis/search/selection.h"
+
+namespace flextip::diagnosis {
+
+/// The layout holds the catalogue, then the terms, then the nuisances. Not to be moved: replays
+/// refer to the layout.
+struct TermModel {
+  ParameterLayout layout;
+  Replay base, extended;
+  int first_term = 0;  ///< block of the first term
+  std::vector<FoundTerm> found;
+  Selection selection;        ///< the problem about the fit
+  WeighedHypothesis weighed;  ///< the effects and the terms
+
+  /// The effects' names; {"none"} where there are terms alone.
+  Verdict Named() const;
+
+  TermModel(const SampleSet& samples, Catalogue catalogue, int terms);
+  TermModel(const TermModel&) = delete;
+  TermModel& operator=(const TermModel&) = delete;
+};
+
+/// The terms that no effect explains: beside the effects of `known`, the catalogue's best, or,
+/// where that leaves less to explain, beside none. `base` stands at the base simulation, `best`
+/// where `known` fits. Null where there is no such term.
+std::unique_ptr<TermModel> FindTerms(const Replay& base, Replay& best, const Selection& selection,
+                                     const WeighedHypothesis& known,
+                                     const DiagnoseOptions& options);
+
+/// Fits `effects` (blocks of `from`'s layout) and `found` from where `from` stands; `base` stands
+/// at the base simulation. Null where the instrument has no equilibrium there.
+std::unique_ptr<TermModel> FitTerms(const Replay& base, const Replay& from,
+                                    const Selection& selection, const std::vector<int>& effects,
+                                    const std::vector<FoundTerm>& found,
+                                    const DiagnoseOptions& options);
+
+/// The terms as results; with `measure_gain` each one's gain over the model without it.
+std::vector<Discovered> DescribeTerms(const TermModel& model, bool measure_gain);
+
+}  // namespace flextip::diagnosis

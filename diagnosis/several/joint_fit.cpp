@@ -1,0 +1,212 @@
+#include "diagnosis/several/joint_fit.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/error.h"
+#include "diagnosis/evidence/generic_basis.h"
+#include "diagnosis/samples/noise_level.h"
+#include "diagnosis/search/parameter_scan.h"
+
+namespace flextip::diagnosis {
+namespace {
+
+constexpr double kAtRest = 0.1;     // log odds that are still promised
+constexpr double kHopeless = 40.0;  // log odds
+constexpr double kFarthest = 6.0;   // typical sizes
+constexpr double kPriorChange = 0.1;
+
+template <class Work>
+void ForAll(Fleet& fleet, const Work& work) {
+  tbb::parallel_for(std::size_t{0}, fleet.Size(), [&](std::size_t r) { work(fleet.At(r)); });
+}
+
+void TakeSums(Member& member, const Replay& replay, const SelectionOptions& options) {
+  SelectionOptions whole = options;
+  whole.blocks = 1;
+  const LinearProblem problem = ProblemHere(replay, member.basis, whole);
+  member.sums = OfParameters(problem, problem.total, GenericSd(problem, member.may_miss));
+  member.place = PlaceOf(replay);
+}
+
+/// False, and the member where it was, where it has no equilibrium there.
+bool MoveMember(Member& member, const Eigen::VectorXd& theta, const SelectionOptions& options) {
+  Place there = member.place;
+  there.theta = theta;
+  const auto replay = ReplayOf(member, there);
+  if (!replay) return false;
+  TakeSums(member, *replay, options);
+  return true;
+}
+
+void ScanMember(Member& member, Replay& replay, const Fleet& fleet, bool shared_too) {
+  for (const int block : member.layout.ScannedBlocks())
+    if (shared_too || fleet.SharedOf(block).empty()) ScanAgain(replay, member.layout, block);
+}
+
+/// What all share is about the same centre.
+void ShareScanCentres(Fleet& fleet, std::size_t from) {
+  Member& source = fleet.At(from);
+  for (const int block : source.layout.ScannedBlocks())
+    for (std::size_t r = 0; r < fleet.Size(); ++r)
+      if (!fleet.SharedOf(block).empty())
+        fleet.At(r).layout.MutableEffect(block).SetScanCentre(
+            source.layout.Blocks()[block].effect->ScanCentre());
+}
+
+/// A place that the hypothesis allows: what does not change is the same in all.
+std::vector<Eigen::VectorXd> Allowed(const Fleet& fleet, const JointHypothesis& h) {
+  std::vector<Eigen::VectorXd> theta;
+  for (std::size_t r = 0; r < fleet.Size(); ++r) theta.push_back(fleet.At(r).place.theta);
+  const Eigen::VectorXd first = theta.front(), last = theta.back();
+  for (int e = 0; e < fleet.EffectCount(); ++e) {
+    if (std::ranges::any_of(h.changes, [&](const Change& c) { return c.effect == e; })) continue;
+    const bool present = std::ranges::find(h.effects, e) != h.effects.end();
+    for (const int s : fleet.SharedOf(e)) {
+      const int j = fleet.Shared()[s];
+      for (auto& own : theta) own[j] = present ? last[j] : first[j];
+    }
+  }
+  return theta;
+}
+
+void MakePlausible(const Fleet& fleet, std::vector<Eigen::VectorXd>& theta) {
+  for (std::size_t r = 0; r < fleet.Size(); ++r) {
+    const ParameterLayout& layout = fleet.At(r).layout;
+    for (int j = 0; j < layout.Size(); ++j) {
+      const double limit =
+          kFarthest * std::max(layout.Parameter(j).typical, layout.Tolerances()[j]);
+      theta[r][j] = std::clamp(theta[r][j], -limit, limit);
+    }
+  }
+}
+
+/// Towards `target` as far as that explains more than standing at `from`.
+bool MoveTowards(Fleet& fleet, const JointWeighed& weighed,
+                 const std::vector<Eigen::VectorXd>& from,
+                 const std::vector<Eigen::VectorXd>& target, double before,
+                 const SelectionOptions& options) {
+  const JointPlace here = PlaceOf(fleet);
+  for (double part = 1.0; part > 0.1; part *= 0.4) {
+    std::vector<Eigen::VectorXd> theta(fleet.Size());
+    for (std::size_t r = 0; r < fleet.Size(); ++r)
+      theta[r] = from[r] + part * (target[r] - from[r]);
+    std::atomic<bool> all{true};
+    tbb::parallel_for(std::size_t{0}, fleet.Size(), [&](std::size_t r) {
+      if (!MoveMember(fleet.At(r), theta[r], options)) all = false;
+    });
+    if (all && EvidenceHere(fleet).Merit(weighed, theta) < before) return true;
+    GoTo(fleet, here);
+  }
+  return false;
+}
+
+}  // namespace
+
+JointPlace PlaceOf(const Fleet& fleet) {
+  JointPlace place;
+  for (std::size_t r = 0; r < fleet.Size(); ++r) {
+    place.places.push_back(fleet.At(r).place);
+    place.sums.push_back(fleet.At(r).sums);
+  }
+  return place;
+}
+
+void GoTo(Fleet& fleet, const JointPlace& place) {
+  for (std::size_t r = 0; r < fleet.Size(); ++r) {
+    fleet.At(r).place = place.places[r];
+    fleet.At(r).sums = place.sums[r];
+    SetScanCentres(fleet.At(r).layout, place.places[r].scan_centres);
+  }
+}
+
+void StandAtBase(Fleet& fleet, const SelectionOptions& options) {
+  const auto stand = [&](Member& member, bool scan_shared) {
+    Replay replay(member.samples, member.layout);
+    if (!replay.Evaluate(Eigen::VectorXd::Zero(member.layout.Size()))) {
+      throw WorkError(fmt::format(
+          "{}: the nominal instrument has no equilibrium in {} of {} samples: check length, port "
+          "and load",
+          member.name, replay.FailedSamples(), member.samples.samples.size()));
+    }
+    const std::vector<std::size_t> far = FarSamples(replay);
+    member.far_samples = int(far.size());
+    replay.LeaveOut(far);
+    replay.FixNoiseModel();
+    ScanMember(member, replay, fleet, scan_shared);
+    member.settings = replay.SettingsNow();
+    member.basis = GenericBasis(replay);
+    SelectionOptions whole = options;
+    whole.blocks = 1;
+    const LinearProblem problem = ProblemHere(replay, member.basis, whole);
+    member.may_miss = MayMiss(problem, options.discrepancy, options);
+    const Rows at_first = MayMiss(problem, options.first_discrepancy, options);
+    member.sums = OfParameters(problem, problem.total, GenericSd(problem, at_first));
+    member.place = PlaceOf(replay);
+  };
+  // What began in some recording is in the last one.
+  const std::size_t last = fleet.Size() - 1;
+  stand(fleet.At(last), true);
+  ShareScanCentres(fleet, last);
+  tbb::parallel_for(std::size_t{0}, last, [&](std::size_t r) { stand(fleet.At(r), false); });
+}
+
+void FixMeasure(Fleet& fleet, const SelectionOptions& options) {
+  ForAll(fleet, [&](Member& member) {
+    const auto replay = ReplayOf(member, member.place);
+    FLEXTIP_CHECK(replay != nullptr, "a member stands where it has an equilibrium");
+    replay->LeaveOut({});
+    const std::vector<std::size_t> far = FarSamples(*replay);
+    member.far_samples = int(far.size());
+    replay->LeaveOut(far);
+    replay->SetNoiseScale(NoiseScale(*replay));
+    replay->FixNoiseModel();
+    member.settings = replay->SettingsNow();
+    member.basis = GenericBasis(*replay);
+    TakeSums(member, *replay, options);
+  });
+}
+
+JointEvidence EvidenceHere(const Fleet& fleet) {
+  std::vector<NormalSums> sums;
+  for (std::size_t r = 0; r < fleet.Size(); ++r) sums.push_back(fleet.At(r).sums);
+  return {fleet, std::move(sums)};
+}
+
+double LogPrior(const JointHypothesis& h, const Fleet& fleet, const SelectionOptions& options) {
+  const double common = LogPrior(Hypothesis{h.effects, h.unknown}, fleet.EffectCount(), options);
+  if (fleet.Size() < 2) return common;
+  if (h.changes.empty()) return common + std::log(1.0 - kPriorChange);
+  const double each = kPriorChange / double(fleet.EffectCount()) / double(fleet.Size() - 1);
+  return common + double(h.changes.size()) * std::log(each);
+}
+
+JointFit FitJointly(Fleet& fleet, const JointHypothesis& hypothesis, int rounds, double worth,
+                    const SelectionOptions& options) {
+  JointFit fit;
+  for (int round = 0; round < rounds; ++round) {
+    const JointEvidence evidence = EvidenceHere(fleet);
+    fit.weighed = evidence.Weigh(hypothesis);
+    std::vector<Eigen::VectorXd> target = evidence.Mode(fit.weighed);
+    const double least = evidence.Merit(fit.weighed, target);
+    MakePlausible(fleet, target);
+    const std::vector<Eigen::VectorXd> from = Allowed(fleet, hypothesis);
+    const double before = evidence.Merit(fit.weighed, from);
+    fit.promised = std::max(0.0, 0.5 * (before - least));
+    fit.log_posterior =
+        fit.weighed.log_evidence + LogPrior(hypothesis, fleet, options) - fit.promised;
+    fit.place = PlaceOf(fleet);
+    if (round > 0 && fit.promised < kAtRest) break;
+    if (round > 1 && fit.log_posterior + fit.promised < worth - kHopeless) break;
+    if (round + 1 == rounds) break;
+    if (!MoveTowards(fleet, fit.weighed, from, target, before, options)) break;
+  }
+  return fit;
+}
+
+}  // namespace flextip::diagnosis

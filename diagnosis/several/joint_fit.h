@@ -1,0 +1,45 @@
+// The full fit of one hypothesis to several recordings together.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "diagnosis/several/joint_evidence.h"
+
+namespace flextip::diagnosis {
+
+/// Where all members stand, to come back to without solving anything.
+struct JointPlace {
+  std::vector<Place> places;
+  std::vector<NormalSums> sums;
+};
+JointPlace PlaceOf(const Fleet& fleet);
+void GoTo(Fleet& fleet, const JointPlace& place);
+
+/// Puts all members at the base simulation: far samples left out, the noise model fixed,
+/// frequencies scanned, and the generic basis and discrepancy taken there. Throws WorkError where
+/// the nominal instrument has no equilibrium.
+void StandAtBase(Fleet& fleet, const SelectionOptions& options);
+
+/// Takes noise, unknown forces' size and generic basis anew where the members stand.
+void FixMeasure(Fleet& fleet, const SelectionOptions& options);
+
+/// Weighed where the fleet stands.
+JointEvidence EvidenceHere(const Fleet& fleet);
+
+struct JointFit {
+  JointWeighed weighed;
+  double log_posterior = -1e300;
+  double promised = 0.0;  ///< in log odds, between where the fit stopped and its target
+  JointPlace place;
+};
+
+/// log of the prior odds: those of a single recording's hypothesis, and of each change.
+double LogPrior(const JointHypothesis& h, const Fleet& fleet, const SelectionOptions& options);
+
+/// From where the fleet stands, at most `rounds` steps; given up after two where the log posterior
+/// is clearly below `worth`.
+JointFit FitJointly(Fleet& fleet, const JointHypothesis& hypothesis, int rounds, double worth,
+                    const SelectionOptions& options);
+
+}  // namespace flextip::diagnosis

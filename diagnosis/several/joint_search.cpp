@@ -1,0 +1,251 @@
+#include "diagnosis/several/joint_search.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace flextip::diagnosis {
+namespace {
+
+constexpr std::size_t kLeaders = 4;   // fitted from the base simulation
+constexpr double kClearly = 60.0;     // log odds, seen from there, that a leader is ahead by
+constexpr double kClearlyPart = 0.1;  // or that part of what it gains
+constexpr int kFirstRounds = 6, kFitRounds = 4;
+constexpr int kMostFits = 12;
+constexpr double kRival = 2.0;        // log odds below the best that are worth a fit
+constexpr std::size_t kBesides = 10;  // hypotheses beside which changes are weighed, with singles
+constexpr std::size_t kMostEffects = 2;  // in any recording: three at once are not weighed
+
+std::vector<JointHypothesis> Commons(const Fleet& fleet, bool pairs) {
+  std::vector<JointHypothesis> all;
+  for (const Hypothesis& h : KnownHypotheses(fleet.EffectCount(), pairs))
+    all.push_back({h.effects, {}, false});
+  return all;
+}
+
+void Sort(std::vector<JointScored>& scored) {
+  std::ranges::stable_sort(scored, [](const JointScored& a, const JointScored& b) {
+    return a.log_posterior > b.log_posterior;
+  });
+}
+
+std::vector<JointScored> Weighed(const JointEvidence& evidence, const Fleet& fleet,
+                                 const std::vector<JointHypothesis>& hypotheses,
+                                 const SelectionOptions& options) {
+  std::vector<JointScored> scored(hypotheses.size());
+  tbb::parallel_for(std::size_t{0}, hypotheses.size(), [&](std::size_t i) {
+    scored[i].weighed = evidence.Weigh(hypotheses[i]);
+    scored[i].log_posterior =
+        scored[i].weighed.log_evidence + LogPrior(hypotheses[i], fleet, options);
+  });
+  Sort(scored);
+  return scored;
+}
+
+/// `beside` and each change that it has not yet.
+std::vector<JointScored> WithChanges(const JointEvidence& evidence, const Fleet& fleet,
+                                     const JointWeighed& beside, const SelectionOptions& options) {
+  std::vector<JointScored> scored;
+  if (beside.hypothesis.EffectsIn(fleet.Size() - 1).size() >= kMostEffects) return scored;
+  std::vector<JointHypothesis> own;  // of effects that each recording has for itself
+  for (const auto& added : evidence.WithChanges(beside)) {
+    JointWeighed weighed = beside;
+    weighed.hypothesis.changes.push_back(added.change);
+    weighed.scales.push_back(1.0);
+    weighed.log_evidence += added.log_gain;
+    const double log = weighed.log_evidence + LogPrior(weighed.hypothesis, fleet, options);
+    scored.push_back({weighed, log});
+  }
+  for (int e = 0; e < fleet.EffectCount(); ++e) {
+    if (fleet.OwnOf(e).empty()) continue;
+    const std::vector<int> present = beside.hypothesis.EffectsIn(fleet.Size() - 1);
+    if (std::ranges::find(present, e) != present.end()) continue;
+    for (int first = 1; first < int(fleet.Size()); ++first) {
+      own.push_back(beside.hypothesis);
+      own.back().changes.push_back({e, first});
+    }
+  }
+  for (JointScored& one : Weighed(evidence, fleet, own, options)) scored.push_back(one);
+  return scored;
+}
+
+class Search {
+ public:
+  Search(Fleet& fleet, const SelectionOptions& options) : fleet_(fleet), options_(options) {}
+
+  JointSelection Run() {
+    StandAtBase(fleet_, options_);
+    const JointPlace base = PlaceOf(fleet_);
+    FitLeadersFrom(base);
+    GoTo(fleet_, best_.place);
+    FixMeasure(fleet_, options_);
+    const JointHypothesis leader = best_.weighed.hypothesis;
+    tried_.clear();
+    best_ = {};
+    Keep(FitJointly(fleet_, leader, kFitRounds, best_.log_posterior, options_));
+    FitRivals();
+    FitPartsOfBest();
+    GoTo(fleet_, best_.place);
+    FindCorrections();
+    selection_.best = best_;
+    selection_.converged = best_.promised < 1.0 && !rivals_left_;
+    return std::move(selection_);
+  }
+
+ private:
+  const JointFit* Tried(const JointHypothesis& h) const {
+    for (const JointFit& fit : tried_)
+      if (fit.weighed.hypothesis == h) return &fit;
+    return nullptr;
+  }
+
+  void Keep(JointFit fit) {
+    ++selection_.fits;
+    if (fit.log_posterior > best_.log_posterior) best_ = fit;
+    for (JointFit& before : tried_) {
+      if (!(before.weighed.hypothesis == fit.weighed.hypothesis)) continue;
+      if (fit.log_posterior > before.log_posterior) before = std::move(fit);
+      return;
+    }
+    fit.place = {};  // only the best one's is needed
+    tried_.push_back(std::move(fit));
+  }
+
+  /// The base is far from any answer: a few that look best from there are followed.
+  void FitLeadersFrom(const JointPlace& base) {
+    const JointEvidence evidence = EvidenceHere(fleet_);
+    std::vector<JointScored> scored = Weighed(evidence, fleet_, Commons(fleet_, false), options_);
+    const auto none = std::ranges::find_if(
+        scored, [](const JointScored& s) { return s.weighed.hypothesis == JointHypothesis{}; });
+    const JointScored nothing = *none;
+    for (JointScored& one : WithChanges(evidence, fleet_, nothing.weighed, options_))
+      scored.push_back(one);
+    Sort(scored);
+    const double best = scored.front().log_posterior;
+    const double clearly = std::max(kClearly, kClearlyPart * (best - nothing.log_posterior));
+    for (std::size_t i = 0; i < kLeaders && i < scored.size(); ++i) {
+      if (scored[i].log_posterior < best - clearly) break;
+      FitFrom(base, scored[i].weighed.hypothesis);
+    }
+    if (Tried({}) == nullptr) FitFrom(base, {});
+  }
+
+  void FitFrom(const JointPlace& place, const JointHypothesis& h) {
+    GoTo(fleet_, place);
+    Keep(FitJointly(fleet_, h, kFirstRounds, best_.log_posterior, options_));
+  }
+
+  /// Whatever looks better from the best place than the best itself is fitted from there.
+  void FitRivals() {
+    for (rivals_left_ = true; selection_.fits < kMostFits;) {
+      GoTo(fleet_, best_.place);
+      const auto scored =
+          WeighAll(EvidenceHere(fleet_), fleet_, best_.weighed.hypothesis, options_);
+      const JointScored* rival = nullptr;
+      double log_rival = best_.log_posterior - kRival;
+      for (const JointScored& s : scored) {
+        const double log = s.log_posterior + Shortfall(s, scored);
+        if (Tried(s.weighed.hypothesis) != nullptr || log < log_rival) continue;
+        rival = &s;
+        log_rival = log;
+      }
+      rivals_left_ = rival != nullptr;
+      if (!rivals_left_) return;
+      Keep(
+          FitJointly(fleet_, rival->weighed.hypothesis, kFitRounds, best_.log_posterior, options_));
+    }
+  }
+
+  /// The best less one of its effects or changes, fitted by itself.
+  void FitPartsOfBest() {
+    const JointHypothesis whole = best_.weighed.hypothesis;
+    const JointPlace place = best_.place;
+    std::vector<JointHypothesis> parts;
+    for (std::size_t i = 0; i < whole.effects.size(); ++i) {
+      parts.push_back(whole);
+      parts.back().effects.erase(parts.back().effects.begin() + std::ptrdiff_t(i));
+    }
+    for (std::size_t i = 0; i < whole.changes.size(); ++i) {
+      parts.push_back(whole);
+      parts.back().changes.erase(parts.back().changes.begin() + std::ptrdiff_t(i));
+    }
+    for (const JointHypothesis& part : parts)
+      if (Tried(part) == nullptr) FitFrom(place, part);
+    FitRivals();
+  }
+
+  /// What its own fit says of a hypothesis beyond the problem about the best place; the broken
+  /// promise of a part is its promise too.
+  double Shortfall(const JointScored& s, const std::vector<JointScored>& scored) const {
+    if (const JointFit* own = Tried(s.weighed.hypothesis))
+      return own->log_posterior - s.log_posterior;
+    double worst = 0.0;
+    for (const int effect : s.weighed.hypothesis.effects) {
+      const JointHypothesis part{{effect}, {}, false};
+      const JointFit* fit = Tried(part);
+      if (fit == nullptr || part == best_.weighed.hypothesis) continue;
+      for (const JointScored& single : scored)
+        if (single.weighed.hypothesis == part)
+          worst = std::min(worst, fit->log_posterior - single.log_posterior);
+    }
+    return worst;
+  }
+
+  void FindCorrections() {
+    const auto scored = WeighAll(EvidenceHere(fleet_), fleet_, best_.weighed.hypothesis, options_);
+    double common = 0.0;  // what the problem promises to all
+    for (const JointScored& s : scored)
+      if (s.weighed.hypothesis == best_.weighed.hypothesis) common = Shortfall(s, scored);
+    for (const JointScored& s : scored) {
+      const bool tried = Tried(s.weighed.hypothesis) != nullptr;
+      const double log = Shortfall(s, scored) - (tried ? common : 0.0);
+      if (log != 0.0) selection_.corrections.emplace_back(s.weighed.hypothesis, log);
+    }
+  }
+
+  Fleet& fleet_;
+  const SelectionOptions& options_;
+  std::vector<JointFit> tried_;
+  JointFit best_;
+  bool rivals_left_ = false;
+  JointSelection selection_;
+};
+
+}  // namespace
+
+std::vector<JointScored> WeighAll(const JointEvidence& evidence, const Fleet& fleet,
+                                  const JointHypothesis& best, const SelectionOptions& options) {
+  std::vector<JointScored> scored = Weighed(evidence, fleet, Commons(fleet, true), options);
+  if (fleet.Size() < 2) return scored;
+  std::vector<JointWeighed> besides;
+  for (std::size_t i = 0; i < scored.size(); ++i)
+    if (i < kBesides || scored[i].weighed.hypothesis.effects.size() < 2)
+      besides.push_back(scored[i].weighed);
+  std::vector<JointScored> more;
+  if (!best.changes.empty()) {
+    const JointScored own = Weighed(evidence, fleet, {best}, options).front();
+    more.push_back(own);
+    besides.push_back(own.weighed);
+    JointHypothesis common{best.effects, {}, false};
+    const bool is_in =
+        std::ranges::any_of(besides, [&](const JointWeighed& w) { return w.hypothesis == common; });
+    if (!is_in) besides.push_back(evidence.Weigh(common));
+  }
+  std::vector<std::vector<JointScored>> with(besides.size());
+  tbb::parallel_for(std::size_t{0}, besides.size(), [&](std::size_t i) {
+    with[i] = WithChanges(evidence, fleet, besides[i], options);
+  });
+  for (const auto& list : with)
+    for (const JointScored& one : list)
+      if (!(one.weighed.hypothesis == best)) more.push_back(one);
+  scored.insert(scored.end(), more.begin(), more.end());
+  Sort(scored);
+  return scored;
+}
+
+JointSelection SearchJointly(Fleet& fleet, const SelectionOptions& options) {
+  return Search(fleet, options).Run();
+}
+
+}  // namespace flextip::diagnosis

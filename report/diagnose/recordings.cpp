@@ -1,0 +1,87 @@
+#include "report/diagnose/recordings.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "report/diagnose/parts.h"
+#include "report/diagnose/words.h"
+#include "report/result_files.h"
+
+namespace flextip::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kShown = 0.05;        // an effect as likely as that in some recording has a row
+constexpr std::size_t kOpenRows = 12;  // a longer table is folded
+
+void AddShort(Report& report, const Table& table) {
+  if (table.rows.size() <= kOpenRows) return report.AddTable(table);
+  report.AddHtml(FoldedTableHtml(table.title, table.header, table.rows));
+}
+
+/// A row a recording, a column an effect.
+Table PresenceTable(const Json& diagnosis) {
+  Table table{.title = "Effects by recording", .header = {"recording"}};
+  const Json presence = diagnosis.value("presence_in", Json::object());
+  std::vector<std::string> shown;
+  for (const auto& [effect, by_recording] : presence.items()) {
+    const auto values = by_recording.get<std::vector<double>>();
+    if (values.empty() || *std::max_element(values.begin(), values.end()) < kShown) continue;
+    shown.push_back(effect);
+    table.header.push_back(SpokenHypothesis(effect));
+  }
+  std::size_t r = 0;
+  for (const auto& name : diagnosis["recordings"]) {
+    table.rows.push_back({name.get<std::string>()});
+    for (const std::string& effect : shown)
+      table.rows.back().push_back(Percent(presence[effect][r].get<double>()));
+    ++r;
+  }
+  if (shown.empty()) table.caption = "No effect is likely in any of them.";
+  return table;
+}
+
+/// "offset 1.20 ± 0.05 mm, ...".
+std::string ParametersText(const Json& parameters) {
+  std::string text;
+  for (const auto& [name, parameter] : parameters.items()) {
+    const ShownUnit unit = ShownUnitOf(name);
+    const Json &value = parameter.at("value"), &sd = parameter.at("sd");
+    const auto number = [&](const Json& numbers, std::size_t i) {
+      const Json& one = numbers.is_array() ? numbers.at(i) : numbers;
+      return unit.per_si * one.get<double>();
+    };
+    std::string list;
+    for (std::size_t i = 0; i < (value.is_array() ? value.size() : 1); ++i)
+      list += (i == 0 ? "" : ", ") + WithDeviation(number(value, i), number(sd, i), unit.unit);
+    text += (text.empty() ? "" : "; ") + unit.name + " " + list;
+  }
+  return text;
+}
+
+Table ChangeTable(const Json& diagnosis) {
+  Table table{.title = "What began", .header = {"effect", "first in", "probability", "parameters"}};
+  for (const auto& change : diagnosis.value("changes", Json::array())) {
+    table.rows.push_back({SpokenHypothesis(change.at("effect").get<std::string>()),
+                          change.at("first_in").get<std::string>(),
+                          Percent(change.at("probability").get<double>()),
+                          ParametersText(change.at("parameters"))});
+  }
+  return table;
+}
+
+}  // namespace
+
+void AddRecordings(Report& report, const std::filesystem::path& folder) {
+  const Json diagnosis = Json::parse(ReadBytes(folder / "diagnosis.json"));
+  if (!diagnosis.contains("recordings")) return;
+  report.AddHeading("Recording by recording");
+  const Table changes = ChangeTable(diagnosis);
+  if (!changes.rows.empty()) report.AddTable(changes);
+  AddShort(report, PresenceTable(diagnosis));
+}
+
+}  // namespace flextip::report
