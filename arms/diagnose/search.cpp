@@ -394,6 +394,9 @@ class Searcher {
   /// Where much is left that nothing explains, an effect that takes away a hundredth of it is not
   /// claimed: any smooth form would. Returns whether there was one.
   bool ForbidWhatHardlyCounts() {
+    // What hangs on a link or drives a joint has a form of its own; places of joints do not.
+    for (const Channel& channel : replay_.Channels())
+      if (channel.kind == Kind::kTorque || channel.kind == Kind::kFollowed) return false;
     const std::vector<double> importance = Importance();
     if (left_per_row_ < kMuchLeft) return false;
     int least = -1;
