@@ -8,6 +8,7 @@
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/diagnose/arm_files.h"
+#include "apps/diagnose/result_files.h"
 #include "arms/diagnose/diagnose.h"
 #include "arms/diagnose/judge.h"
 #include "arms/diagnose/model_file.h"
@@ -81,6 +82,7 @@ void DiagnoseArm(const ArmRun& run) {
   WriteTextFile(output.folder() / "diagnosis.json", ArmDiagnosisJson(result));
   WriteTextFile(output.folder() / "model.yaml", arms::ArmModelYaml(result.model));
   report::WriteFigures(output.folder() / "figures.json", ArmFigures(result));
+  WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result.answer.residuals));
   for (const arms::RecordingAnswer& own : result.each)
     WriteTextFile(output.folder() / "recordings" / own.name / "diagnosis.json",
                   ArmRecordingJson(own));
@@ -104,11 +106,12 @@ void PredictArm(const ArmRun& run, const fs::path& model) {
   const std::vector<arms::ArmData> recordings = ReadArms(run, output);
   const arms::ArmPrediction found = arms::Predict(recordings.front(), arms::ReadArmModel(model));
   report::WriteFigures(output.folder() / "figures.json", CurveFigures(found.curves));
+  WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(found.residuals));
   nlohmann::json summary = ArmPredictionSummary(found);
   const Judgement judged = arms::JudgeArmPrediction(found);
   summary["verdict"] = JudgementJson(judged);
   output.WriteSummary(summary);
-  report::WriteMapReport(output.folder());
+  report::WritePredictReport(output.folder());
   output.Commit();
   Say(judged, output, run);
 }

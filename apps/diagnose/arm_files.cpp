@@ -58,11 +58,16 @@ Figure ErrorsByJoint(const arms::ArmResult& result) {
 
 /// The arm as a chain of joints, side by side, coloured by how much of its error was wrong.
 Figure JointDrawing(const arms::ArmResult& result) {
+  std::string findings;
+  for (std::size_t i = 0; i < result.joint_findings.size(); ++i)
+    if (!result.joint_findings[i].empty())
+      findings += fmt::format(" Joint {}: {}.", i + 1, result.joint_findings[i]);
   Figure figure{.name = "joints",
                 .title = "The arm's joints, coloured by what is wrong",
                 .caption =
                     "Grey: as its file says. Red: the joint's error falls by more than half "
-                    "with the extended model. Orange: by more than a tenth.",
+                    "with the extended model. Orange: by more than a tenth." +
+                    findings,
                 .x_label = "joint"};
   FigureTrace links{.kind = FigureTrace::Kind::kLine, .color = "#8c959f", .width = 4};
   FigureTrace grey{.name = "as its file says",
@@ -84,9 +89,7 @@ Figure JointDrawing(const arms::ArmResult& result) {
     links.y.push_back(y);
     trace.x.push_back(x);
     trace.y.push_back(y);
-    const std::string& finding = result.joint_findings[i];
-    trace.texts.push_back(fmt::format("{} {}", result.joint_types[i],
-                                      finding.size() > 40 ? finding.substr(0, 40) + "…" : finding));
+    trace.texts.push_back(fmt::format("{}", i + 1));
   }
   figure.traces.push_back(links);
   for (const FigureTrace& trace : {grey, orange, red})

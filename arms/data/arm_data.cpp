@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kStopsBelow_hz = 5.0;  // rows rarer than this are stops
 constexpr double kSameTime_s = 1e-3;
+constexpr double kStart_s = 0.5;
 
 double Seconds(TimeNs t_ns, TimeNs start_ns) { return 1e-9 * double(t_ns - start_ns); }
 
@@ -68,6 +69,16 @@ Measured PutOn(const Eigen::VectorXd& line, Track track, bool stops) {
   measured.track.t_s = track.t_s(kept);
   measured.track.values = track.values(kept, Eigen::all);
   return measured;
+}
+
+/// Without the first moments of a recording, in which what a servo does hangs on what was before.
+Track WithoutStart(const Track& track) {
+  const double start = track.t_s[0], end = track.t_s[track.Rows() - 1];
+  const double from = start + std::min(kStart_s, 0.1 * (end - start));
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < track.Rows(); ++k)
+    if (track.t_s[k] >= from) kept.push_back(k);
+  return {track.t_s(kept), track.values(kept, Eigen::all)};
 }
 
 Track PoseTrack(const Series<PoseSample>& samples, TimeNs start_ns, bool& has_orientation) {
@@ -152,7 +163,7 @@ ArmData::ArmData(const Recording& recording, std::string recording_name)
   joints = has_encoders ? TrackOf(recording.joints0->q, start_ns) : command;
   at_stops = 1.0 / MedianStep(joints.t_s) < kStopsBelow_hz;
   if (has_encoders && has_command && !at_stops) {
-    followed = PutOn(command.t_s, joints, false);
+    followed = PutOn(command.t_s, WithoutStart(joints), false);
     followed.noise = VectorOf(recording.joints0->noise);
   }
   if (recording.joints_seen0) {

@@ -17,6 +17,7 @@ using diagnosis::Verdict;
 constexpr double kCannotTell = 0.5;        // posterior over prior deviation
 constexpr double kAsGood = 3.0;            // log odds
 constexpr Eigen::Index kMostPoints = 600;  // of a curve
+constexpr Eigen::Index kMostRows = 3000;   // of the table of residuals
 constexpr double kTakenUp = 0.7;           // correlation with what takes a number up
 
 std::vector<ReportedParameter> Reported(const Layout& layout, const Layout::Block& block,
@@ -315,6 +316,42 @@ void FillCurves(const Replay& replay, const Residuals& base, const Residuals& ex
   }
 }
 
+diagnosis::ResidualTable ResidualTableOf(const Replay& replay, const Residuals& base,
+                                         const Residuals& extended, const Noise& noise) {
+  diagnosis::ResidualTable table;
+  table.columns = {"t_s"};
+  std::vector<std::size_t> first(replay.Channels().size(), 0);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const Channel& channel = replay.Channels()[i];
+    if (channel.recording != 0) continue;
+    first[i] = table.columns.size();
+    for (const char* model : {"base", "extended"})
+      for (Eigen::Index c = 0; c < channel.Components(); ++c)
+        table.columns.push_back(fmt::format("{}.{}.{}", model, Name(channel.kind), c + 1));
+  }
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const Channel& channel = replay.Channels()[i];
+    if (channel.recording != 0) continue;
+    const Eigen::Index C = channel.Components(), every = 1 + channel.Rows() / kMostRows;
+    for (Eigen::Index k = 0; k < channel.Rows(); k += every) {
+      std::vector<double> row(table.columns.size(), 0.0);
+      std::vector<bool> present(table.columns.size(), false);
+      row[0] = channel.t_s[k];
+      present[0] = true;
+      for (Eigen::Index c = 0; c < C; ++c) {
+        if (!noise[i].keep(k, c)) continue;
+        const std::size_t at = first[i] + std::size_t(c);
+        row[at] = base[i](k, c) / noise[i].floor[c];
+        row[at + std::size_t(C)] = extended[i](k, c) / noise[i].floor[c];
+        present[at] = present[at + std::size_t(C)] = true;
+      }
+      table.rows.push_back(std::move(row));
+      table.present.push_back(std::move(present));
+    }
+  }
+  return table;
+}
+
 void Describe(const Replay& base, const Replay& extended, const Found& found,
               const ArmHeldOut& heldout, const std::vector<double>& p, ArmResult& result) {
   const Layout& layout = extended.GetLayout();
@@ -391,6 +428,8 @@ void Describe(const Replay& base, const Replay& extended, const Found& found,
   if (const long left = LeftOut(extended, found.noise); left > 0)
     answer.warnings.push_back(
         fmt::format("{} single readings are far from all others: left out", left));
+  answer.residuals =
+      ResidualTableOf(extended, ResidualsOf(base), ResidualsOf(extended), found.noise);
   FillSignatures(base, found.noise, answer);
   FillComponents(extended, found, heldout, result);
   FillCurves(extended, ResidualsOf(base), ResidualsOf(extended), result.curves);

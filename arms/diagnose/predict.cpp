@@ -111,6 +111,7 @@ ArmPrediction Predict(const ArmData& data, const ArmModel& model) {
   if (base_sums.Tip() > 0.0) prediction.tip_ratio = sums.Tip() / base_sums.Tip();
   prediction.samples = int(data.joints.Rows());
   FillCurves(replay, base, extended, prediction.curves);
+  prediction.residuals = ResidualTableOf(replay, base, extended, noise);
   return prediction;
 }
 

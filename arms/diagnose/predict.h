@@ -18,6 +18,7 @@ struct ArmPrediction {
   double tip_ratio = 1.0;  ///< 1 where there is no tip
   int samples = 0;
   std::vector<ComponentCurve> curves;
+  diagnosis::ResidualTable residuals;
   std::vector<std::string> not_shown;  ///< effects of the model that this recording cannot show
 };
 

@@ -18,7 +18,7 @@ using diagnosis::WeighedHypothesis;
 
 constexpr double kRival = 3.0;          // log odds below the best that are worth a fit
 constexpr double kMuchLeft = 4.0;       // chi-squared per row, in stated noise
-constexpr double kHardlyCounts = 0.01;  // of what is left
+constexpr double kHardlyCounts = 0.02;  // of what is left
 constexpr int kMostDrops = 3;
 constexpr double kWorthCarrying = 20.0;  // squared residual
 constexpr int kMostFits = 14;            // a round
@@ -358,7 +358,8 @@ class Searcher {
     return sum;
   }
 
-  /// By how much of what is left the misfit rises without each effect of the best.
+  /// By how much of what is left the misfit rises without each effect of the best, with all that
+  /// recordings have of it.
   std::vector<double> Importance() {
     GoTo(best_);
     const Problem problem = ProblemHere();
@@ -367,8 +368,9 @@ class Searcher {
     std::vector<double> importance;
     for (const int effect : best_.hypothesis.effects) {
       Hypothesis without;
+      const std::string name = layout_.Blocks()[effect].effect->Name();
       for (const int other : best_.hypothesis.effects)
-        if (other != effect) without.effects.push_back(other);
+        if (layout_.Blocks()[other].effect->Name() != name) without.effects.push_back(other);
       const WeighedHypothesis weighed = evidence.Weigh(without);
       const Eigen::VectorXd mode =
           evidence.Mode(weighed, evidence.Covariance(weighed)).head(layout_.Size());
@@ -392,6 +394,9 @@ class Searcher {
   /// Where much is left that nothing explains, an effect that takes away a hundredth of it is not
   /// claimed: any smooth form would. Returns whether there was one.
   bool ForbidWhatHardlyCounts() {
+    // What hangs on a link or drives a joint has a form of its own; places of joints do not.
+    for (const Channel& channel : replay_.Channels())
+      if (channel.kind == Kind::kTorque || channel.kind == Kind::kFollowed) return false;
     const std::vector<double> importance = Importance();
     if (left_per_row_ < kMuchLeft) return false;
     int least = -1;

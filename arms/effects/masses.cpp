@@ -28,7 +28,7 @@ class Masses : public PlainEffect {
       for (int j = 0; j < 6; ++j) parameters.push_back({inertia});
     }
     for (int i = 0; i < data.Size(); ++i)
-      parameters.push_back({stated ? data.TypicalOf(i, 0.003, 0.03) : data.TypicalOf(i, 0.1, 1.0)});
+      parameters.push_back({data.TypicalOf(i, stated ? 0.03 : 0.1, stated ? 2.0 : 3.0)});
     for (int i = 0; i < data.Size(); ++i)
       parameters.push_back({stated ? data.TypicalOf(i, 0.002, 0.2) : data.TypicalOf(i, 0.5, 10.0)});
     for (int i = 0; i < data.Size(); ++i)

@@ -147,9 +147,11 @@ bool IsShaftsStiffness(double EI_Nm2, double diameter_m) {
 void CheckInstrument(const std::set<std::string>& unknown, Recording& recording,
                      std::vector<Finding>& findings) {
   InstrumentLimits limits(recording, findings);
-  if (!unknown.contains("length")) limits.Length();
-  limits.Diameter();
-  if (!unknown.contains("stiffness")) limits.Stiffness();
+  if (recording.has_shaft) {  // an arm alone has no instrument to judge
+    if (!unknown.contains("length")) limits.Length();
+    limits.Diameter();
+    if (!unknown.contains("stiffness")) limits.Stiffness();
+  }
   limits.Gravity();
 }
 

@@ -75,6 +75,8 @@ void WritePredictReport(const std::filesystem::path& folder) {
   Report report = BeginPage(folder, "Prediction of a recording that was not fitted");
   AddErrorBars(report, residuals);
   AddErrorTable(report, summary);
+  if (std::filesystem::exists(folder / "figures.json"))
+    report.AddFigureFile(folder / "figures.json", "Joint by joint");
   AddMemory(report, residuals);
   report.Write(folder / "report.html");
 }
