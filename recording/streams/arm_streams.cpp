@@ -164,6 +164,11 @@ std::optional<Arm> ReadArmOf(const std::filesystem::path& recording, ReadLog& lo
     // "arm.yaml" may stand in the sensor's folder or in the recording's.
     if (!std::filesystem::exists(here))
       here = (recording / yaml.TextOr("arm", "arm.yaml")).lexically_normal();
+    if (!std::filesystem::exists(here) && !yaml.Has("arm")) {
+      log.warnings.push_back(folder.string() +
+                             ": not used, as neither arm: nor an arm.yaml says what its joints are");
+      continue;
+    }
     if (!std::filesystem::exists(here)) {
       throw yaml.Error("arm", fmt::format("no such file {}, expected the arm's arm.yaml or URDF",
                                           Quoted(here.string())));

@@ -53,7 +53,8 @@ PoseStream ReadPose(const std::filesystem::path& folder, ReadLog& log);
 void WritePose(const std::filesystem::path& folder, const PoseStream& stream);
 
 /// Reads the arm that a folder's streams of joints name in their sensor.yaml. Throws InputError
-/// where they name different files; nothing where there are none.
+/// where they name different files, or one that is not there; nothing, with a warning, where none
+/// is named and none is there.
 std::optional<Arm> ReadArmOf(const std::filesystem::path& recording, ReadLog& log);
 
 /// Writes parts of a vision table, for rows that come one by one.

@@ -82,10 +82,9 @@ std::string WhatBegan(const std::filesystem::path& folder) {
   const Json diagnosis = Json::parse(ReadBytes(folder / "diagnosis.json"));
   std::string began;
   for (const auto& change : diagnosis.value("changes", Json::array())) {
-    began += fmt::format("{} began in {} ({}). ",
-                         SpokenHypothesis(change.at("effect").get<std::string>()),
-                         change.at("first_in").get<std::string>(),
-                         Percent(change.at("probability").get<double>()));
+    began += fmt::format(
+        "{} began in {} ({}). ", SpokenHypothesis(change.at("effect").get<std::string>()),
+        change.at("first_in").get<std::string>(), Percent(change.at("probability").get<double>()));
   }
   if (began.empty()) return began;
   began[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(began[0])));

@@ -203,9 +203,8 @@ TEST_F(DiagnosePage, ShowsSeveralRecordingsAndWhatBegan) {
   Json diagnosis = Friction();
   EXPECT_THAT(Page(diagnosis), Not(HasSubstr("Recording by recording")));
   diagnosis["recordings"] = {"monday", "friday"};
-  diagnosis["presence_in"] = {{"port_friction", {0.98, 0.97}},
-                              {"port_offset", {0.001, 0.96}},
-                              {"length", {0.001, 0.002}}};
+  diagnosis["presence_in"] = {
+      {"port_friction", {0.98, 0.97}}, {"port_offset", {0.001, 0.96}}, {"length", {0.001, 0.002}}};
   diagnosis["changes"] = {
       {{"effect", "port_offset"},
        {"first_in", "friday"},
