@@ -165,8 +165,8 @@ std::optional<Arm> ReadArmOf(const std::filesystem::path& recording, ReadLog& lo
     if (!std::filesystem::exists(here))
       here = (recording / yaml.TextOr("arm", "arm.yaml")).lexically_normal();
     if (!std::filesystem::exists(here) && !yaml.Has("arm")) {
-      log.warnings.push_back(folder.string() +
-                             ": not used, as neither arm: nor an arm.yaml says what its joints are");
+      log.warnings.push_back(
+          folder.string() + ": not used, as neither arm: nor an arm.yaml says what its joints are");
       continue;
     }
     if (!std::filesystem::exists(here)) {
