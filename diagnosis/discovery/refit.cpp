@@ -148,6 +148,7 @@ TermPicture PictureOf(const Term& term, const Replay& replay) {
 
 std::vector<TermName> NamesOf(const std::vector<Candidate>& rivals) {
   std::vector<TermName> names;
+  names.reserve(rivals.size());
   for (const Candidate& rival : rivals) names.push_back(NameOf(rival.term));
   return names;
 }
@@ -214,7 +215,7 @@ std::unique_ptr<TermModel> FindTerms(const Replay& base, Replay& best, const Sel
 
 TermName NameOf(const Term& term) {
   TermName name{InfoOf(term.target).channel, {}, Name(FormOf(term))};
-  for (const TermVariable variable : DependsOn(term)) name.depends_on.push_back(Name(variable));
+  for (const TermVariable variable : DependsOn(term)) name.depends_on.emplace_back(Name(variable));
   return name;
 }
 

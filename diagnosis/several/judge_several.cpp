@@ -5,13 +5,23 @@
 
 namespace flextip::diagnosis {
 
+namespace {
+
+/// No recording makes an answer certain.
+std::string Likely(double probability) {
+  return probability > 0.99 ? std::string("over 99 %")
+                            : fmt::format("{:.0f} %", 100.0 * probability);
+}
+
+}  // namespace
+
 Judgement JudgeSeveral(const SeveralResult& several) {
   Judgement judged = JudgeDiagnosis(several.common);
   if (judged.grade == Grade::kNotFound) return judged;
   judged.says = fmt::format("In all {} recordings: {}", several.names.size(), judged.says);
   for (const FoundChange& change : several.changes) {
-    judged.says += fmt::format(" {} began in {} ({:.0f} %).", change.effect,
-                               several.names[change.first_in], 100.0 * change.probability);
+    judged.says += fmt::format(" {} began in {} ({}).", change.effect,
+                               several.names[change.first_in], Likely(change.probability));
   }
   if (several.changes.empty()) return judged;
   const FoundChange& first = several.changes.front();

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <string>
 
 #include "report/diagnose/words.h"
 #include "report/labels.h"
@@ -44,13 +46,25 @@ std::string CaptionOf(const DiagnosedTerm& term) {
   return caption;
 }
 
+/// "time (s)"; the variables of docs/formats.md are in SI.
+std::string VariableLabel(const DiagnosedTerm& term) {
+  static const std::map<std::string, std::string> units{
+      {"time", "s"},          {"insertion_depth", "m"}, {"sliding_velocity", "m/s"},
+      {"wrist_speed", "m/s"}, {"port_force", "N"},      {"load", "N"},
+      {"position", "m"},      {"orientation", "1"},     {"distance_to_camera", "m"}};
+  if (term.name.depends_on.empty()) return "sample";
+  const std::string& variable = term.name.depends_on.front();
+  const auto unit = units.find(variable);
+  return SpokenHypothesis(variable) + " (" + (unit == units.end() ? "SI" : unit->second) + ")";
+}
+
 Figure PictureOf(const ResultTable& table, std::size_t i, const DiagnosedTerm& term) {
+  const ShownUnit shown = ShownUnitOf(term.name.channel);
+  const std::string unit = shown.unit.empty() ? "SI" : shown.unit;
   Figure plot{.title = Capital(term.text),
               .caption = CaptionOf(term),
-              .x_label = term.name.depends_on.empty()
-                             ? std::string("sample")
-                             : SpokenHypothesis(term.name.depends_on.front()) + " (SI)",
-              .y_label = SpokenChannel(term.name.channel) + " (SI)"};
+              .x_label = VariableLabel(term),
+              .y_label = SpokenChannel(term.name.channel) + " (" + unit + ")"};
   const auto column = [&](const char* what) {
     return table.Column(fmt::format("{}.{}", i + 1, what));
   };
@@ -69,9 +83,9 @@ Figure PictureOf(const ResultTable& table, std::size_t i, const DiagnosedTerm& t
                    .color = "rgb(0,114,178)"};
   for (const std::size_t k : order) {
     points.x.push_back((*x)[k]);
-    points.y.push_back((*measured)[k]);
+    points.y.push_back(shown.per_si * (*measured)[k]);
     line.x.push_back((*x)[k]);
-    line.y.push_back((*said)[k]);
+    line.y.push_back(shown.per_si * (*said)[k]);
   }
   plot.traces = {points, line};
   return plot;

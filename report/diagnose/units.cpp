@@ -13,7 +13,8 @@
 namespace flextip::report {
 namespace {
 
-constexpr std::array<UnitSuffix, 14> kSuffixes{{{"_kg_m", "g/m", 1e3},
+constexpr std::array<UnitSuffix, 15> kSuffixes{{{"_rad_s", "mrad/s", 1e3},
+                                                {"_kg_m", "g/m", 1e3},
                                                 {"_N_m", "N/m", 1.0},
                                                 {"_1_m", "1/m", 1.0},
                                                 {"_Nm_rad", "N m/rad", 1.0},

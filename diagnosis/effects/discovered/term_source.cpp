@@ -65,6 +65,7 @@ std::vector<std::string> ColumnSources(const Term& term) {
                            : term.variable == TermVariable::kOrientation ? "orientation"
                                                                          : "image";
       std::vector<std::string> columns;
+      columns.reserve(static_cast<std::size_t>(Dimension(term.variable)));
       for (int j = 0; j < Dimension(term.variable); ++j)
         columns.push_back(fmt::format("state.{}[{}]", vector, j));
       return columns;
@@ -98,6 +99,7 @@ std::vector<std::string> ColumnSources(const Term& term) {
       return {"std::max(0.0, normal.normalized().dot(state.position) - kAt[3])"};
     case TermShape::kSmooth: {
       std::vector<std::string> columns;
+      columns.reserve(kMostTermColumns);
       for (int j = 0; j < kMostTermColumns; ++j)
         columns.push_back(fmt::format("fade * Spline({}, x)", j));
       return columns;
