@@ -1,5 +1,7 @@
 #include "arms/replay/replay.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "arms/effects/marker.h"

@@ -36,7 +36,7 @@ WeightedProblem::WeightedProblem(const ResidualProblem& residual, std::vector<do
 }
 
 TargetScan::TargetScan(const WeightedProblem& weighted, TermTarget target, bool offset)
-    : weighted_(weighted), target_(target), inputs_(InfoOf(target).inputs), offset_(offset) {
+    : weighted_(weighted), inputs_(InfoOf(target).inputs), offset_(offset) {
   const ResidualProblem& problem = weighted.problem;
   const Eigen::MatrixXd B = problem.ByTarget(target);
   const Eigen::MatrixXd& X = problem.Derivatives();

@@ -42,7 +42,6 @@ class TargetScan {
   Normal NormalOf(const Term& term, const TermSeries& series) const;
 
   const WeightedProblem& weighted_;
-  TermTarget target_;
   Eigen::Index inputs_;
   bool offset_;
   double cost_ = 0.0;
