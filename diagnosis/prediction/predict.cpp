@@ -150,6 +150,8 @@ Prediction Predict(const Recording& recording, const std::string& name, const Ex
   prediction.residuals = MakeResidualTable(work.base, work.extended);
   prediction.not_shown = NotShown(work);
   prediction.warnings = work.samples.warnings;
+  if (!model.discovered.empty())
+    prediction.warnings.emplace_back("the model's terms without a name are left out");
   for (const std::string& effect : prediction.not_shown)
     prediction.warnings.push_back(effect + " of the model shows in no sensor of this recording");
   return prediction;
