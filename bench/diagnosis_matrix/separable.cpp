@@ -11,9 +11,9 @@ std::optional<Eigen::MatrixXd> InformationAtTruth(TrueModel& truth) {
   diagnosis::Replay& replay = truth.replay;
   if (!replay.Evaluate(Eigen::VectorXd::Zero(truth.layout.Size()))) return {};
   const diagnosis::SelectionOptions options;
-  const diagnosis::Rows may_miss =
-      diagnosis::MayMiss(diagnosis::ProblemHere(replay, diagnosis::GenericBasis(replay), options),
-                         options.discrepancy, options);
+  const diagnosis::Rows may_miss = diagnosis::MayMiss(
+      diagnosis::ProblemHere(replay, diagnosis::GenericBasis(replay), options).residual_size,
+      options.discrepancy, options);
   if (!truth.StandAtTruth()) return {};
   replay.SetNoiseScale(diagnosis::NoiseScale(replay));
   replay.Evaluate(truth.parameters.theta);

@@ -111,14 +111,4 @@ Rivals::LeastSure Rivals::LeastSureWith(const Eigen::MatrixXd& H) const {
   return least;
 }
 
-std::vector<double> Rivals::ProbabilitiesWith(const NormalSums& more) const {
-  NormalSums sums = known_;
-  sums.Add(more);
-  std::vector<double> p = LogPosteriors(sums);
-  const double all = LogSumExp(p);
-  for (double& x : p) x = std::exp(x - all);
-  p.resize(rivals_.size());
-  return p;
-}
-
 }  // namespace flextip::diagnosis

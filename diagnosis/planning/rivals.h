@@ -35,9 +35,6 @@ class Rivals {
   /// (the layout's parameters, noise of unit covariance).
   LeastSure LeastSureWith(const Eigen::MatrixXd& H) const;
 
-  /// Returns the probability of each rival with the further data `more`.
-  std::vector<double> ProbabilitiesWith(const NormalSums& more) const;
-
  private:
   std::vector<double> LogPosteriors(const NormalSums& sums) const;
 

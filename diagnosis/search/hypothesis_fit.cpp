@@ -54,8 +54,8 @@ bool Scan(Replay& replay, ParameterLayout& layout, const Hypothesis& hypothesis)
 
 }  // namespace
 
-Rows MayMiss(const LinearProblem& problem, double part, const SelectionOptions& options) {
-  return (part * problem.residual_size).cwiseMax(options.least_discrepancy);
+Rows MayMiss(const Rows& residual_size, double part, const SelectionOptions& options) {
+  return (part * residual_size).cwiseMax(options.least_discrepancy);
 }
 
 Eigen::VectorXd GenericSd(const LinearProblem& problem, const Rows& may_miss) {
@@ -138,8 +138,8 @@ HypothesisFit FitHypothesis(Replay& replay, ParameterLayout& layout, const Hypot
     const bool scan = round > 0 && round < fit_options.scans && Scan(replay, layout, hypothesis);
     if (scan || !here) here = ProblemHere(replay, fit_options.basis, options);
     const bool far = fit_options.scans > 0 && round == 0;
-    const Rows may_miss =
-        far ? MayMiss(*here, options.first_discrepancy, options) : fit_options.may_miss;
+    const Rows may_miss = far ? MayMiss(here->residual_size, options.first_discrepancy, options)
+                              : fit_options.may_miss;
     const Weighing weighing = Weigh(replay, std::move(*here), {hypothesis}, options, may_miss);
     fit.log_posterior = weighing.LogPosterior() - weighing.promised;
     fit.distance = weighing.distance;

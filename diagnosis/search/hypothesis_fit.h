@@ -32,8 +32,8 @@ LinearProblem ProblemHere(const Replay& replay, const Eigen::MatrixXd& basis,
                           const SelectionOptions& options);
 
 /// What the right form of an effect may miss of each row, in standard deviations: `part` of what
-/// there is to explain.
-Rows MayMiss(const LinearProblem& problem, double part, const SelectionOptions& options);
+/// there is to explain (LinearProblem::residual_size).
+Rows MayMiss(const Rows& residual_size, double part, const SelectionOptions& options);
 
 /// Standard deviations of the generic coefficients; those of a row share what the row may miss.
 Eigen::VectorXd GenericSd(const LinearProblem& problem, const Rows& may_miss);

@@ -41,9 +41,9 @@ class Search {
     basis_ = GenericBasis(replay_);
     LinearProblem base = ProblemHere(replay_, basis_, options_);
     // The same for all hypotheses: what is large in the base's residual may be missed by more.
-    may_miss_ = MayMiss(base, options_.discrepancy, options_);
+    may_miss_ = MayMiss(base.residual_size, options_.discrepancy, options_);
     const Rows base_size = tempered_by_ * base.residual_size;
-    const Rows at_first = MayMiss(base, options_.first_discrepancy, options_);
+    const Rows at_first = MayMiss(base.residual_size, options_.first_discrepancy, options_);
     const Weighing first = Weigh(replay_, std::move(base),
                                  KnownHypotheses(layout_.EffectCount(), false), options_, at_first);
     FitLeadersFromBase(first);
@@ -102,9 +102,7 @@ class Search {
     if (tempered_by_ != 1.0) {
       SetNoise(1.0);
       replay_.SetAlongPrior(1.0);
-      LinearProblem base;
-      base.residual_size = base_size;
-      may_miss_ = MayMiss(base, options_.discrepancy, options_);
+      may_miss_ = MayMiss(base_size, options_.discrepancy, options_);
     }
     GoTo(replay_, layout_, best_.place);
     LeaveOutFarSamples();

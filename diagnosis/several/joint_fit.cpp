@@ -144,8 +144,8 @@ void StandAtBase(Fleet& fleet, const SelectionOptions& options) {
     SelectionOptions whole = options;
     whole.blocks = 1;
     const LinearProblem problem = ProblemHere(replay, member.basis, whole);
-    member.may_miss = MayMiss(problem, options.discrepancy, options);
-    const Rows at_first = MayMiss(problem, options.first_discrepancy, options);
+    member.may_miss = MayMiss(problem.residual_size, options.discrepancy, options);
+    const Rows at_first = MayMiss(problem.residual_size, options.first_discrepancy, options);
     member.sums = OfParameters(problem, problem.total, GenericSd(problem, at_first));
     member.place = PlaceOf(replay);
   };

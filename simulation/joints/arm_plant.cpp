@@ -8,8 +8,7 @@
 namespace flextip::simulation {
 namespace {
 
-constexpr double kLinksStep_s = 1e-3;  // the links' matrices are made anew
-constexpr int kCableSteps = 8;         // of the stiff cables within it
+constexpr int kCableSteps = 8;  // of the stiff cables, within a step of the links
 
 double Friction(double coulomb, double viscous, double speed) {
   return coulomb * std::tanh(speed / 2e-3) + viscous * speed;
@@ -43,7 +42,8 @@ std::vector<ArmPlantState> RunArm(const ArmPlantSettings& settings, const Eigen:
   std::vector<ArmPlantState> states;
   for (Eigen::Index row = 0; row < t_s.size(); ++row) {
     while (state.t_s < t_s[row] - 1e-9) {
-      const double whole = std::min(kLinksStep_s, t_s[row] - state.t_s), dt = whole / kCableSteps;
+      const double whole = std::min(settings.links_step_s, t_s[row] - state.t_s),
+                   dt = whole / kCableSteps;
       const LinkDynamics links =
           DynamicsOf(chain, settings.masses, state.link, state.link_speed, settings.gravity_m_s2);
       Eigen::MatrixXd M = links.M;

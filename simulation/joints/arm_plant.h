@@ -24,6 +24,7 @@ struct ArmPlantSettings {
   std::vector<PointMass> masses;
   Eigen::MatrixXd routing;  ///< how far a motor's cable pulls each joint; identity: its own alone
   double command_delay_s = 0.0;
+  double links_step_s = 1e-3;       ///< the links' matrices are made anew
   bool servo_holds_gravity = true;  ///< the servo is told what gravity asks for
   Eigen::Vector3d gravity_m_s2{0.0, 0.0, -9.81};
 };

@@ -6,7 +6,6 @@
 
 #include "arms/diagnose/model_file.h"
 #include "arms/diagnose/predict.h"
-#include "arms/effects/play.h"
 #include "recording/text/text.h"
 #include "tests/arms/made_arm.h"
 
@@ -34,6 +33,19 @@ void AddToSeen(Recording& recording, int to, int from, Of of) {
   for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = commanded[k].value[from];
   const Eigen::VectorXd added = of(x);
   for (Eigen::Index k = 0; k < x.size(); ++k) recording.joints_seen0->q[k].value[to] += added[k];
+}
+
+/// Where a follower in a play of this whole width is behind `x`: pushed along by either side. Not
+/// the code under test.
+Eigen::VectorXd Behind(const Eigen::VectorXd& x, double width) {
+  Eigen::VectorXd behind(x.size());
+  double at = x[0];
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    if (x[k] - at > 0.5 * width) at = x[k] - 0.5 * width;
+    if (x[k] - at < -0.5 * width) at = x[k] + 0.5 * width;
+    behind[k] = at - x[k];
+  }
+  return behind;
 }
 
 double ValueOf(const ArmResult& result, const std::string& effect, const std::string& parameter,
@@ -76,10 +88,9 @@ TEST(DiagnoseArm, FindsAScaleAndACoupling) {
 
 TEST(DiagnoseArm, FindsPlayThatDragsAnotherJoint) {
   Recording recording = SeenAtStops(6);
-  AddToSeen(recording, 4, 4,
-            [](const Eigen::VectorXd& x) { return Eigen::VectorXd(0.05 * PlayState(x, 0.05)); });
+  AddToSeen(recording, 4, 4, [](const Eigen::VectorXd& x) { return Behind(x, 0.05); });
   AddToSeen(recording, 5, 4,
-            [](const Eigen::VectorXd& x) { return Eigen::VectorXd(0.02 * PlayState(x, 0.05)); });
+            [](const Eigen::VectorXd& x) { return Eigen::VectorXd(0.4 * Behind(x, 0.05)); });
   const ArmResult result = Diagnose({ArmData(recording, "play")});
   EXPECT_THAT(result.answer.verdict, ElementsAre("joint_backlash"));
   EXPECT_NEAR(ValueOf(result, "joint_backlash", "width", 4), 0.05, 0.005);
@@ -96,7 +107,7 @@ TEST(DiagnoseArm, FoundModelPredictsAnotherMotion) {
   Recording recording = SeenAtStops(8), other = SeenAtStops(9);
   for (Recording* r : {&recording, &other})
     AddToSeen(*r, 3, 3, [](const Eigen::VectorXd& x) {
-      return Eigen::VectorXd(0.04 + 0.06 * PlayState(x, 0.06).array());
+      return Eigen::VectorXd(0.04 + Behind(x, 0.06).array());
     });
   const ArmResult result = Diagnose({ArmData(recording, "first")});
   const auto file = std::filesystem::temp_directory_path() / "flextip_arm_model_test.yaml";
