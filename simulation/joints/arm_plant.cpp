@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/linear_algebra.h"
 
 namespace flextip::simulation {
 namespace {
 
-constexpr int kCableSteps = 8;  // of the stiff cables, within a step of the links
+constexpr int kCableSteps = 32;  // of the stiff cables, within a step of the links
 
 double Friction(double coulomb, double viscous, double speed) {
   return coulomb * std::tanh(speed / 2e-3) + viscous * speed;
@@ -87,6 +88,9 @@ std::vector<ArmPlantState> RunArm(const ArmPlantSettings& settings, const Eigen:
         state.t_s += dt;
       }
     }
+    if (!state.link.allFinite() || !state.motor.allFinite())
+      throw WorkError(
+          "the arm's plant does not stay finite: its cables are too stiff for its steps");
     states.push_back(state);
   }
   return states;

@@ -36,7 +36,7 @@ struct ArmPlantState {
 };
 
 /// Runs the plant along commands (rows at `t_s`, evenly), starting at rest at the first, and
-/// returns its state at each row.
+/// returns its state at each row. Throws WorkError where steps are too long for the cables.
 std::vector<ArmPlantState> RunArm(const ArmPlantSettings& settings, const Eigen::VectorXd& t_s,
                                   const Eigen::MatrixXd& commands);
 

@@ -1,15 +1,45 @@
-// The arm by forces in time (simulation/joints), which shares nothing with the diagnosis.
+// Arms by forces in time (simulation/joints), which share nothing with the diagnosis: what is put
+// into the plant is found in its recordings, and a healthy plant gives none.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "simulation/joints/arm_plant.h"
+#include "arms/diagnose/diagnose.h"
 #include "simulation/joints/arm_recording.h"
 
 namespace flextip::arms {
 namespace {
 
+using simulation::ArmFaults;
+using simulation::ArmMotion;
+using simulation::ArmSensors;
+using simulation::RecordArm;
 using simulation::SmallArm;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Not;
+
+Eigen::Vector3d V(double a, double b, double c) { return {a, b, c}; }
+
+ArmResult DiagnosisOf(const ArmFaults& faults, const ArmSensors& sensors,
+                      const ArmMotion& motion = {}) {
+  return Diagnose({ArmData(RecordArm(SmallArm(), faults, sensors, motion), "plant")});
+}
+
+const ArmSensors kSeen{.command = false, .encoders = true, .seen = true};
+const ArmSensors kPose{.command = false, .encoders = true, .pose = true};
+const ArmSensors kTorque{.command = false, .encoders = true, .torque = true};
+const ArmSensors kServo{.command = true, .encoders = true, .torque = true};
+
+double Value(const ArmResult& result, const std::string& effect, const std::string& parameter,
+             int i = 0) {
+  for (const auto& fit : result.answer.parameters)
+    for (const auto& p : fit.parameters)
+      if (fit.effect == effect && p.name == parameter) return p.value[i];
+  return std::nan("");
+}
 
 TEST(ArmPlant, LosesNoEnergyWithoutServoAndFriction) {
   const Arm arm = SmallArm();
@@ -41,6 +71,87 @@ TEST(ArmPlant, LosesNoEnergyWithoutServoAndFriction) {
   // What is lost is the steps' alone: of first order, and a step of a tenth keeps the energy.
   EXPECT_NEAR(lost(1e-3) / lost(1e-4), 10.0, 1.5);
   EXPECT_LT(lost(1e-4), 0.02);  // J, of some 2 that move
+}
+
+TEST(ArmPlant, HealthyArmGivesNone) {
+  for (const ArmSensors& sensors : {kSeen, kPose})
+    EXPECT_THAT(DiagnosisOf({}, sensors).answer.verdict, ElementsAre("none"));
+}
+
+TEST(ArmPlant, EncoderOffsetIsFound) {
+  const ArmResult result = DiagnosisOf({.encoder_offset = V(0.0, 0.02, 0.0)}, kSeen);
+  EXPECT_THAT(result.answer.verdict, ElementsAre("joint_offset"));
+  EXPECT_NEAR(Value(result, "joint_offset", "offset", 1), 0.02, 0.001);
+}
+
+TEST(ArmPlant, EncoderScaleIsFound) {
+  const ArmResult result = DiagnosisOf({.encoder_scale = V(0.02, 0.0, 0.0)}, kSeen);
+  EXPECT_THAT(result.answer.verdict, ElementsAre("joint_scale"));
+  EXPECT_NEAR(Value(result, "joint_scale", "scale", 0), 1.02, 0.002);
+}
+
+TEST(ArmPlant, CablesThatPullAnotherJointAreFound) {
+  Eigen::MatrixXd routing = Eigen::Matrix3d::Identity();
+  routing(1, 0) = 0.05;
+  const ArmResult result = DiagnosisOf({.routing = routing}, kSeen);
+  EXPECT_THAT(result.answer.verdict, ElementsAre("joint_coupling"));
+  EXPECT_NEAR(Value(result, "joint_coupling", "matrix", 2), 0.05, 0.003);
+}
+
+TEST(ArmPlant, PlayIsFound) {
+  const ArmResult result = DiagnosisOf({.play = V(0.0, 0.03, 0.0)}, kSeen);
+  EXPECT_THAT(result.answer.verdict, ElementsAre("joint_backlash"));
+  EXPECT_NEAR(Value(result, "joint_backlash", "width", 1), 0.03, 0.004);
+}
+
+TEST(ArmPlant, YieldingCablesAreFound) {
+  ArmSensors sensors = kSeen;
+  sensors.command = sensors.torque = true;
+  const ArmResult result = DiagnosisOf({.cable_stiffness = V(4e4, 300.0, 4e6)}, sensors);
+  EXPECT_THAT(result.answer.verdict, Contains("joint_compliance"));
+  EXPECT_NEAR(Value(result, "joint_compliance", "compliance", 1), 1.0 / 300.0, 4e-4);
+}
+
+TEST(ArmPlant, FrictionOfAMotorIsFound) {
+  const ArmResult result =
+      DiagnosisOf({.motor_coulomb = V(0.3, 0.2, 0.0), .motor_viscous = V(0.0, 0.4, 0.0)}, kTorque);
+  EXPECT_THAT(result.answer.verdict, ElementsAre("joint_friction"));
+  EXPECT_NEAR(Value(result, "joint_friction", "coulomb", 0), 0.3, 0.03);
+  EXPECT_NEAR(Value(result, "joint_friction", "viscous", 1), 0.4, 0.04);
+}
+
+TEST(ArmPlant, SoftServoLagsAndDroops) {
+  const ArmResult result = DiagnosisOf({.servo_stiffness = V(200.0, 150.0, 1e6),
+                                        .servo_damping = V(8.0, 6.0, 1e3),
+                                        .servo_holds_gravity = false},
+                                       kServo);
+  EXPECT_THAT(result.answer.verdict, Contains("servo_droop"));
+  EXPECT_THAT(result.answer.verdict, Contains("servo_lag"));
+  EXPECT_NEAR(Value(result, "servo_droop", "compliance", 1), 1.0 / 150.0, 3e-4);
+  EXPECT_NEAR(Value(result, "servo_lag", "time_s", 1), 0.04, 0.004);
+  EXPECT_LT(result.answer.gain.heldout_error_ratio, 0.05);
+}
+
+TEST(ArmPlant, LinkLengthIsFoundByATracker) {
+  const ArmResult result = DiagnosisOf({.a_change_m = V(0.0, 0.004, 0.0)}, kPose);
+  EXPECT_THAT(result.answer.verdict, ElementsAre("link_geometry"));
+  EXPECT_NEAR(Value(result, "link_geometry", "a_m", 1), 0.004, 0.0005);
+}
+
+TEST(ArmPlant, MarkerAndTrackerAreFound) {
+  const ArmResult marker = DiagnosisOf({.marker_m = {0.0, 0.004, 0.0}}, kPose);
+  EXPECT_THAT(marker.answer.verdict, ElementsAre("tool_offset"));
+  const ArmResult tracker = DiagnosisOf({.tracker_m = {0.006, 0.0, -0.004}}, kPose);
+  EXPECT_THAT(tracker.answer.verdict, ElementsAre("tracker_registration"));
+}
+
+TEST(ArmPlant, TwoAtOnceAreBothFound) {
+  Eigen::MatrixXd routing = Eigen::Matrix3d::Identity();
+  routing(1, 0) = 0.06;
+  const ArmResult result =
+      DiagnosisOf({.encoder_offset = V(0.015, 0.0, 0.0), .routing = routing}, kSeen);
+  EXPECT_THAT(result.answer.verdict,
+              testing::UnorderedElementsAre("joint_coupling", "joint_offset"));
 }
 
 }  // namespace
