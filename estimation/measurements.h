@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <optional>
 
 #include "core/pose.h"
@@ -47,5 +48,21 @@ struct Measurements {
 /// kFarthestPlace_m, directions and rotations of unit length, covariances symmetric without
 /// negative values, noises not negative. A tip that is lost is not looked at.
 bool IsPlausible(const Measurements& measurements);
+
+/// What is held against the rest: the wrist's reading, its direction, and the sensors.
+inline constexpr int kComparedSensors = 7;
+
+/// By how much chi-squared of a fit falls where one sensor is left out, by the fit's linear model;
+/// distributed as chi-squared with `degrees` degrees of freedom where nothing is wrong.
+struct SensorMisfit {
+  double chi2 = 0.0;
+  int degrees = 0;  ///< 0: there is no such sensor
+};
+using SensorMisfits = std::array<SensorMisfit, kComparedSensors>;
+
+/// Rows of a fit that belong to one sensor.
+struct SensorRows {
+  int from = 0, count = 0;
+};
 
 }  // namespace flextip

@@ -137,30 +137,42 @@ void RodFit::AddStrain(const ShaftRodState& rod) const {
 
 void RodFit::AddSensors(const ShaftRodState& rod, const RodParameters& x) const {
   const Measurements& z = measurements_;
+  sensor_rows_[0] = {0, 3};  // the prior of the wrist
+  std::size_t sensor = 1;
+  auto end_sensor = [&, from = rows_]() mutable {
+    sensor_rows_[sensor++] = {from, rows_ - from};
+    from = rows_;
+  };
   if (z.R_RW) {
     AddDirection(z.R_RW->col(0), z.wrist_orientation_noise_rad, rod.wrist.t, rod.wrist.dt);
   }
+  end_sensor();
   if (z.tip && z.tip->status != TipStatus::kLost) {
     if (use_positions_)
       AddPosition(z.tip->p_RE, Whitening(z.tip->covariance_m2), rod.p_RE, rod.dp_RE);
     if (z.tip->d_RE) AddDirection(*z.tip->d_RE, z.tip_direction_noise_rad, rod.end.t, rod.end.dt);
   }
+  end_sensor();
   if (z.em) {
     const ShaftSection& section = rod.stations[em_station_];
     if (use_positions_)
       AddPosition(z.em->T_RS.p, Whitening(z.em->position_noise_m), section.p, section.dp);
     AddDirection(z.em->T_RS.R.col(0), z.em->orientation_noise_rad, section.t, section.dt);
   }
+  end_sensor();
   if (z.port_direction) {
     AddDirection(*z.port_direction, z.port_direction_noise_rad, rod.t_port, rod.dt_port);
   }
+  end_sensor();
   if (z.strain && z.R_RW) AddStrain(rod);
+  end_sensor();
   if (z.load) {
     const double noise = std::max(z.load->force_noise_N, kLeastForce_N);
     residuals_.segment<3>(rows_) = (x.tail<3>() * force_unit_ - z.load->f_tip_N) / noise;
     jacobian_.block<3, 3>(rows_, 6) = Eigen::Matrix3d::Identity() / noise;
     rows_ += 3;
   }
+  end_sensor();
 }
 
 void RodFit::AddPrior(const RodParameters& parameters) const {

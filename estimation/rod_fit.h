@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <optional>
 
 #include "estimation/measurements.h"
@@ -52,6 +53,9 @@ class RodFit {
   /// Returns the number of scalar measurements (without the priors) that the last call used.
   int MeasurementCount() const { return rows_ - NUM_PARAMETERS; }
 
+  /// Returns the rows of the last call that are the wrist's reading and each sensor's.
+  const std::array<SensorRows, kComparedSensors>& RowsOfSensors() const { return sensor_rows_; }
+
   ShaftProblem ProblemAt(const RodParameters& parameters) const;
   const RodParameters& PriorMean() const { return prior_.mean; }
   double ForceUnit() const { return force_unit_; }
@@ -75,6 +79,7 @@ class RodFit {
   std::size_t station_count_ = 0;
   int em_station_ = -1;
   mutable int rows_ = 0;
+  mutable std::array<SensorRows, kComparedSensors> sensor_rows_;
   mutable bool known_ = false, filled_ = false;  // the rod at x_, and the residuals there
   mutable RodParameters x_;
   mutable ShaftRodState rod_;

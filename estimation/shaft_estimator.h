@@ -26,7 +26,8 @@ struct EstimatorOptions {
   /// False: only the measurements of a system without tip tracking (orientations, strain, load, no
   /// tip or EM position), for the controllers that calculate the tip.
   bool use_positions = true;
-  bool estimate_tissue = true;  ///< df_tip/dp_tip from how the load changed with the tip
+  bool estimate_tissue = true;   ///< df_tip/dp_tip from how the load changed with the tip
+  bool compare_sensors = false;  ///< hold each sensor against all others
 };
 
 /// Returns the options of an instrument whose port was registered at `p_RP`; all in R. Everything
@@ -56,6 +57,7 @@ struct ShaftEstimate {
   double s_port_m = 0.0;                            ///< inserted from the wrist
   double chi2 = 0.0;                                ///< of the measurements and priors
   int measurements = 0;                             ///< scalar measurements used
+  SensorMisfits misfits;                            ///< where EstimatorOptions asks for them
 };
 
 class RodFit;
@@ -92,6 +94,7 @@ class ShaftEstimator {
  private:
   bool FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   bool Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
+  static void CompareSensors(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
   void Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
   /// Returns whether the load bends the shaft by more than the doubt in the tip, so that the load
   /// improves the tip.

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kMostFalseAlarms = 0.01;
+constexpr double kMostDoubts = 0.1;
 constexpr double kMostFalseAlarmsPerHour = 100.0;
 constexpr double kAnyRate_hz = 1e3;  // of updates: two of them are all that it changes
 
@@ -148,6 +149,10 @@ void TaskReader::ReadSupervisor(const YamlMap& map) {
   options.false_alarm = section.PositiveOr("false_alarm", options.false_alarm);
   if (options.false_alarm > kMostFalseAlarms)
     throw section.Error("false_alarm", "expected a probability of a cycle, at most 0.01");
+  options.doubt = section.PositiveOr("doubt", options.doubt);
+  if (options.doubt > kMostDoubts)
+    throw section.Error("doubt", "expected a probability of a cycle, at most 0.1");
+  options.doubt_s = section.PositiveOr("doubt_s", options.doubt_s);
   options.max_tip_force_N = section.PositiveOr("max_tip_force_N", options.max_tip_force_N);
   if (section.Has("max_late_cycles")) {
     const std::int64_t cycles = section.Integer("max_late_cycles");

@@ -91,6 +91,7 @@ void PathWatch::Follow(TimeNs t_ns, const PlaceKnown& seen, const Eigen::Vector3
 
 bool PathWatch::IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector3d& dp_RE,
                          const Eigen::Vector3d& p_wish) {
+  may_be_astray_ = false;
   if (max_deviation_m_ <= 0.0 || !tip.p.allFinite() || !tip.covariance_m2.allFinite() ||
       !p_wish.allFinite())
     return false;
@@ -106,16 +107,17 @@ bool PathWatch::IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector
     span_ns_ = t_ns;
   }
   nearest_m_[0] = std::min(nearest_m_[0], deviation_m_);
+  const bool comes_back = from_ns_ != 0 && t_ns - from_ns_ < kComesBack_ns;
+  const bool no_nearer =
+      deviation_m_ > (comes_back ? from_m_ + kCertain * sd_m : nearest_m_[2] - kCertain * sd_m);
+  may_be_astray_ = no_nearer && deviation_m_ > max_deviation_m_;
   if (deviation_m_ - kCertain * std::hypot(sd_m, tolerance_m_) <= max_deviation_m_) {
     astray_ns_ = 0;
     tried_ = false;
     return false;
   }
-  const bool comes_back = from_ns_ != 0 && t_ns - from_ns_ < kComesBack_ns;
-  const bool astray = comes_back ? deviation_m_ > from_m_ + kCertain * sd_m
-                                 : deviation_m_ > nearest_m_[2] - kCertain * sd_m;
-  if (astray && astray_ns_ == 0) astray_ns_ = t_ns;
-  return astray;
+  if (no_nearer && astray_ns_ == 0) astray_ns_ = t_ns;
+  return no_nearer;
 }
 
 bool PathWatch::MovesOtherwise(TimeNs t_ns) const {
@@ -150,6 +152,7 @@ void PathWatch::VisitState(StateText& state) {
   state(tip_);
   for (TimeNs* time : {&tip_ns_, &from_ns_, &astray_ns_, &span_ns_}) state(*time);
   state(tried_);
+  state(may_be_astray_);
   state(deviation_m_);
   state(from_m_);
   state(nearest_m_);

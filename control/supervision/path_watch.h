@@ -38,6 +38,10 @@ class PathWatch {
   bool IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector3d& dp_RE,
                 const Eigen::Vector3d& p_wish);
 
+  /// Returns whether the tip that IsAstray was given last is more likely than not farther than it
+  /// may be, and gets no nearer.
+  bool MayBeAstray() const { return may_be_astray_; }
+
   /// Returns whether the tip that IsAstray was given last moved otherwise than the wrist moved it,
   /// in the last 0.4 s: by more than noise, seven tenths of the way, and twice what it may be
   /// astray. A caught tip does, and one that is thrown.
@@ -95,7 +99,7 @@ class PathWatch {
   double deviation_m_ = 0.0;
   TimeNs from_ns_ = 0;    // of ComeBack
   TimeNs astray_ns_ = 0;  // since when; 0: it is not
-  bool tried_ = false;
+  bool tried_ = false, may_be_astray_ = false;
   double from_m_ = 0.0;
   // The nearest in this span of time, in the one before, and in the one before that.
   TimeNs span_ns_ = 0;

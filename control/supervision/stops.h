@@ -62,6 +62,9 @@ struct Supervision {
   double worst_angle_rad = 0.0;  ///< of this step under the model's doubt; 0: not judged
   /// The wrist stays, in a hold or for this cycle alone: the goal should wait for it.
   bool waits = false;
+  /// What looks wrong and may be chance: the wrist waits for a moment, for the next samples to
+  /// tell.
+  Stop doubt = Stop::kNone;
 
   void VisitState(StateText& state) {
     state(stop);
@@ -69,6 +72,7 @@ struct Supervision {
     state(voted_out);
     for (double* value : {&chi2, &chi2_limit, &worst_angle_rad}) state(*value);
     state(waits);
+    state(doubt);
   }
 };
 

@@ -51,6 +51,7 @@ void Supervisor::VisitState(StateText& state) {
   state(v_last_m_s_);
   state(t_last_ns_);
   state(wrong_since_ns_);
+  state(doubt_since_ns_);
   state(held_since_ns_);
   state(clear_since_ns_);
   state(held_by_);
@@ -123,6 +124,17 @@ Eigen::Vector3d Supervisor::Limit(const SupervisedCycle& cycle, Supervision& sup
   const Eigen::Vector3d smooth = jerk_.Next(p);
   took({smooth, (smooth - p).norm() > kSmoothed_m}, Stop::kJerk);
   return smooth;
+}
+
+/// Whether the wrist waits for the next samples to tell. A doubt that neither goes nor becomes a
+/// finding was none.
+bool Supervisor::Doubts(const SupervisedCycle& cycle) {
+  if (cycle.found.doubt == Stop::kNone) {
+    doubt_since_ns_ = 0;
+    return false;
+  }
+  if (doubt_since_ns_ == 0) doubt_since_ns_ = cycle.t_ns;
+  return Seconds(cycle.t_ns - doubt_since_ns_) < options_.doubt_s;
 }
 
 /// Hold and fault: entered at once, left when the cause has been gone for long enough, or by a
@@ -214,10 +226,15 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
     Judge(cycle, decision);
   }
   // For a moment the robot only waits: the next estimate may know better.
-  const bool waits =
-      options_.kind == SupervisionKind::kFull && (cycle.may_point_wrong || cycle.tip_is_hidden);
+  Stop waits_for = Stop::kNone;
+  if (options_.kind == SupervisionKind::kFull) {
+    if (cycle.tip_is_hidden) waits_for = Stop::kStaleTip;
+    if (Doubts(cycle)) waits_for = cycle.found.doubt;
+    if (cycle.may_point_wrong) waits_for = Stop::kMotionAngle;
+  }
+  const bool waits = waits_for != Stop::kNone;
   if (waits && decision.supervision.reaction == Reaction::kNone) {
-    decision.supervision.stop = cycle.may_point_wrong ? Stop::kMotionAngle : Stop::kStaleTip;
+    decision.supervision.stop = waits_for;
     decision.supervision.reaction = Reaction::kLimit;
   }
   decision.supervision.waits =

@@ -72,6 +72,7 @@ class Supervisor {
   std::optional<Eigen::Vector3d> StopAt(const SupervisedCycle& cycle) const;
   void Keep(const SupervisedCycle& cycle, const Eigen::Vector3d& p_RW);
   Eigen::Vector3d Limit(const SupervisedCycle& cycle, Supervision& supervision);
+  bool Doubts(const SupervisedCycle& cycle);
   void Judge(const SupervisedCycle& cycle, Decision& decision);
 
   SupervisorOptions options_;
@@ -83,6 +84,7 @@ class Supervisor {
   Eigen::Vector3d v_last_m_s_ = Eigen::Vector3d::Zero();
   TimeNs t_last_ns_ = 0;
   TimeNs wrong_since_ns_ = 0;                      // since when it may point wrong; 0: it does not
+  TimeNs doubt_since_ns_ = 0;                      // since when there is doubt; 0: there is none
   TimeNs held_since_ns_ = 0, clear_since_ns_ = 0;  // 0: not held, not clear
   Stop held_by_ = Stop::kNone;
   int late_cycles_ = 0;  // in a row

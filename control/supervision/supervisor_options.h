@@ -45,6 +45,9 @@ struct SupervisorOptions {
   double rate_hz = 30.0;  ///< of the cycles
   /// Of one test in one cycle: one in ten hours of 30 Hz over the ten tests of a cycle.
   double false_alarm = 1e-7;
+  /// Of one sensor against the others: as likely as this by chance, and the wrist waits.
+  double doubt = 1e-3;
+  double doubt_s = 0.6;  ///< so long at most: by then a fault that grows is found
   SensorTolerances tolerances;
   double resume_after_s = 0.2;  ///< a hold ends when its cause has been gone for so long
   double fault_after_s = 2.0;   ///< a hold that lasts so long becomes a fault

@@ -86,12 +86,13 @@ Stop SampleScreen::Look(Past& past, TimeNs now_ns, TimeNs t_ns, const Figures& f
   const double moved_m = p_RW ? (*p_RW - past.p_RW).norm() : 0.0;
   const bool should_differ = moved_m > std::max(kMoved_m, kDeviations * p_RW_sd_m);
   if (past.repeats >= kRepeats && should_differ) return Stop::kStaleTip;
+  repeats_ = repeats_ || (past.repeats > 0 && should_differ);
   return Stop::kNone;
 }
 
 void SampleScreen::Screen(TimeNs t_ns, const std::optional<Eigen::Vector3d>& p_RW_sent,
                           SensorReadings& readings, Supervision& found) {
-  has_news_ = false;
+  has_news_ = repeats_ = false;
   std::optional<Eigen::Vector3d> p_RW;
   double p_RW_sd_m = 0.0;
   if (readings.wrist) {
@@ -137,6 +138,7 @@ void SampleScreen::Screen(TimeNs t_ns, const std::optional<Eigen::Vector3d>& p_R
     figures.head<3>() = readings.load->value.f_tip_N;
     screen(readings.load, load_past_, VotedSensor::kLoad, figures, figures.allFinite());
   }
+  if (repeats_) found.doubt = Stop::kSourceLost;
 }
 
 void SampleScreen::ScreenTip(TimeNs t_ns, std::optional<Sample<TipMeasurement>>& tip,
@@ -148,6 +150,7 @@ void SampleScreen::ScreenTip(TimeNs t_ns, std::optional<Sample<TipMeasurement>>&
   if (seen.d_RE) figures.tail<3>() = *seen.d_RE;
   const bool finite = figures.allFinite() && seen.covariance_m2.allFinite();
   const Stop stop = Look(tip_past_, t_ns, tip->t_ns, figures, finite, p_RW, 0.0);
+  if (repeats_) found.doubt = Stop::kStaleTip;
   if (stop == Stop::kNone) return;
   tip.reset();
   Out(VotedSensor::kTip, found);

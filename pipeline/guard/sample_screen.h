@@ -25,7 +25,8 @@ class SampleScreen {
 
   /// Takes out of `readings`, all but the tip, samples that are no numbers, older than one before,
   /// from the future, not renewed for too long, or that repeat the same figures while the wrist
-  /// moves. `p_RW_sent`: the last command. Call it once a cycle, first.
+  /// moves; a first repetition is a doubt. `p_RW_sent`: the last command. Call it once a cycle,
+  /// first.
   void Screen(TimeNs t_ns, const std::optional<Eigen::Vector3d>& p_RW_sent,
               SensorReadings& readings, Supervision& found);
 
@@ -62,6 +63,7 @@ class SampleScreen {
     state(tip_);
     state(em_);
     state(has_news_);
+    state(repeats_);
   }
 
  private:
@@ -112,7 +114,7 @@ class SampleScreen {
   SupervisorOptions options_;
   Past wrist_, tip_past_, em0_past_, em1_past_, strain_past_, load_past_;
   Place tip_, em_;
-  bool has_news_ = false;
+  bool has_news_ = false, repeats_ = false;  // in this cycle
 };
 
 }  // namespace flextip

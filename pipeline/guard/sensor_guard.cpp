@@ -80,6 +80,7 @@ std::optional<VotedShaft> SensorGuard::Vote(TimeNs t_ns, const ShaftChange& chan
   found.voted_out |= voted_.voted_out;
   found.chi2 = voted_.chi2;
   found.chi2_limit = voted_.chi2_limit;
+  if (voted_.doubt != Stop::kNone) found.doubt = voted_.doubt;
   if (voted_.reaction >= Reaction::kHold) Hold(voted_.stop, found);
   return shaft_;
 }

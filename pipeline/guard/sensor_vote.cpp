@@ -18,6 +18,7 @@ double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 EstimatorOptions OptionsOf(EstimatorOptions options, double port_prior_m) {
   options.use_positions = true;
   options.estimate_tissue = false;
+  options.compare_sensors = true;
   options.port_prior_m = port_prior_m;
   return options;
 }
@@ -66,6 +67,7 @@ void Drop(VotedSensor sensor, Measurements& z) {
 SensorVote::SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options)
     : options_(options),
       limits_(options.false_alarm),
+      doubts_(options.doubt),
       tolerated_(options.tolerances),
       all_(OptionsOf(estimator, estimator.port_prior_m)),
       without_one_(OptionsOf(estimator, estimator.port_prior_m)),
@@ -79,6 +81,9 @@ SensorVote::Ballot SensorVote::Ask(ShaftEstimator& estimator, const Measurements
   Ballot ballot;
   ballot.limit = limits_.Of(estimate.measurements);
   ballot.chi2 = estimate.chi2;
+  ballot.doubtful = std::any_of(
+      estimate.misfits.begin(), estimate.misfits.end(),
+      [this](const SensorMisfit& misfit) { return misfit.chi2 > doubts_.Of(misfit.degrees); });
   ballot.agrees = fitted && estimate.chi2 <= ballot.limit;
   if (ballot.agrees && estimate.status == EstimateStatus::kOk)
     ballot.shaft = VotedShaft{{estimate.p_RE, estimate.p_RE_covariance_m2},
@@ -149,6 +154,7 @@ std::optional<VotedShaft> SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped,
   }
   found.chi2 = all.chi2;
   found.chi2_limit = all.limit;
+  if (all.doubtful && found.doubt == Stop::kNone) found.doubt = Stop::kTipDisagrees;
   if (all.agrees) {
     if (all.shaft) tolerated_.Learn(t_ns, z, all.shaft->tip.p);
     for (int i = 0; i < kVotedSensors; ++i) {

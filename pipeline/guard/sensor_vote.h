@@ -40,6 +40,7 @@ class SensorVote {
   /// before is taken, then the one that jumped (`jumped`: bits as Supervision::voted_out), then the
   /// one that explains it far better. `found` gets the bits, chi-squared and, where no sensor can
   /// be named, a stop with a hold: where a wrist or a port elsewhere would explain all, that one's.
+  /// A doubt where one sensor leaves the others by more than `SupervisorOptions::doubt`.
   /// Returns tip and load; empty where the sensors do not tell them.
   std::optional<VotedShaft> Vote(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& change,
                                  Measurements& z, Supervision& found);
@@ -55,7 +56,7 @@ class SensorVote {
  private:
   /// The agreement of all sensors but one.
   struct Ballot {
-    bool agrees = false;
+    bool agrees = false, doubtful = false;
     double chi2 = 0.0, limit = 0.0;
     std::optional<VotedShaft> shaft;
   };
@@ -65,7 +66,7 @@ class SensorVote {
              std::uint8_t candidates) const;
 
   SupervisorOptions options_;
-  ChiSquaredLimits limits_;
+  ChiSquaredLimits limits_, doubts_;
   ToleratedSensors tolerated_;
   ShaftEstimator all_, without_one_, loose_;
   std::array<TimeNs, kVotedSensors> out_ns_{};  // when it was voted out last; 0: never

@@ -17,8 +17,10 @@ constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is take
 // Two samples that are wrong in a row may lead the tip by 1.2 of what it may be astray: the first
 // by this part, the second by twice that. By then the vote has them.
 constexpr double kCorrection = 0.4;
-// About the last command, it may take the last correction back and make its own.
-constexpr double kCorrections = 2.0;
+// About the last command, it may take half of the last correction back and make its own.
+constexpr double kCorrections = 1.5;
+// Along the goal's way a tip that lags may catch up by half of a correction.
+constexpr double kCatchUp = 0.5;
 constexpr double kVideo_hz = 30.0;  // of tips that are seen
 
 constexpr double kForceDeviations = 3.0;
@@ -115,11 +117,12 @@ Limited InstrumentController::Corrected(const ControllerCommand& command) {
   const double samples = std::min(1.0, kVideo_hz / options.rate_hz);  // a cycle
   const double once_m = kCorrection * options.max_tip_deviation_m * samples;
   const double most_m = once_m * (1.0 + samples * corrections_);
-  Limited limited =
-      LimitCorrection(command.measurements.p_RW, command.p_RW_command, *J, way, most_m);
+  Limited limited = LimitCorrection(command.measurements.p_RW, command.p_RW_command, *J, way,
+                                    {most_m, kCatchUp * most_m});
   if (const auto& p_last = supervisor_.LastCommand()) {
     const bool before = limited.limited;
-    limited = LimitCorrection(*p_last, limited.p, *J, way, kCorrections * once_m);
+    limited = LimitCorrection(*p_last, limited.p, *J, way,
+                              {kCorrections * once_m, kCatchUp * kCorrections * once_m});
     limited.limited = limited.limited || before;
   }
   const Eigen::Vector3d excess_m = command.p_RW_command - limited.p;
@@ -166,6 +169,7 @@ void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerC
       hold(path_watch_.IsAstray(inputs.t_ns, by_all_->tip, WayOfTip(command.measurements.p_RW),
                                 command.goal.p_RE_desired),
            Stop::kTipAstray);
+      if (path_watch_.MayBeAstray()) found.doubt = Stop::kTipAstray;
       hold(path_watch_.MovesOtherwise(inputs.t_ns), Stop::kModelDisagrees);
     }
     if (acts && !command.J_tip_wrist.isZero(0.0)) {

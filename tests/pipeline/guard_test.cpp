@@ -281,6 +281,25 @@ TEST_F(SampleScreening, FiguresThatRepeatWhileTheWristMovesAreTakenOut) {
   EXPECT_EQ(taken_out_at, 5);
 }
 
+TEST_F(SampleScreening, OneRepetitionOfATipWhileTheWristMovesIsADoubt) {
+  for (int i = 0; i < 3; ++i) {
+    const double t_s = i / 30.0;
+    const Eigen::Vector3d p_RW(0.001 * i, 0, 0.3);
+    SensorReadings readings = At(t_s, p_RW);
+    readings.tip.emplace();
+    readings.tip->t_ns = TimeOf(t_s);
+    TipObservation& tip = readings.tip->value.tip;
+    tip.status = TipStatus::kOk;
+    tip.p_RE = {i == 0 ? 0.001 : 0.002, 0.0, 0.1};
+    tip.covariance_m2 = 1e-8 * Eigen::Matrix3d::Identity();
+    Supervision found;
+    screen.Screen(TimeOf(t_s), {}, readings, found);
+    screen.ScreenTip(TimeOf(t_s), readings.tip, p_RW, found);
+    EXPECT_TRUE(readings.tip);
+    EXPECT_EQ(found.doubt, i == 2 ? Stop::kStaleTip : Stop::kNone) << i;
+  }
+}
+
 TEST_F(SampleScreening, AWristThatStandsMayRepeatItself) {
   for (int i = 0; i < 100; ++i) {
     SensorReadings readings = At(i / 30.0, {0, 0, 0.3});

@@ -95,6 +95,12 @@ TEST(Scenario, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(Complaint("controllers: all", "controllers: [rod-track, flex-track]"), "");
 }
 
+TEST(Scenario, ADoubtIsAProbability) {
+  const std::string control = "control: {";
+  EXPECT_EQ(Complaint(control, "supervisor: {doubt: 0.01, doubt_s: 0.3}\n" + control), "");
+  EXPECT_THAT(Complaint(control, "supervisor: {doubt: 0.5}\n" + control), HasSubstr("at most 0.1"));
+}
+
 TEST(Scenario, TheRunningDiagnosisReads) {
   EXPECT_FALSE(ReadScenario(kPress).loop.watch);
   std::string text = PressText();

@@ -36,6 +36,19 @@ TEST(PathWatch, ATipThatLeavesItsWayIsFoundAtTheLimit) {
   }
 }
 
+TEST(PathWatch, ATipThatMayBeBeyondTheLimitIsInDoubt) {
+  PathWatch watch(0.0018, 0.0003);  // certain from 2.4 mm on
+  for (int i = 0; i < 40; ++i) {
+    const TimeNs t_ns = 1'000'000'000 + i * kCycle_ns;
+    const double beside_m = 0.0001 * i;
+    const Eigen::Vector3d p(0.0, beside_m, 0.0), way(0.0, 0.0001, 0.0);
+    const bool astray = watch.IsAstray(t_ns, {p, kCovariance_m2}, way, {0.0, 0.0, 0.0});
+    if (std::abs(beside_m - 0.0018) < 0.00005 || std::abs(beside_m - 0.0024) < 0.0001) continue;
+    EXPECT_EQ(watch.MayBeAstray(), beside_m > 0.0018) << i;
+    EXPECT_EQ(astray, beside_m > 0.0024) << i;
+  }
+}
+
 TEST(PathWatch, LaggingBehindIsNotLeaving) {
   Walk walk;
   for (int i = 0; i < 60; ++i) EXPECT_FALSE(walk.Next(0.0, std::min(walk.x_m, 0.006)));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "control/supervision/chi_squared.h"
 #include "core/draw_vector.h"
@@ -106,6 +107,27 @@ TEST(Supervisor, AGoalWaitsForAWristThatStands) {
     }
     EXPECT_EQ(waits, stands);
   }
+}
+
+TEST(Supervisor, AWristWaitsForADoubtToGoButNotForever) {
+  Supervisor supervisor(Full());
+  const double dt_s = 1.0 / 30.0;
+  std::vector<int> waited;
+  for (int i = 0; i < 60; ++i) {
+    SupervisedCycle cycle = Cycle(i * dt_s, kWrist, kWrist + Eigen::Vector3d(1e-4, 0, 0));
+    const bool in_doubt = i == 5 || i >= 20;
+    if (in_doubt) cycle.found.doubt = Stop::kTipDisagrees;
+    const auto decision = supervisor.Decide(cycle);
+    EXPECT_LT(decision.supervision.reaction, Reaction::kHold);
+    if (!decision.supervision.waits) continue;
+    waited.push_back(i);
+    EXPECT_EQ(decision.supervision.stop, Stop::kTipDisagrees);
+    EXPECT_EQ(decision.supervision.reaction, Reaction::kLimit);
+  }
+  // One cycle, and 0.6 s of a doubt that stays: 18 cycles.
+  ASSERT_EQ(waited.size(), 19u);
+  EXPECT_EQ(waited.front(), 5);
+  EXPECT_EQ(waited.back(), 37);
 }
 
 TEST(Supervisor, AWristWaitsForATipThatIsHidden) {
