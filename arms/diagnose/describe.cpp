@@ -1,108 +1,19 @@
 #include "arms/diagnose/describe.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "arms/diagnose/curves.h"
+#include "arms/diagnose/findings.h"
+
 namespace flextip::arms {
 namespace {
 
 using diagnosis::EffectFit;
-using diagnosis::ReportedParameter;
 using diagnosis::Verdict;
-
-constexpr double kCannotTell = 0.5;        // posterior over prior deviation
-constexpr double kAsGood = 3.0;            // log odds
-constexpr Eigen::Index kMostPoints = 600;  // of a curve
-constexpr Eigen::Index kMostRows = 3000;   // of the table of residuals
-constexpr double kTakenUp = 0.7;           // correlation with what takes a number up
-
-std::vector<ReportedParameter> Reported(const Layout& layout, const Layout::Block& block,
-                                        const Eigen::VectorXd& theta,
-                                        const Eigen::MatrixXd& covariance) {
-  std::vector<ReportedParameter> reported;
-  const auto own =
-      block.effect->Report(layout.DataOf(block), theta.segment(block.first, block.size),
-                           covariance.block(block.first, block.first, block.size, block.size));
-  for (const ArmParameter& p : own) reported.push_back({p.name, p.value, p.sd});
-  return reported;
-}
-
-bool Holds(const diagnosis::Hypothesis& h, int block) {
-  return std::find(h.effects.begin(), h.effects.end(), block) != h.effects.end();
-}
-
-/// "joint_offset.offset[5]": the j-th number of a block as reported in order.
-std::string NumberName(const Layout& layout, const Layout::Block& block, int j) {
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(block.size);
-  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(block.size, block.size);
-  int at = 0;
-  for (const ArmParameter& p : block.effect->Report(layout.DataOf(block), zero, none)) {
-    const int size = int(p.value.size());
-    if (j < at + size) {
-      return size == 1 ? fmt::format("{}.{}", block.effect->Name(), p.name)
-                       : fmt::format("{}.{}[{}]", block.effect->Name(), p.name, j - at);
-    }
-    at += size;
-  }
-  return block.effect->Name();
-}
-
-/// Where a number of present effects stands: its list, and what takes it up.
-struct LooseNumber {
-  std::string list, taken_by;
-  int index = 0;
-};
-
-LooseNumber MakeLoose(const Layout& layout, const Layout::Block& block, int j, int partner) {
-  LooseNumber loose;
-  const std::string name = NumberName(layout, block, j - block.first);
-  const auto bracket = name.find('[');
-  loose.list = name.substr(0, bracket);
-  if (bracket != std::string::npos) loose.index = std::stoi(name.substr(bracket + 1)) + 1;
-  for (const Layout::Block& rival : layout.Blocks())
-    if (partner >= rival.first && partner < rival.first + rival.size)
-      loose.taken_by = rival.effect->Name();
-  return loose;
-}
-
-/// Numbers of present effects that the data leave as wide as they were thought to be, with the
-/// effect that takes them up: a sentence for each list.
-std::vector<std::string> NotTold(const Layout& layout, const diagnosis::WeighedHypothesis& weighed,
-                                 const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd wide = layout.Prior().Widened(weighed.hypothesis.effects, weighed.scales);
-  std::map<std::pair<std::string, std::string>, std::vector<int>> lists;
-  for (const int b : weighed.hypothesis.effects) {
-    const Layout::Block& block = layout.Blocks()[b];
-    for (int j = block.first; j < block.first + block.size; ++j) {
-      if (std::sqrt(std::max(0.0, covariance(j, j))) < kCannotTell * wide[j]) continue;
-      int partner = -1;
-      double most = kTakenUp;
-      for (int other = 0; other < layout.Size(); ++other) {
-        if (other == j) continue;
-        const double scale = std::sqrt(covariance(j, j) * covariance(other, other));
-        const double c = scale > 0.0 ? std::abs(covariance(j, other)) / scale : 0.0;
-        if (c <= most) continue;
-        most = c;
-        partner = other;
-      }
-      const LooseNumber loose = MakeLoose(layout, block, j, partner);
-      lists[{loose.list, loose.taken_by}].push_back(loose.index);
-    }
-  }
-  std::vector<std::string> not_told;
-  for (const auto& [names, indices] : lists) {
-    std::string text = names.first;
-    if (indices.front() > 0) text += fmt::format(" {}", fmt::join(indices, ", "));
-    text += names.second.empty() ? ": nothing in the recording shows it"
-                                 : " cannot be told from " + names.second;
-    not_told.push_back(std::move(text));
-  }
-  return not_told;
-}
 
 /// Puts first what explains most.
 void OrderByImportance(const Found& found, const Layout& layout, Verdict& verdict) {
@@ -114,31 +25,6 @@ void OrderByImportance(const Found& found, const Layout& layout, Verdict& verdic
   };
   std::stable_sort(verdict.begin(), verdict.end(),
                    [&](const std::string& a, const std::string& b) { return of(a) > of(b); });
-}
-
-/// What each joint's own numbers say.
-std::vector<std::string> JointFindings(const Layout& layout, const diagnosis::Hypothesis& best,
-                                       const Eigen::VectorXd& theta,
-                                       const Eigen::MatrixXd& covariance) {
-  const ArmData& data = layout.Recordings().front();
-  std::vector<std::string> findings(data.Size());
-  for (const int b : best.effects) {
-    const Layout::Block& block = layout.Blocks()[b];
-    for (const auto& p : Reported(layout, block, theta, covariance)) {
-      if (int(p.value.size()) != data.Size() || p.name == "window") continue;
-      for (int i = 0; i < data.Size(); ++i) {
-        const double nominal = p.name == "scale" ? 1.0 : 0.0;
-        const double tolerance =
-            layout.Prior().Tolerances()[block.first + std::min(i, block.size - 1)];
-        const double off = std::abs(p.value[i] - nominal);
-        if (off < 3.0 * p.sd[i] || off < 3.0 * tolerance) continue;
-        std::string& text = findings[i];
-        if (!text.empty()) text += "; ";
-        text += fmt::format("{} {} {:.4g}", block.effect->Name(), p.name, p.value[i]);
-      }
-    }
-  }
-  return findings;
 }
 
 diagnosis::ModelScore ScoreOf(const ErrorSums& sums, double chi2) {
@@ -157,64 +43,6 @@ diagnosis::Gain GainOf(const ErrorSums& base, const ErrorSums& extended) {
   if (base.Tip() > 0.0) gain.tip_error_ratio = extended.Tip() / base.Tip();
   gain.heldout_error_ratio_low = gain.heldout_error_ratio_high = gain.heldout_error_ratio;
   return gain;
-}
-
-/// Groups of effects that explain as well as those of the verdict.
-std::vector<std::vector<std::string>> Alternatives(const Found& found, const Layout& layout) {
-  std::vector<std::vector<std::string>> groups;
-  const Scored& best = found.BestKnown();
-  for (const int b : best.weighed.hypothesis.effects) {
-    if (layout.Blocks()[b].change) continue;
-    std::vector<std::string> group{layout.Blocks()[b].effect->Name()};
-    for (const Scored& s : found.scored) {
-      const auto& other = s.weighed.hypothesis;
-      if (other.unknown || other.effects.size() != best.weighed.hypothesis.effects.size()) continue;
-      if (s.log_posterior < best.log_posterior - kAsGood || Holds(other, b)) continue;
-      int replaced = -1, differ = 0;
-      for (const int e : other.effects)
-        if (!Holds(best.weighed.hypothesis, e)) {
-          replaced = e;
-          ++differ;
-        }
-      if (differ != 1) continue;
-      const std::string name = layout.Blocks()[replaced].effect->Name();
-      if (std::find(group.begin(), group.end(), name) == group.end()) group.push_back(name);
-    }
-    groups.push_back(std::move(group));
-  }
-  return groups;
-}
-
-void FillSignatures(const Replay& base, const Noise& noise, diagnosis::DiagnosisResult& answer) {
-  const Basis basis(base);
-  const ArmData& data = base.GetLayout().Recordings().front();
-  std::vector<std::string> names{"time"};
-  for (int i = 0; i < data.Size(); ++i) names.push_back(fmt::format("q{}", i + 1));
-  for (int i = 0; i < data.Size(); ++i) names.push_back(fmt::format("q{}_squared", i + 1));
-  for (int i = 0; i < data.Size(); ++i) names.push_back(fmt::format("q{}_direction", i + 1));
-  for (std::size_t i = 0; i < noise.size(); ++i) {
-    const Channel& channel = base.Channels()[i];
-    for (Eigen::Index c = 0; c < channel.Components(); ++c)
-      for (std::size_t f = 0; f < names.size(); ++f) {
-        double xy = 0.0, xx = 0.0, yy = 0.0, count = 0.0;
-        for (Eigen::Index k = 0; k < channel.Rows(); ++k) {
-          if (!noise[i].keep(k, c)) continue;
-          const double x = basis.Of(i)(k, Eigen::Index(f)), y = channel.residual(k, c);
-          xy += x * y;
-          xx += x * x;
-          yy += y * y;
-          count += 1.0;
-        }
-        if (xx * yy <= 0.0) continue;
-        const double score = std::abs(xy) / std::sqrt(xx * yy) * std::sqrt(count);
-        if (score > 3.0)
-          answer.signatures.push_back(
-              {std::string(Name(channel.kind)) + "_" + channel.components[c], names[f], score});
-      }
-  }
-  std::stable_sort(answer.signatures.begin(), answer.signatures.end(),
-                   [](const auto& a, const auto& b) { return a.score > b.score; });
-  if (answer.signatures.size() > 40) answer.signatures.resize(40);
 }
 
 void FillComponents(const Replay& extended, const Found& found, const ArmHeldOut& heldout,
@@ -265,12 +93,6 @@ std::vector<EffectFit> WithMeanChanges(const Layout& layout, const diagnosis::Hy
   return effects;
 }
 
-Residuals ResidualsOf(const Replay& replay) {
-  Residuals all;
-  for (const Channel& channel : replay.Channels()) all.push_back(channel.residual);
-  return all;
-}
-
 }  // namespace
 
 Verdict VerdictIn(const diagnosis::Hypothesis& hypothesis, const Layout& layout, int only) {
@@ -282,74 +104,6 @@ Verdict VerdictIn(const diagnosis::Hypothesis& hypothesis, const Layout& layout,
   }
   if (names.empty()) return {"none"};
   return {names.begin(), names.end()};
-}
-
-void FillCurves(const Replay& replay, const Residuals& base, const Residuals& extended,
-                std::vector<ComponentCurve>& curves) {
-  const auto& recordings = replay.GetLayout().Recordings();
-  for (std::size_t i = 0; i < replay.Channels().size(); ++i) {
-    const Channel& channel = replay.Channels()[i];
-    const ArmData& data = recordings[channel.recording];
-    if (channel.kind == Kind::kPose) continue;
-    const bool torque = channel.kind == Kind::kTorque;
-    const Measured& measured = torque                        ? data.torque
-                               : channel.kind == Kind::kSeen ? data.seen
-                                                             : data.followed;
-    const Eigen::MatrixXd& input =
-        channel.kind == Kind::kFollowed ? data.command.values : data.joints.values;
-    const Eigen::Index every = 1 + channel.Rows() / kMostPoints;
-    for (Eigen::Index c = 0; c < channel.Components(); ++c) {
-      ComponentCurve curve;
-      curve.channel = Name(channel.kind);
-      curve.component = channel.components[c];
-      curve.recording = channel.recording;
-      for (Eigen::Index k = 0; k < channel.Rows(); k += every) {
-        const double z = measured.track.values(k, c);
-        curve.t_s.push_back(channel.t_s[k]);
-        curve.input.push_back(At(input, channel.where[k])[c]);
-        curve.measured.push_back(z);
-        curve.base.push_back(z - base[i](k, c));
-        curve.extended.push_back(z - extended[i](k, c));
-      }
-      curves.push_back(std::move(curve));
-    }
-  }
-}
-
-diagnosis::ResidualTable ResidualTableOf(const Replay& replay, const Residuals& base,
-                                         const Residuals& extended, const Noise& noise) {
-  diagnosis::ResidualTable table;
-  table.columns = {"t_s"};
-  std::vector<std::size_t> first(replay.Channels().size(), 0);
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const Channel& channel = replay.Channels()[i];
-    if (channel.recording != 0) continue;
-    first[i] = table.columns.size();
-    for (const char* model : {"base", "extended"})
-      for (Eigen::Index c = 0; c < channel.Components(); ++c)
-        table.columns.push_back(fmt::format("{}.{}.{}", model, Name(channel.kind), c + 1));
-  }
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const Channel& channel = replay.Channels()[i];
-    if (channel.recording != 0) continue;
-    const Eigen::Index C = channel.Components(), every = 1 + channel.Rows() / kMostRows;
-    for (Eigen::Index k = 0; k < channel.Rows(); k += every) {
-      std::vector<double> row(table.columns.size(), 0.0);
-      std::vector<bool> present(table.columns.size(), false);
-      row[0] = channel.t_s[k];
-      present[0] = true;
-      for (Eigen::Index c = 0; c < C; ++c) {
-        if (!noise[i].keep(k, c)) continue;
-        const std::size_t at = first[i] + std::size_t(c);
-        row[at] = base[i](k, c) / noise[i].floor[c];
-        row[at + std::size_t(C)] = extended[i](k, c) / noise[i].floor[c];
-        present[at] = present[at + std::size_t(C)] = true;
-      }
-      table.rows.push_back(std::move(row));
-      table.present.push_back(std::move(present));
-    }
-  }
-  return table;
 }
 
 void Describe(const Replay& base, const Replay& extended, const Found& found,

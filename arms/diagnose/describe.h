@@ -19,15 +19,6 @@ diagnosis::Verdict VerdictIn(const diagnosis::Hypothesis& hypothesis, const Layo
 void Describe(const Replay& base, const Replay& extended, const Found& found,
               const ArmHeldOut& heldout, const std::vector<double>& p, ArmResult& result);
 
-/// Adds measured and predicted of each component over time, by the residuals of both models.
-void FillCurves(const Replay& replay, const Residuals& base, const Residuals& extended,
-                std::vector<ComponentCurve>& curves);
-
-/// Residuals of both models in stated noise, a row a time of each channel of the first recording;
-/// no more than some thousand rows.
-diagnosis::ResidualTable ResidualTableOf(const Replay& replay, const Residuals& base,
-                                         const Residuals& extended, const Noise& noise);
-
 /// Fills the answer of recording `r`.
 void DescribeRecording(const Replay& extended, const Found& found, const ArmHeldOut& heldout, int r,
                        const ArmResult& result, diagnosis::DiagnosisResult& answer);

@@ -9,6 +9,7 @@
 
 #include "arms/diagnose/describe.h"
 #include "arms/diagnose/heldout.h"
+#include "arms/diagnose/nuisances.h"
 #include "arms/diagnose/search.h"
 #include "arms/effects/effects.h"
 #include "core/check.h"

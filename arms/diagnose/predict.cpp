@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "arms/diagnose/describe.h"
+#include "arms/diagnose/curves.h"
 #include "arms/diagnose/heldout.h"
+#include "arms/diagnose/nuisances.h"
 
 namespace flextip::arms {
 namespace {

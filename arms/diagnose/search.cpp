@@ -1,12 +1,12 @@
 #include "arms/diagnose/search.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
-#include "core/linear_algebra.h"
+#include "arms/diagnose/nuisances.h"
+#include "arms/diagnose/windows.h"
 
 namespace flextip::arms {
 namespace {
@@ -20,14 +20,9 @@ constexpr double kRival = 3.0;          // log odds below the best that are wort
 constexpr double kMuchLeft = 4.0;       // chi-squared per row, in stated noise
 constexpr double kHardlyCounts = 0.02;  // of what is left
 constexpr int kMostDrops = 3;
-constexpr double kWorthCarrying = 20.0;  // squared residual
-constexpr int kMostFits = 14;            // a round
+constexpr int kMostFits = 14;  // a round
 constexpr int kFitRounds = 6;
 constexpr int kNoiseRounds = 3;
-// Widths of a window that are tried, in rad or 10 cm.
-constexpr double kWidths[] = {0.0,  0.002, 0.004, 0.008, 0.015, 0.025, 0.04,
-                              0.06, 0.09,  0.13,  0.18,  0.25,  0.35,  0.5};
-
 const std::vector<double> kScales{0.3, 3.0};
 
 /// Where a hypothesis fits.
@@ -40,10 +35,10 @@ struct Place {
 class Searcher {
  public:
   Searcher(Replay& replay, Layout& layout, const SearchOptions& options)
-      : replay_(replay), layout_(layout), options_(options) {}
+      : replay_(replay), layout_(layout), windows_(replay, layout), options_(options) {}
 
   Found Run() {
-    SetWindows(Eigen::VectorXd());
+    windows_.Set(Eigen::VectorXd());
     replay_.Evaluate(Eigen::VectorXd::Zero(layout_.Size()));
     replay_.Register();
     replay_.Evaluate(Eigen::VectorXd::Zero(layout_.Size()));
@@ -87,16 +82,8 @@ class Searcher {
     return MakeProblem(replay_, noise_, *basis_, sizes_, options_.parts);
   }
 
-  void SetWindows(const Eigen::VectorXd& windows) {
-    if (layout_.WindowBlock() >= 0)
-      layout_.Blocks()[layout_.WindowBlock()].effect->SetWindows(windows);
-  }
-  Eigen::VectorXd Windows() const {
-    return layout_.WindowBlock() < 0 ? Eigen::VectorXd()
-                                     : layout_.Blocks()[layout_.WindowBlock()].effect->Windows();
-  }
   void GoTo(const Place& place) {
-    SetWindows(place.windows);
+    windows_.Set(place.windows);
     replay_.Evaluate(place.theta);
   }
 
@@ -108,11 +95,11 @@ class Searcher {
     for (ChannelNoise& noise : noise_) noise.sd = noise.floor;
     for (int round = 0; round < 2; ++round) {
       Descend(all, 3);
-      if (layout_.WindowBlock() >= 0) ScanWindows();
+      windows_.Scan(noise_);
       Descend(all, 2);
       noise_ = MeasureNoise(replay_, true);
     }
-    best_ = {all, replay_.Theta(), Windows(), -1e300};
+    best_ = {all, replay_.Theta(), windows_.Windows(), -1e300};
   }
 
   /// Moves the replay to where `hypothesis` fits.
@@ -135,98 +122,6 @@ class Searcher {
     return weighed;
   }
 
-  /// The window of each joint's play by what its state explains, joint by joint.
-  void ScanWindows() {
-    const Layout::Block& block = layout_.Blocks()[layout_.WindowBlock()];
-    const ArmData& data = layout_.DataOf(block);
-    const int n = data.Size();
-    Eigen::VectorXd windows = Windows();
-    if (windows.size() < n) windows = Eigen::VectorXd::Zero(n);
-    for (int j = 0; j < n; ++j) {
-      if (!Moves(j)) continue;
-      std::vector<int> columns;
-      for (const int own : block.effect->OfWindow(data, j)) columns.push_back(block.first + own);
-      const double range = Range(j);
-      const double unit = data.TypicalOf(j, 1.0, 0.1);
-      double best = 0.0, best_width = windows[j];
-      const auto tell = [&](double width) {
-        windows[j] = width;
-        SetWindows(windows);
-        Eigen::VectorXd theta = replay_.Theta();
-        const double gain = Explained(theta, columns);
-        if (gain <= best) return;
-        best = gain;
-        best_width = width;
-      };
-      const Eigen::VectorXd theta = replay_.Theta();
-      for (const double width : kWidths)
-        if (width * unit < 0.7 * range || width == 0.0) tell(width * unit);
-      for (const double by : {0.8, 0.9, 1.12, 1.25})
-        if (best_width > 0.0) tell(best_width * by);
-      windows[j] = best_width;
-      SetWindows(windows);
-      replay_.Evaluate(theta);
-    }
-  }
-
-  bool Moves(int joint) const { return Range(joint) > 1e-4; }
-
-  /// Lets what is dragged pass through the play of what it drags, where that explains more.
-  void TryCarrying() {
-    const Layout::Block& block = layout_.Blocks()[layout_.WindowBlock()];
-    const ArmData& data = layout_.DataOf(block);
-    const Eigen::VectorXd theta = replay_.Theta(), before = Windows();
-    std::vector<int> columns;
-    for (int j = 0; j < data.Size(); ++j)
-      for (const int own : block.effect->OfWindow(data, j))
-        if (Moves(j)) columns.push_back(block.first + own);
-    if (columns.empty()) return;
-    const double plain = Explained(theta, columns);
-    SetWindows(block.effect->Carrying(data, theta.segment(block.first, block.size)));
-    const double carried = Explained(theta, columns);
-    if (carried < plain + kWorthCarrying) SetWindows(before);
-    replay_.Evaluate(theta);
-  }
-
-  double Range(int joint) const {
-    double range = 0.0;
-    for (const ArmData& data : layout_.Recordings()) {
-      const auto q = data.joints.values.col(joint);
-      range = std::max(range, q.maxCoeff() - q.minCoeff());
-    }
-    return range;
-  }
-
-  /// How much of the squared residual `columns` take with them, of what stays without them.
-  double Explained(const Eigen::VectorXd& at, const std::vector<int>& columns) {
-    Eigen::VectorXd theta = at;
-    for (const int c : columns) theta[c] = 0.0;
-    replay_.Evaluate(theta);
-    const auto size = Eigen::Index(columns.size());
-    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(size, size);
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(size);
-    for (std::size_t i = 0; i < noise_.size(); ++i) {
-      const Channel& channel = replay_.Channels()[i];
-      const Eigen::Index C = channel.Components();
-      if (channel.kind != Kind::kSeen && channel.kind != Kind::kPose) continue;
-      for (Eigen::Index k = 0; k < channel.Rows(); ++k)
-        for (Eigen::Index c = 0; c < C; ++c) {
-          if (!noise_[i].keep(k, c)) continue;
-          const double by = 1.0 / noise_[i].sd[c];
-          Eigen::VectorXd row(size);
-          for (Eigen::Index a = 0; a < size; ++a)
-            row[a] = by * channel.derivative(k * C + c, columns[a]);
-          H.noalias() += row * row.transpose();
-          g.noalias() += by * channel.residual(k, c) * row;
-        }
-    }
-    for (Eigen::Index a = 0; a < size; ++a) {
-      const auto& p = layout_.Prior().Parameter(columns[a]);
-      H(a, a) += 1.0 / (9.0 * p.typical * p.typical);
-    }
-    return g.dot(Llt(H).Solve(g));
-  }
-
   const Place* Tried(const Hypothesis& hypothesis) const {
     for (const Place& place : tried_)
       if (place.hypothesis == hypothesis) return &place;
@@ -236,88 +131,29 @@ class Searcher {
   /// Fits a hypothesis from where the best is, and keeps where that leads.
   void Fit(const Hypothesis& hypothesis, const Place& from) {
     GoTo(from);
-    const bool window = layout_.WindowBlock() >= 0 &&
-                        std::find(hypothesis.effects.begin(), hypothesis.effects.end(),
-                                  layout_.WindowBlock()) != hypothesis.effects.end();
+    const bool window =
+        windows_.IsThere() && std::find(hypothesis.effects.begin(), hypothesis.effects.end(),
+                                        layout_.WindowBlock()) != hypothesis.effects.end();
     Descend(hypothesis, window ? 2 : kFitRounds);
     if (window) {
-      ScanWindows();
+      windows_.Scan(noise_);
       Descend(hypothesis, 2);
       for (int round = 0; round < 2; ++round) {
-        TryCarrying();
-        ScanWindows();
+        windows_.TryCarrying(noise_);
+        windows_.Scan(noise_);
         Descend(hypothesis, 2);
       }
       Descend(hypothesis, kFitRounds);
     }
     const Problem problem = ProblemHere();
     const Evidence evidence = EvidenceHere(problem, false);
-    Place place{hypothesis, replay_.Theta(), Windows(),
+    Place place{hypothesis, replay_.Theta(), windows_.Windows(),
                 evidence.LogEvidenceOfNone() + evidence.Weigh(hypothesis).log_evidence +
                     LogPriorOf(hypothesis, layout_.EffectCount(), options_)};
     ++found_.fits;
     tried_.push_back(place);
     if (place.log_posterior > best_.log_posterior) best_ = place;
   }
-
-  /// Whether two of its effects are the same in one recording.
-  bool Repeats(const Hypothesis& hypothesis) const {
-    for (std::size_t i = 0; i < hypothesis.effects.size(); ++i)
-      for (std::size_t j = i + 1; j < hypothesis.effects.size(); ++j) {
-        const auto& a = layout_.Blocks()[hypothesis.effects[i]];
-        const auto& b = layout_.Blocks()[hypothesis.effects[j]];
-        if (a.effect->Name() != b.effect->Name()) continue;
-        if (!a.change && !b.change) return true;
-        if (a.change && b.change && a.effect->ComesAndGoes() && a.in == b.in) return true;
-      }
-    return false;
-  }
-
-  std::vector<Scored> ScoreHere(const Evidence& evidence, bool unknown) const {
-    std::vector<Scored> all;
-    std::set<std::vector<int>> seen;
-    const auto weigh = [&](const std::vector<Hypothesis>& hypotheses) {
-      std::vector<Scored> scored(hypotheses.size());
-      tbb::parallel_for(std::size_t{0}, hypotheses.size(), [&](std::size_t i) {
-        scored[i].weighed = evidence.Weigh(hypotheses[i]);
-        scored[i].log_posterior = scored[i].weighed.log_evidence +
-                                  LogPriorOf(hypotheses[i], layout_.EffectCount(), options_);
-      });
-      std::stable_sort(scored.begin(), scored.end(), Better);
-      all.insert(all.end(), scored.begin(), scored.end());
-      return scored;
-    };
-    std::vector<Hypothesis> frontier{{}};
-    if (unknown) weigh({Hypothesis{{}, true}});
-    weigh(frontier);
-    double best = all.front().log_posterior;
-    for (int size = 1; size <= options_.most_effects; ++size) {
-      std::vector<Hypothesis> next;
-      for (const Hypothesis& h : frontier)
-        for (int b = 0; b < layout_.EffectCount(); ++b) {
-          if (forbidden_.contains(b)) continue;
-          if (std::find(h.effects.begin(), h.effects.end(), b) != h.effects.end()) continue;
-          Hypothesis longer = h;
-          longer.effects.push_back(b);
-          std::sort(longer.effects.begin(), longer.effects.end());
-          if (Repeats(longer) || !seen.insert(longer.effects).second) continue;
-          next.push_back(longer);
-        }
-      if (next.empty()) break;
-      const auto scored = weigh(next);
-      frontier.clear();
-      // Pairs may show what neither shows alone: all singles are extended.
-      const std::size_t keep = size == 1 ? scored.size() : std::size_t(options_.beam);
-      for (std::size_t i = 0; i < scored.size() && i < keep; ++i)
-        frontier.push_back(scored[i].weighed.hypothesis);
-      if (size > 2 && scored.front().log_posterior < best - 12.0) break;
-      best = std::max(best, scored.front().log_posterior);
-    }
-    std::stable_sort(all.begin(), all.end(), Better);
-    return all;
-  }
-
-  static bool Better(const Scored& a, const Scored& b) { return a.log_posterior > b.log_posterior; }
 
   /// With the noise as it is: fits what looks likely until nothing unfitted looks better.
   void Round() {
@@ -328,7 +164,7 @@ class Searcher {
       const Problem problem = ProblemHere();
       const Evidence evidence = EvidenceHere(problem, false);
       const double none = evidence.LogEvidenceOfNone();
-      const auto scored = ScoreHere(evidence, false);
+      const auto scored = ScoreHypotheses(evidence, layout_, options_, forbidden_, false);
       int fitted = 0;
       for (const Scored& s : scored) {
         if (fitted >= 3 || s.log_posterior + none < best_.log_posterior - kRival) break;
@@ -420,7 +256,7 @@ class Searcher {
     GoTo(best_);
     found_.problem = ProblemHere();
     const Evidence evidence = EvidenceHere(found_.problem, true);
-    found_.scored = ScoreHere(evidence, true);
+    found_.scored = ScoreHypotheses(evidence, layout_, options_, forbidden_, true);
     // What own fits said beyond the linear problem, less what that promised to the best.
     const auto linear = [&](const Hypothesis& hypothesis) {
       for (const Scored& s : found_.scored)
@@ -437,7 +273,7 @@ class Searcher {
       // too.
       s.log_posterior += s.correction;
     }
-    std::stable_sort(found_.scored.begin(), found_.scored.end(), Better);
+    std::stable_sort(found_.scored.begin(), found_.scored.end(), IsBetter);
     found_.generic_sd = generic_sd_;
     found_.noise = noise_;
     found_.sizes = sizes_;
@@ -445,6 +281,7 @@ class Searcher {
 
   Replay& replay_;
   Layout& layout_;
+  WindowSearch windows_;
   const SearchOptions& options_;
   std::optional<Basis> basis_;
   Noise noise_;
@@ -463,73 +300,10 @@ Found Search(Replay& replay, Layout& layout, const SearchOptions& options) {
   return Searcher(replay, layout, options).Run();
 }
 
-double LogPriorOf(const Hypothesis& hypothesis, int effects, const SearchOptions& options) {
-  const double n = std::max(1, effects);
-  if (hypothesis.unknown) return std::log(options.prior_unknown);
-  const std::size_t size = hypothesis.effects.size();
-  if (size == 0) return std::log(options.prior_none);
-  double log_count = 0.0;  // of choices of so many
-  for (std::size_t i = 0; i < size; ++i)
-    log_count += std::log(std::max(1.0, n - double(i)) / double(i + 1));
-  if (size == 1) return std::log(options.prior_single) - log_count;
-  return std::log(options.prior_pair) + double(size - 2) * std::log(options.prior_more) - log_count;
-}
-
 const Scored& Found::BestKnown() const {
   for (const Scored& s : scored)
     if (!s.weighed.hypothesis.unknown) return s;
   return scored.front();
-}
-
-namespace {
-
-/// The parameters with those of `free` where they fit, about where the replay is.
-Eigen::VectorXd FitSome(const Replay& replay, const Noise& noise, const std::vector<int>& free) {
-  const auto size = Eigen::Index(free.size());
-  const Eigen::VectorXd sd = replay.GetLayout().Prior().Tolerances()(free);
-  Eigen::MatrixXd H = Eigen::MatrixXd::Identity(size, size);
-  Eigen::VectorXd g = Eigen::VectorXd::Zero(size);
-  for (std::size_t i = 0; i < noise.size(); ++i) {
-    const Channel& channel = replay.Channels()[i];
-    const Eigen::Index C = channel.Components();
-    const Eigen::MatrixXd X = channel.derivative(Eigen::all, free) * sd.asDiagonal();
-    for (Eigen::Index k = 0; k < channel.Rows(); ++k)
-      for (Eigen::Index c = 0; c < C; ++c) {
-        if (!noise[i].keep(k, c)) continue;
-        const double by = 1.0 / noise[i].sd[c];
-        const Eigen::VectorXd row = by * X.row(k * C + c).transpose();
-        const double z =
-            by * channel.residual(k, c) + row.dot(replay.Theta()(free).cwiseQuotient(sd));
-        H.noalias() += row * row.transpose();
-        g.noalias() += z * row;
-      }
-  }
-  Eigen::VectorXd theta = replay.Theta();
-  theta(free) = sd.cwiseProduct(Llt(H).Solve(g));
-  return theta;
-}
-
-std::vector<int> Nuisances(const Layout& layout, bool own_alone) {
-  std::vector<int> free;
-  for (int b = layout.EffectCount(); b < int(layout.Blocks().size()); ++b) {
-    const Layout::Block& block = layout.Blocks()[b];
-    for (int j = 0; j < block.size; ++j)
-      if (!own_alone || block.effect->OwnInEach()) free.push_back(block.first + j);
-  }
-  return free;
-}
-
-}  // namespace
-
-void FitNuisances(Replay& replay, const Noise& noise, int rounds) {
-  const std::vector<int> free = Nuisances(replay.GetLayout(), false);
-  for (int round = 0; round < rounds && !free.empty(); ++round)
-    replay.Evaluate(FitSome(replay, noise, free));
-}
-
-Eigen::VectorXd FitOwn(const Replay& replay, const Noise& noise) {
-  const std::vector<int> free = Nuisances(replay.GetLayout(), true);
-  return free.empty() ? replay.Theta() : FitSome(replay, noise, free);
 }
 
 }  // namespace flextip::arms

@@ -18,6 +18,7 @@ constexpr double kLate = 1.5;  // of a cycle's time
 // Of three components at once, each normal, less than one in 1e7 is this many deviations long.
 constexpr double kDeviations = 6.0;
 constexpr double kSmoothed_m = 1e-5;  // by less the limit of jerk does not count as acting
+constexpr double kDoubtful = 0.7;     // of what a reading may be beside the commanded way
 constexpr double kSettle_m = 0.0005;  // a servo may stay so far from its set-point
 
 /// How far a reading may be beside the commanded way.
@@ -60,6 +61,22 @@ void Supervisor::VisitState(StateText& state) {
   state(late_cycles_);
   state(jerk_);
   state(p_limited_);
+}
+
+double Supervisor::Beside_m(const SupervisedCycle& cycle) const {
+  if (!cycle.p_RW || count_ == 0) return 0.0;
+  double nearest_m = std::numeric_limits<double>::infinity();
+  std::optional<Eigen::Vector3d> later;
+  for (std::size_t i = 1; i <= count_; ++i) {
+    const Sent& sent = sent_[(next_ + kSize - i) % kSize];
+    const Eigen::Vector3d on_way =
+        NearestOnSegment(sent.p_RW, later.value_or(sent.p_RW), *cycle.p_RW);
+    nearest_m = std::min(nearest_m, (*cycle.p_RW - on_way).norm());
+    later = sent.p_RW;
+    if (Seconds(cycle.t_ns - sent.t_ns) > options_.follow_lag_s) return nearest_m;
+  }
+  // Not commanded for long enough yet to say.
+  return 0.0;
 }
 
 bool Supervisor::IsAstray(const SupervisedCycle& cycle) const {
@@ -126,15 +143,17 @@ Eigen::Vector3d Supervisor::Limit(const SupervisedCycle& cycle, Supervision& sup
   return smooth;
 }
 
-/// Whether the wrist waits for the next samples to tell. A doubt that neither goes nor becomes a
+/// What the wrist waits for, for the next samples to tell. A doubt that neither goes nor becomes a
 /// finding was none.
-bool Supervisor::Doubts(const SupervisedCycle& cycle) {
-  if (cycle.found.doubt == Stop::kNone) {
+Stop Supervisor::Doubt(const SupervisedCycle& cycle) {
+  Stop doubt = cycle.found.doubt;
+  if (Beside_m(cycle) > kDoubtful * AllowedBeside_m(cycle)) doubt = Stop::kWristNotFollowing;
+  if (doubt == Stop::kNone) {
     doubt_since_ns_ = 0;
-    return false;
+    return doubt;
   }
   if (doubt_since_ns_ == 0) doubt_since_ns_ = cycle.t_ns;
-  return Seconds(cycle.t_ns - doubt_since_ns_) < options_.doubt_s;
+  return Seconds(cycle.t_ns - doubt_since_ns_) < options_.doubt_s ? doubt : Stop::kNone;
 }
 
 /// Hold and fault: entered at once, left when the cause has been gone for long enough, or by a
@@ -229,7 +248,7 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
   Stop waits_for = Stop::kNone;
   if (options_.kind == SupervisionKind::kFull) {
     if (cycle.tip_is_hidden) waits_for = Stop::kStaleTip;
-    if (Doubts(cycle)) waits_for = cycle.found.doubt;
+    if (const Stop doubt = Doubt(cycle); doubt != Stop::kNone) waits_for = doubt;
     if (cycle.may_point_wrong) waits_for = Stop::kMotionAngle;
   }
   const bool waits = waits_for != Stop::kNone;

@@ -72,7 +72,9 @@ class Supervisor {
   std::optional<Eigen::Vector3d> StopAt(const SupervisedCycle& cycle) const;
   void Keep(const SupervisedCycle& cycle, const Eigen::Vector3d& p_RW);
   Eigen::Vector3d Limit(const SupervisedCycle& cycle, Supervision& supervision);
-  bool Doubts(const SupervisedCycle& cycle);
+  /// How far the wrist is from the way that it was sent in the robot's lag (m).
+  double Beside_m(const SupervisedCycle& cycle) const;
+  Stop Doubt(const SupervisedCycle& cycle);
   void Judge(const SupervisedCycle& cycle, Decision& decision);
 
   SupervisorOptions options_;

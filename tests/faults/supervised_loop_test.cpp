@@ -54,8 +54,6 @@ double FartherInACycle(const LoopResult& result) {
   return most_m;
 }
 
-constexpr double kNever = 1e-300;  // a doubt by chance
-
 /// The press as only the camera sees it.
 LoopSetup PressBySight(const std::vector<Fault>& faults) {
   LoopSetup setup = Press(SupervisionKind::kFull, faults);
@@ -69,7 +67,7 @@ LoopSetup PressBySight(const std::vector<Fault>& faults) {
 TEST(SupervisedLoop, ATipInDoubtIsWaitedFor) {
   LoopSetup setup = PressBySight({{FaultKind::kSpike, FaultStream::kTip, kStart_s, 0.1, 0.002}});
   const LoopResult waits = RunClosedLoop(setup, nullptr);
-  setup.supervision.doubt = kNever;
+  setup.supervision.doubt_s = 0.0;  // never waits
   const LoopResult believes = RunClosedLoop(setup, nullptr);
   constexpr double kMost_m = 0.001;
   EXPECT_GT(FartherInACycle(believes), kMost_m);
@@ -85,7 +83,7 @@ TEST(SupervisedLoop, ATipInDoubtIsWaitedFor) {
 
 TEST(SupervisedLoop, OneTipThatNobodyCanJudgeLeadsTheTipOnlyAPart) {
   LoopSetup setup = PressBySight({{FaultKind::kSpike, FaultStream::kTip, kStart_s, 0.1, 0.002}});
-  setup.supervision.doubt = kNever;
+  setup.supervision.doubt_s = 0.0;  // never waits
   const LoopResult free = RunClosedLoop(setup, nullptr);
   setup.supervision.max_tip_deviation_m = 0.002;
   const LoopResult kept = RunClosedLoop(setup, nullptr);
@@ -103,7 +101,7 @@ TEST(SupervisedLoop, OneTipThatNobodyCanJudgeLeadsTheTipOnlyAPart) {
 // About the reading no command was long: the limit about the last command takes it.
 TEST(SupervisedLoop, OneReadingOfTheWristLeadsTheTipOnlyAPart) {
   LoopSetup setup = PressBySight({{FaultKind::kSpike, FaultStream::kWrist, kStart_s, 0.1, 0.002}});
-  setup.supervision.doubt = kNever;
+  setup.supervision.doubt_s = 0.0;  // never waits
   const LoopResult free = RunClosedLoop(setup, nullptr);
   setup.supervision.max_tip_deviation_m = 0.002;
   const LoopResult kept = RunClosedLoop(setup, nullptr);

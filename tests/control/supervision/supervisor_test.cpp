@@ -130,6 +130,23 @@ TEST(Supervisor, AWristWaitsForADoubtToGoButNotForever) {
   EXPECT_EQ(waited.back(), 37);
 }
 
+TEST(Supervisor, AReadingBesideTheCommandedWayIsADoubt) {
+  // 0.5 mm and six deviations, 0.92 mm, may be settling and noise; from 0.7 of it on it is
+  // doubtful.
+  for (const double beside_m : {0.0, 0.0006, 0.0007}) {
+    Supervisor supervisor(Full());
+    int waits = 0;
+    for (int i = 0; i < 30; ++i) {
+      const Eigen::Vector3d wish = kWrist + Eigen::Vector3d(0.0005 * i, 0, 0);
+      const Eigen::Vector3d lags = wish - Eigen::Vector3d(0.001, i >= 20 ? beside_m : 0.0, 0);
+      const auto decision = supervisor.Decide(Cycle(i / 30.0, lags, wish));
+      EXPECT_LT(decision.supervision.reaction, Reaction::kHold);
+      waits += decision.supervision.stop == Stop::kWristNotFollowing;
+    }
+    EXPECT_EQ(waits > 0, beside_m > 0.00065) << beside_m;
+  }
+}
+
 TEST(Supervisor, AWristWaitsForATipThatIsHidden) {
   Supervisor supervisor(Full());
   supervisor.Decide(Cycle(0.0, kWrist, kWrist));

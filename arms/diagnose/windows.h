@@ -1,0 +1,36 @@
+// The windows of plays: what is not linear in the search's parameters.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "arms/diagnose/noise.h"
+#include "arms/replay/replay.h"
+
+namespace flextip::arms {
+
+/// Sets, reads and looks for the windows of the layout's play. Where the layout has no such effect
+/// nothing happens. The references must outlive the object.
+class WindowSearch {
+ public:
+  WindowSearch(Replay& replay, Layout& layout) : replay_(replay), layout_(layout) {}
+
+  bool IsThere() const { return layout_.WindowBlock() >= 0; }
+  void Set(const Eigen::VectorXd& windows);
+  Eigen::VectorXd Windows() const;
+
+  /// Gives each joint the window whose state explains most of what is left, joint by joint.
+  void Scan(const Noise& noise);
+  /// Lets what is dragged pass through the play of what it drags, where that explains more.
+  void TryCarrying(const Noise& noise);
+
+ private:
+  bool Moves(int joint) const;
+  double Range(int joint) const;
+  double Explained(const Eigen::VectorXd& at, const std::vector<int>& columns, const Noise& noise);
+
+  Replay& replay_;
+  Layout& layout_;
+};
+
+}  // namespace flextip::arms
