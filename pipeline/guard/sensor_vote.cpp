@@ -154,8 +154,11 @@ std::optional<VotedShaft> SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped,
   }
   found.chi2 = all.chi2;
   found.chi2_limit = all.limit;
-  if (all.doubtful && found.doubt == Stop::kNone) found.doubt = Stop::kTipDisagrees;
+  const auto doubt = [&found](const Ballot& ballot) {
+    if (ballot.doubtful && found.doubt == Stop::kNone) found.doubt = Stop::kTipDisagrees;
+  };
   if (all.agrees) {
+    doubt(all);
     if (all.shaft) tolerated_.Learn(t_ns, z, all.shaft->tip.p);
     for (int i = 0; i < kVotedSensors; ++i) {
       const TimeNs out_ns = out_ns_[static_cast<std::size_t>(i)];
@@ -189,6 +192,7 @@ std::optional<VotedShaft> SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped,
     Drop(static_cast<VotedSensor>(out), z);
     found.voted_out |= Bit(out);
     out_ns_[static_cast<std::size_t>(out)] = t_ns;
+    doubt(without[static_cast<std::size_t>(out)]);
     return without[static_cast<std::size_t>(out)].shaft;
   }
   if (found.reaction >= Reaction::kHold) return {};

@@ -134,6 +134,40 @@ TEST_F(SensorVoting, ASensorThatIsOffByLittleHoldsAtLeast) {
   }
 }
 
+TEST_F(SensorVoting, DoubtsAreNoMoreOftenThanStatedAndSeeWhatAgreesStill) {
+  SupervisorOptions exact = Full();
+  exact.tolerances = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};  // plant and model are the same instrument
+  exact.doubt = 0.01;
+  vote = SensorVote(estimator, exact);
+  constexpr int kDraws = 2000;
+  int doubts = 0, seen = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    doubts += Ask(*Gather(shaft.Next())).doubt != Stop::kNone;
+    if (i % 20 != 0) continue;
+    Measurements z = *Gather(shaft.Next());
+    z.em->T_RS.p += Eigen::Vector3d(0.0, 0.0, 0.0012);  // agrees still with all together
+    const Supervision found = Ask(z);
+    seen += found.reaction == Reaction::kNone && found.doubt == Stop::kTipDisagrees;
+  }
+  // Of five sensors and the wrist's reading, each one in a hundred: 120, less what they share.
+  EXPECT_GT(doubts, 40);
+  EXPECT_LT(doubts, 150);
+  EXPECT_GT(seen, 45);
+}
+
+TEST_F(SensorVoting, ASensorThatIsOutLeavesNoDoubt) {
+  for (int i = 0; i < 30; ++i) Ask(*Gather(shaft.Next()));
+  int doubts = 0;
+  for (int i = 0; i < 100; ++i) {
+    Measurements z = *Gather(shaft.Next());
+    z.em->T_RS.p += Eigen::Vector3d(0.0, 0.2, 0.0);
+    const Supervision found = Ask(z);
+    EXPECT_EQ(found.voted_out, Bit(VotedSensor::kEm));
+    doubts += found.doubt != Stop::kNone;
+  }
+  EXPECT_LE(doubts, 2);
+}
+
 TEST_F(SensorVoting, OffsetsWithinToleranceAreLearnt) {
   const auto spoilt = [&](double offset_m) {
     Measurements z = *Gather(shaft.Next());
