@@ -44,6 +44,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   control/supervision/jerk_filter.h
   control/supervision/motion_guard.h
   control/supervision/path_watch.h
+  control/supervision/correction_limit.h
   control/supervision/rate_limits.h
   control/supervision/stops.h
   control/supervision/supervisor.h

@@ -72,6 +72,7 @@ InstrumentController::InstrumentController(const InstrumentControllerOptions& op
                     options.supervision.rate_hz),
       supervisor_(options.supervision),
       path_watch_(options.supervision.max_tip_deviation_m, options.supervision.tolerances.tip_m),
+      about_command_(options.supervision.rate_hz),
       between_(BetweenTips(options)),
       without_tip_(BetweenTips(options)),
       late_(options.late, options.control.max_tissue_gain),
@@ -109,6 +110,8 @@ void InstrumentController::VisitState(StateText& state) {
   state(by_all_);
   state(p_RW_watched_);
   state(p_goal_last_);
+  state(about_reading_);
+  state(about_command_);
   state(corrections_);
   state(excess_m_);
   state(guard_);

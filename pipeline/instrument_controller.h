@@ -9,6 +9,7 @@
 #include "control/controller.h"
 #include "control/direction_controller.h"
 #include "control/fixtures.h"
+#include "control/supervision/correction_limit.h"
 #include "control/supervision/motion_guard.h"
 #include "control/supervision/path_watch.h"
 #include "control/supervision/rate_limits.h"
@@ -140,6 +141,8 @@ class InstrumentController {
   PathWatch path_watch_;
   std::optional<VotedShaft> by_all_;  // of this cycle
   std::optional<Eigen::Vector3d> p_RW_watched_, p_goal_last_;
+  CorrectionLimit about_reading_;  // of one cycle: each reading has its own noise
+  CorrectionLimit about_command_;
   int corrections_ = 0;                                 // limited ones in a row, in one direction
   Eigen::Vector3d excess_m_ = Eigen::Vector3d::Zero();  // of the last one
   // Where the tip's source changes, the difference is taken up slowly.

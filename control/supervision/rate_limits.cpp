@@ -8,7 +8,6 @@ namespace {
 
 /// A change of less than this part is rounding, no limit.
 constexpr double kRounding = 1e-12;
-constexpr double kStands_m = 1e-9;
 
 }  // namespace
 
@@ -42,26 +41,6 @@ Limited LimitAcceleration(const Eigen::Vector3d& p_last, const Eigen::Vector3d& 
   const Eigen::Vector3d p = p_last + dt_s * v.p;
   if ((p - p_wish).norm() <= kRounding * (1.0 + distance)) return {p_wish, false};
   return {p, true};
-}
-
-Limited LimitCorrection(const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_wish,
-                        const Eigen::Matrix3d& J, const Eigen::Vector3d& way,
-                        const CorrectionLimits& limits) {
-  const Eigen::Vector3d step = p_wish - p_RW, dp_RE = J * step;
-  const double way_m = way.norm();
-  Eigen::Vector3d along = Eigen::Vector3d::Zero();
-  if (way_m > kStands_m) along = dp_RE.dot(way) / (way_m * way_m) * way;
-  const Eigen::Vector3d across = dp_RE - along;
-  const auto part = [](double length_m, double most_m) {
-    return length_m > most_m ? most_m / length_m : 1.0;
-  };
-  const double of_across = part(across.norm(), limits.across_m);
-  const double of_along = part(along.norm(), way_m + limits.along_m);
-  if (of_across == 1.0 && of_along == 1.0) return {p_wish, false};
-  const Eigen::Vector3d less = J.fullPivLu().solve(of_along * along + of_across * across);
-  // A wrist that would go farther for less of the tip's way, by a Jacobian near a singular one.
-  if (less.allFinite() && less.norm() <= step.norm()) return {p_RW + less, true};
-  return {p_RW + std::min(of_across, of_along) * step, true};
 }
 
 Limited KeepInBox(const WorkspaceBox& box, const Eigen::Vector3d& p) {

@@ -31,19 +31,6 @@ Limited LimitSpeed(const Eigen::Vector3d& p_last, const Eigen::Vector3d& p_wish,
 Limited LimitAcceleration(const Eigen::Vector3d& p_last, const Eigen::Vector3d& v_last_m_s,
                           const Eigen::Vector3d& p_wish, double dt_s, double max_acceleration_m_s2);
 
-/// How far a command may move the tip (m): across the goal's motion, and along it beyond that
-/// motion or back.
-struct CorrectionLimits {
-  double across_m = 0.0, along_m = 0.0;
-};
-
-/// Returns `p_wish`, drawn to `p_RW` so far that, by the Jacobian `J` (d tip / d wrist), it moves
-/// the tip within `limits`. `way`: the goal's motion in this cycle; where it is zero, every
-/// direction is across. All of `p_wish` where `J` is singular or not finite.
-Limited LimitCorrection(const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_wish,
-                        const Eigen::Matrix3d& J, const Eigen::Vector3d& way,
-                        const CorrectionLimits& limits);
-
 /// Returns the place in `box` nearest to `p`.
 Limited KeepInBox(const WorkspaceBox& box, const Eigen::Vector3d& p);
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double kTakeOver_m = 0.0003;
 constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is taken up
 
-// Two samples that are wrong in a row may lead the tip by 1.2 of what it may be astray: the first
+// Two pictures that are wrong in a row may lead the tip by 1.2 of what it may be astray: the first
 // by this part, the second by twice that. By then the vote has them.
 constexpr double kCorrection = 0.4;
 // About the last command, it may take half of the last correction back and make its own.
@@ -114,16 +114,16 @@ Limited InstrumentController::Corrected(const ControllerCommand& command) {
   const auto J = motion_guard_.Jacobian();
   const SupervisorOptions& options = options_.supervision;
   if (!J || options.max_tip_deviation_m <= 0.0) return {command.p_RW_command, false};
-  const double samples = std::min(1.0, kVideo_hz / options.rate_hz);  // a cycle
-  const double once_m = kCorrection * options.max_tip_deviation_m * samples;
-  const double most_m = once_m * (1.0 + samples * corrections_);
-  Limited limited = LimitCorrection(command.measurements.p_RW, command.p_RW_command, *J, way,
-                                    {most_m, kCatchUp * most_m});
+  const double once_m = kCorrection * options.max_tip_deviation_m;
+  const double pictures = std::min(1.0, kVideo_hz / options.rate_hz);  // a cycle
+  const double most_m = once_m * (1.0 + pictures * corrections_);
+  Limited limited = about_reading_.Limit(command.measurements.p_RW, command.p_RW_command, *J, way,
+                                         {most_m, kCatchUp * most_m});
   if (const auto& p_last = supervisor_.LastCommand()) {
-    const bool before = limited.limited;
-    limited = LimitCorrection(*p_last, limited.p, *J, way,
-                              {kCorrections * once_m, kCatchUp * kCorrections * once_m});
-    limited.limited = limited.limited || before;
+    const double next_m = kCorrections * once_m;
+    const Limited next =
+        about_command_.Limit(*p_last, limited.p, *J, way, {next_m, kCatchUp * next_m});
+    limited = {next.p, limited.limited || next.limited};
   }
   const Eigen::Vector3d excess_m = command.p_RW_command - limited.p;
   const bool goes_on = limited.limited && excess_m.dot(excess_m_) > 0.0;

@@ -25,42 +25,6 @@ TEST(LimitSpeed, IsAStepOfTheTime) {
   EXPECT_FALSE(LimitSpeed(kZero, {0, 0.0004, 0}, 0.01, 0.05).limited);
 }
 
-TEST(LimitCorrection, KeepsWithinTheGoalsWayAndCutsTheRest) {
-  std::mt19937_64 rng(3);
-  std::normal_distribution<double> normal;
-  int limited = 0;
-  for (int trial = 0; trial < 500; ++trial) {
-    Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
-    for (int i = 0; i < 9; ++i) J.data()[i] += 0.3 * normal(rng);
-    Eigen::Vector3d step, way;
-    for (int i = 0; i < 3; ++i) step[i] = 0.001 * normal(rng);
-    for (int i = 0; i < 3; ++i) way[i] = 0.0005 * normal(rng);
-    const Eigen::Vector3d u = way.normalized(), p_RW(0.1, 0.2, 0.3);
-    const Limited result = LimitCorrection(p_RW, p_RW + step, J, way, {0.0008, 0.0004});
-    const Eigen::Vector3d tip = J * (result.p - p_RW), wish = J * step;
-    EXPECT_LT((tip - tip.dot(u) * u).norm(), 0.0008 + 1e-12);
-    EXPECT_LT(std::abs(tip.dot(u)), way.norm() + 0.0004 + 1e-12);
-    EXPECT_LE((result.p - p_RW).norm(), step.norm() * (1.0 + 1e-12));
-    limited += result.limited;
-    const bool is_within =
-        (wish - wish.dot(u) * u).norm() <= 0.0008 && std::abs(wish.dot(u)) <= way.norm() + 0.0004;
-    EXPECT_EQ(result.limited, !is_within);
-    if (is_within) EXPECT_EQ(result.p, p_RW + step);
-  }
-  EXPECT_GT(limited, 100);
-  EXPECT_LT(limited, 400);
-}
-
-TEST(LimitCorrection, CutsEveryDirectionWhereTheGoalStandsAndNothingWithoutAJacobian) {
-  const Eigen::Matrix3d J = 2.0 * Eigen::Matrix3d::Identity();
-  const Limited cut = LimitCorrection(kZero, {0.003, 0.0, 0.004}, J, kZero, {0.001, 0.0});
-  EXPECT_TRUE(cut.limited);
-  EXPECT_LT((cut.p - Eigen::Vector3d(0.0003, 0.0, 0.0004)).norm(), 1e-15);
-  const Eigen::Matrix3d none = Eigen::Matrix3d::Constant(std::nan(""));
-  EXPECT_FALSE(LimitCorrection(kZero, {0.003, 0.0, 0.004}, none, kZero, {0.001, 0.0}).limited);
-  EXPECT_FALSE(LimitCorrection(kZero, {0.003, 0, 0}, 0.0 * J, kZero, {0.001, 0.0}).limited);
-}
-
 TEST(LimitAcceleration, ReachesAPlaceWithoutOvershootAndWithoutMoreThanItsBound) {
   std::mt19937_64 rng(5);
   std::normal_distribution<double> normal(0.0, 0.01);
