@@ -56,7 +56,7 @@ Figure ErrorsByJoint(const arms::ArmResult& result) {
   return figure;
 }
 
-/// The arm as a chain of joints, side by side, coloured by how much of its error was wrong.
+/// The arm as it stands, its joints coloured by how much of their error was wrong.
 Figure JointDrawing(const arms::ArmResult& result) {
   std::string findings;
   for (std::size_t i = 0; i < result.joint_findings.size(); ++i)
@@ -66,9 +66,12 @@ Figure JointDrawing(const arms::ArmResult& result) {
                 .title = "The arm's joints, coloured by what is wrong",
                 .caption =
                     "Grey: as its file says. Red: the joint's error falls by more than half "
-                    "with the extended model. Orange: by more than a tenth." +
+                    "with the extended model. Orange: by more than a tenth. Seen from the side, "
+                    "in the middle of the recording; joints at one place stand beside each other." +
                     findings,
-                .x_label = "joint"};
+                .x_label = "mm",
+                .y_label = "mm",
+                .equal_axes = true};
   FigureTrace links{.kind = FigureTrace::Kind::kLine, .color = "#8c959f", .width = 4};
   FigureTrace grey{.name = "as its file says",
                    .kind = FigureTrace::Kind::kPoints,
@@ -79,16 +82,18 @@ Figure JointDrawing(const arms::ArmResult& result) {
   orange.color = "#d4820f";
   red.name = "wrong";
   red.color = "#c62828";
+  links.x = {1e3 * result.side_view.front().x()};
+  links.y = {1e3 * result.side_view.front().y()};
   for (std::size_t i = 0; i < result.joint_types.size(); ++i) {
     double least = 1.0;
     for (const arms::ComponentScore& c : result.components)
       if (c.joint == int(i) && c.base > 2.0 * c.noise) least = std::min(least, c.extended / c.base);
     FigureTrace& trace = least < 0.5 ? red : least < 0.9 ? orange : grey;
-    const double x = double(i + 1), y = i % 2 == 0 ? 0.0 : 0.3;
-    links.x.push_back(x);
-    links.y.push_back(y);
-    trace.x.push_back(x);
-    trace.y.push_back(y);
+    const Eigen::Vector2d p_mm = 1e3 * result.side_view[i + 1];
+    links.x.push_back(p_mm.x());
+    links.y.push_back(p_mm.y());
+    trace.x.push_back(p_mm.x());
+    trace.y.push_back(p_mm.y());
     trace.texts.push_back(fmt::format("{}", i + 1));
   }
   figure.traces.push_back(links);

@@ -8,6 +8,7 @@
 
 #include "arms/diagnose/curves.h"
 #include "arms/diagnose/findings.h"
+#include "arms/diagnose/side_view.h"
 
 namespace flextip::arms {
 namespace {
@@ -159,6 +160,7 @@ void Describe(const Replay& base, const Replay& extended, const Found& found,
     result.not_told.push_back(layout.Blocks()[b].effect->Name() +
                               ": what it explains is lost in what is left, not claimed");
   OrderByImportance(found, layout, answer.verdict);
+  result.side_view = SideView(layout.Recordings().front());
   result.joint_findings = JointFindings(layout, best, theta, covariance);
   for (const ArmJoint& joint : layout.Recordings().front().arm.joints)
     result.joint_types.emplace_back(joint.type == JointType::kRevolute ? "revolute" : "prismatic");

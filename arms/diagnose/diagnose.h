@@ -58,6 +58,7 @@ struct ArmResult {
   std::vector<RecordingAnswer> each;  ///< of several recordings
   ArmModel model;
   std::vector<std::string> joint_types;
+  std::vector<Eigen::Vector2d> side_view;   ///< base and joints in a plane (m), for a drawing
   std::vector<std::string> joint_findings;  ///< a joint each: what is wrong with it, in words
 };
 
