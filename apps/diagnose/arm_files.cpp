@@ -171,6 +171,7 @@ std::string ArmDiagnosisJson(const arms::ArmResult& result) {
                        {"probability", change.probability},
                        {"parameters", ParametersJson(change.parameters)}});
   json["changes"] = changes;
+  json["presence_in"] = result.presence_in;
   return json.dump(2) + "\n";
 }
 

@@ -94,6 +94,24 @@ std::vector<EffectFit> WithMeanChanges(const Layout& layout, const diagnosis::Hy
   return effects;
 }
 
+/// How likely each effect is in each recording. `p`: of each scored hypothesis.
+std::map<std::string, std::vector<double>> PresenceIn(const Found& found,
+                                                      const std::vector<double>& p,
+                                                      const Layout& layout) {
+  std::map<std::string, std::vector<double>> presence;
+  for (std::size_t i = 0; i < found.scored.size(); ++i) {
+    if (found.scored[i].weighed.hypothesis.unknown || p[i] <= 0.0) continue;
+    for (std::size_t r = 0; r < layout.Recordings().size(); ++r) {
+      for (const std::string& name :
+           VerdictIn(found.scored[i].weighed.hypothesis, layout, int(r))) {
+        if (name == "none") continue;
+        presence.try_emplace(name, layout.Recordings().size(), 0.0).first->second[r] += p[i];
+      }
+    }
+  }
+  return presence;
+}
+
 }  // namespace
 
 Verdict VerdictIn(const diagnosis::Hypothesis& hypothesis, const Layout& layout, int only) {
@@ -155,6 +173,7 @@ void Describe(const Replay& base, const Replay& extended, const Found& found,
   result.model.within_tolerance = answer.within_tolerance;
   if (diagnosis::NamesEffects(answer.verdict))
     answer.indistinguishable = Alternatives(found, layout);
+  if (layout.Recordings().size() > 1) result.presence_in = PresenceIn(found, p, layout);
   result.not_told = NotTold(layout, weighed, covariance);
   for (const int b : found.not_claimed)
     result.not_told.push_back(layout.Blocks()[b].effect->Name() +

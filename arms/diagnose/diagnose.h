@@ -56,6 +56,8 @@ struct ArmResult {
   std::vector<ComponentScore> components;
   std::vector<ComponentCurve> curves;
   std::vector<RecordingAnswer> each;  ///< of several recordings
+  /// How likely each effect is in each of several recordings; effects without any chance left out.
+  std::map<std::string, std::vector<double>> presence_in;
   ArmModel model;
   std::vector<std::string> joint_types;
   std::vector<Eigen::Vector2d> side_view;   ///< base and joints in a plane (m), for a drawing

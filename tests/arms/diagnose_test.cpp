@@ -75,6 +75,19 @@ TEST(DiagnoseArm, FindsOffsetsOfTheJointsThatHaveThem) {
   EXPECT_LT(result.answer.gain.heldout_error_ratio, 0.3);
 }
 
+TEST(DiagnoseArm, SaysInWhichRecordingAnOffsetBegan) {
+  Recording later = SeenAtStops(12);
+  AddToSeen(later, 3, 3,
+            [](const Eigen::VectorXd& x) { return Eigen::VectorXd::Constant(x.size(), 0.02); });
+  const ArmResult result = Diagnose({ArmData(SeenAtStops(11), "before"), ArmData(later, "after")});
+  ASSERT_EQ(result.changes.size(), 1u);
+  EXPECT_EQ(result.changes[0].effect, "joint_offset");
+  EXPECT_EQ(result.changes[0].first_in, 1);
+  const auto& presence = result.presence_in.at("joint_offset");
+  EXPECT_LT(presence[0], 0.1);
+  EXPECT_GT(presence[1], 0.9);
+}
+
 TEST(DiagnoseArm, FindsAScaleAndACoupling) {
   Recording recording = SeenAtStops(5);
   AddToSeen(recording, 1, 1, [](const Eigen::VectorXd& x) { return Eigen::VectorXd(0.02 * x); });
