@@ -28,6 +28,7 @@ Effects MakeNuisances() {
   nuisances.push_back(MakeMarkerPlace());
   nuisances.push_back(MakeMasses());
   nuisances.push_back(MakeEffortShape());
+  nuisances.push_back(MakeServoInertia());
   return nuisances;
 }
 

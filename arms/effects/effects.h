@@ -25,11 +25,12 @@ std::unique_ptr<ArmEffect> MakeTorqueDrift();
 std::unique_ptr<ArmEffect> MakePayload(const Arm& arm, int place);
 
 /// Nuisances: the tracker's and the marker's place where they are unknown, and all that efforts
-/// need that no file states.
+/// and servos need that no file states.
 std::unique_ptr<ArmEffect> MakeTrackerPlace();
 std::unique_ptr<ArmEffect> MakeMarkerPlace();
 std::unique_ptr<ArmEffect> MakeMasses();
 std::unique_ptr<ArmEffect> MakeEffortShape();
+std::unique_ptr<ArmEffect> MakeServoInertia();
 
 /// Effects of the catalogue, payloads at each place of `arm`.
 Effects MakeEffects(const Arm& arm);

@@ -4,9 +4,7 @@
 #include <cmath>
 
 namespace flextip::arms {
-namespace {
 
-/// Slopes at the samples: means of those beside.
 Eigen::VectorXd Slopes(const Eigen::VectorXd& t, const Eigen::VectorXd& x) {
   const Eigen::Index n = x.size();
   Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
@@ -16,8 +14,6 @@ Eigen::VectorXd Slopes(const Eigen::VectorXd& t, const Eigen::VectorXd& x) {
   }
   return slope;
 }
-
-}  // namespace
 
 Eigen::VectorXd Delayed(const Eigen::VectorXd& t, const Eigen::VectorXd& x, double delay_s) {
   const Eigen::Index n = x.size();

@@ -7,6 +7,9 @@
 
 namespace flextip::arms {
 
+/// Slopes at the samples: means of those beside.
+Eigen::VectorXd Slopes(const Eigen::VectorXd& t_s, const Eigen::VectorXd& x);
+
 /// x(t - delay), x smooth between its samples (Hermite's cubics) and at rest beyond its ends.
 Eigen::VectorXd Delayed(const Eigen::VectorXd& t_s, const Eigen::VectorXd& x, double delay_s);
 

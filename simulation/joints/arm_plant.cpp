@@ -15,7 +15,8 @@ double Friction(double coulomb, double viscous, double speed) {
   return coulomb * std::tanh(speed / 2e-3) + viscous * speed;
 }
 
-/// The command at a time, linear between rows, at rest before the first.
+/// The command at a time: a cubic between rows that keeps its speed at each, at rest before the
+/// first. Straight pieces would have all their acceleration between the rows, where nobody looks.
 Eigen::VectorXd CommandAt(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& commands, double t) {
   const Eigen::Index last = t_s.size() - 1;
   if (t <= t_s[0]) return commands.row(0).transpose();
@@ -23,7 +24,14 @@ Eigen::VectorXd CommandAt(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& com
   const double place = (t - t_s[0]) / (t_s[1] - t_s[0]);
   const auto k = std::min<Eigen::Index>(Eigen::Index(place), last - 1);
   const double u = place - double(k);
-  return ((1.0 - u) * commands.row(k) + u * commands.row(k + 1)).transpose();
+  const auto speed = [&](Eigen::Index row) -> Eigen::RowVectorXd {
+    return 0.5 * (commands.row(std::min(row + 1, last)) -
+                  commands.row(std::max<Eigen::Index>(row - 1, 0)));
+  };
+  const double v = 1.0 - u;
+  return (v * v * (1.0 + 2.0 * u) * commands.row(k) + v * v * u * speed(k) +
+          u * u * (1.0 + 2.0 * v) * commands.row(k + 1) - u * u * v * speed(k + 1))
+      .transpose();
 }
 
 }  // namespace

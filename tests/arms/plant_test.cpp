@@ -31,6 +31,7 @@ ArmResult DiagnosisOf(const ArmFaults& faults, const ArmSensors& sensors,
 const ArmSensors kSeen{.command = false, .encoders = true, .seen = true};
 const ArmSensors kPose{.command = false, .encoders = true, .pose = true};
 const ArmSensors kTorque{.command = false, .encoders = true, .torque = true};
+const ArmSensors kCommand{.command = true, .encoders = true};
 const ArmSensors kServo{.command = true, .encoders = true, .torque = true};
 
 double Value(const ArmResult& result, const std::string& effect, const std::string& parameter,
@@ -74,7 +75,7 @@ TEST(ArmPlant, LosesNoEnergyWithoutServoAndFriction) {
 }
 
 TEST(ArmPlant, HealthyArmGivesNone) {
-  for (const ArmSensors& sensors : {kSeen, kPose})
+  for (const ArmSensors& sensors : {kSeen, kPose, kTorque, kCommand, kServo})
     EXPECT_THAT(DiagnosisOf({}, sensors).answer.verdict, ElementsAre("none"));
 }
 
@@ -118,6 +119,24 @@ TEST(ArmPlant, FrictionOfAMotorIsFound) {
   EXPECT_THAT(result.answer.verdict, ElementsAre("joint_friction"));
   EXPECT_NEAR(Value(result, "joint_friction", "coulomb", 0), 0.3, 0.03);
   EXPECT_NEAR(Value(result, "joint_friction", "viscous", 1), 0.4, 0.04);
+}
+
+TEST(ArmPlant, PayloadIsFoundWithItsPlace) {
+  for (const ArmSensors& sensors : {kTorque, kServo}) {
+    const ArmResult result =
+        DiagnosisOf({.payload = {{2, 0.2, {0.05, 0.0, 0.1}}}}, sensors);  // the place "slide"
+    EXPECT_THAT(result.answer.verdict, ElementsAre("payload"));
+    EXPECT_NEAR(Value(result, "payload", "mass_kg"), 0.2, 0.01);
+    EXPECT_EQ(Value(result, "payload", "link"), 3.0);
+  }
+}
+
+TEST(ArmPlant, LateCommandsAreFound) {
+  for (const ArmSensors& sensors : {kCommand, kServo}) {
+    const ArmResult result = DiagnosisOf({.command_delay_s = 0.04}, sensors);
+    EXPECT_THAT(result.answer.verdict, ElementsAre("command_latency"));
+    EXPECT_NEAR(Value(result, "command_latency", "delay_s"), 0.04, 0.002);
+  }
 }
 
 TEST(ArmPlant, SoftServoLagsAndDroops) {
