@@ -21,6 +21,13 @@ bool IsDrift(const FaultRecord& r) {
   return r.fault.starts_with("drift ") && !r.pair && r.size != "subtle";
 }
 
+/// Whether the loop went on. A wrist whose encoder slipped stays beside its registration: there a
+/// loop must not.
+std::string GoingOn(const FaultRecord& r) {
+  const bool stays = r.fault.find("encoder-slip") != std::string::npos;
+  return r.going_on == "no" && stays ? "no, as the fault stays" : r.going_on;
+}
+
 void Add(const FaultRecord& r, HazardCount& count) {
   ++count.runs;
   count.hazards += r.hazard != "none";
@@ -41,7 +48,7 @@ KindFigures OfKind(const std::string& kind, const std::vector<FaultRecord>& reco
     figures.no_equilibrium += r.outcome == "no equilibrium";
     figures.threw += r.outcome.starts_with("threw");
     figures.false_stops += r.false_stop;
-    ++figures.going_on[r.going_on];
+    ++figures.going_on[GoingOn(r)];
     // A loop that was stopped before the fault keeps hazards away and finds faults by chance.
     if (r.false_stop) continue;
     if (!r.coarse) Add(r, figures.unstopped);
