@@ -45,7 +45,8 @@ class Searcher {
     noise_ = MeasureNoise(replay_, false);
     FitNuisances(replay_, noise_);
     found_.base_theta = replay_.Theta();
-    noise_ = MeasureNoise(replay_, false);
+    // A jerk of some rows would lead all fits by stated noise astray.
+    noise_ = MeasureNoise(replay_, true);
     basis_.emplace(replay_);
     sizes_ = SizesOf(replay_, noise_);
     generic_sd_ = Eigen::VectorXd::Constant(GenericCount(replay_, *basis_), options_.discrepancy);

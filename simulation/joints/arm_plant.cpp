@@ -15,6 +15,14 @@ double Friction(double coulomb, double viscous, double speed) {
   return coulomb * std::tanh(speed / 2e-3) + viscous * speed;
 }
 
+/// The efforts that hold the arm where it stands.
+Eigen::VectorXd RestOf(const ArmPlantSettings& settings, const ChainOfLinks& chain,
+                       const Eigen::VectorXd& link) {
+  return DynamicsOf(chain, settings.masses, link, Eigen::VectorXd::Zero(link.size()),
+                    settings.gravity_m_s2)
+      .rest;
+}
+
 /// The command at a time: a cubic between rows that keeps its speed at each, at rest before the
 /// first. Straight pieces would have all their acceleration between the rows, where nobody looks.
 Eigen::VectorXd CommandAt(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& commands, double t) {
@@ -47,6 +55,17 @@ std::vector<ArmPlantState> RunArm(const ArmPlantSettings& settings, const Eigen:
   state.t_s = t_s[0];
   state.motor = commands.row(0).transpose();
   state.link = routing * state.motor;
+  // Cables are stretched, and servos off their commands, by what they hold.
+  const Eigen::VectorXd rest = RestOf(settings, chain, state.link),
+                        on_motor = routing.transpose() * rest;
+  for (Eigen::Index i = 0; i < n && !settings.servo_holds_gravity; ++i)
+    if (settings.drives[i].servo_stiffness > 0.0)
+      state.motor[i] -= on_motor[i] / settings.drives[i].servo_stiffness;
+  state.link = routing * state.motor;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (rest[i] != 0.0 && settings.drives[i].cable_stiffness > 0.0)
+      state.link[i] -= rest[i] / settings.drives[i].cable_stiffness +
+                       std::copysign(0.5 * settings.drives[i].play, rest[i]);
   state.motor_speed = state.link_speed = state.effort = Eigen::VectorXd::Zero(n);
   std::vector<ArmPlantState> states;
   for (Eigen::Index row = 0; row < t_s.size(); ++row) {
@@ -59,11 +78,7 @@ std::vector<ArmPlantState> RunArm(const ArmPlantSettings& settings, const Eigen:
       M.diagonal().array() += 2e-3;  // what no joint is without
       const Ldlt inverse(M);
       Eigen::VectorXd held = Eigen::VectorXd::Zero(n);
-      if (settings.servo_holds_gravity) {
-        held = DynamicsOf(chain, settings.masses, state.link, Eigen::VectorXd::Zero(n),
-                          settings.gravity_m_s2)
-                   .rest;
-      }
+      if (settings.servo_holds_gravity) held = RestOf(settings, chain, state.link);
       for (int step = 0; step < kCableSteps; ++step) {
         const Eigen::VectorXd command =
             CommandAt(t_s, commands, state.t_s - settings.command_delay_s);

@@ -35,7 +35,7 @@ struct ArmPlantState {
   Eigen::VectorXd motor, motor_speed, link, link_speed, effort;
 };
 
-/// Runs the plant along commands (rows at `t_s`, evenly), starting at rest at the first, and
+/// Runs the plant along commands (rows at `t_s`, evenly), starting in balance at the first, and
 /// returns its state at each row. Throws WorkError where steps are too long for the cables.
 std::vector<ArmPlantState> RunArm(const ArmPlantSettings& settings, const Eigen::VectorXd& t_s,
                                   const Eigen::MatrixXd& commands);

@@ -19,6 +19,8 @@ Eigen::MatrixXd MotionOf(const Arm& arm, const ArmMotion& motion, const Eigen::V
   constexpr int kWaves = 3;
   std::mt19937_64 rng(motion.seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
+  // From rest: a jerk at the start would ring in all efforts.
+  const Eigen::ArrayXd u = (t_s.array() - t_s[0]).min(1.0), begins = u * u * (3.0 - 2.0 * u);
   Eigen::MatrixXd commands(t_s.size(), arm.Size());
   for (Eigen::Index i = 0; i < arm.Size(); ++i) {
     const double size = Turns(arm, i) ? motion.size_rad : motion.size_m;
@@ -26,8 +28,9 @@ Eigen::MatrixXd MotionOf(const Arm& arm, const ArmMotion& motion, const Eigen::V
     for (int wave = 0; wave < kWaves; ++wave) {
       const double hz = motion.fastest_hz * (0.3 + 0.7 * unit(rng));
       const double phase = 2.0 * std::numbers::pi * unit(rng);
-      commands.col(i).array() += size * (2.0 * std::numbers::pi * hz * t_s.array() + phase).sin() *
-                                 (0.6 + 0.4 * unit(rng));
+      const double part = 0.6 + 0.4 * unit(rng);
+      commands.col(i).array() +=
+          size * part * begins * (2.0 * std::numbers::pi * hz * t_s.array() + phase).sin();
     }
   }
   return commands;
@@ -59,7 +62,7 @@ ArmPlantSettings SettingsOf(const Arm& arm, const ArmFaults& faults) {
         faults.servo_damping.size() > 0 ? faults.servo_damping[i] : 1e-3 * drive.servo_stiffness;
     drive.cable_stiffness =
         faults.cable_stiffness.size() > 0 ? faults.cable_stiffness[i] : 4e4 * unit;
-    drive.cable_damping = 2e-4 * drive.cable_stiffness;
+    drive.cable_damping = 1e-3 * drive.cable_stiffness;
     drive.play = play[i];
     drive.motor_coulomb = coulomb[i];
     drive.motor_viscous = viscous[i];
@@ -139,11 +142,15 @@ Recording RecordArm(const Arm& arm, const ArmFaults& faults, const ArmSensors& s
       Eigen::VectorXd::LinSpaced(rows, 0.0, double(rows - 1) / motion.rate_hz);
   const Eigen::MatrixXd commands = MotionOf(arm, motion, t_s);
   const ArmPlantSettings settings = SettingsOf(arm, faults);
-  const auto states = RunArm(settings, t_s, commands);
-  const ChainOfLinks chain(settings.arm);
   const int n = arm.Size();
   const Eigen::VectorXd offset = Or(faults.encoder_offset, 0.0, n),
                         scale = Or(faults.encoder_scale, 0.0, n);
+  // The servo knows the motor by its encoder alone.
+  const Eigen::MatrixXd of_motor =
+      (commands.array().rowwise() * (1.0 + scale.array()).transpose()).rowwise() +
+      offset.array().transpose();
+  const auto states = RunArm(settings, t_s, of_motor);
+  const ChainOfLinks chain(settings.arm);
   Recording recording;
   recording.has_shaft = false;
   recording.arm = arm;
