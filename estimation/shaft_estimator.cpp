@@ -25,12 +25,15 @@ constexpr double kModestForces[] = {1.0, 2.0};  // sd of the force, EI / L^2, of
 // than at the true one (WindowEstimator.CovarianceOfThePortMatchesMonteCarlo fails with 60).
 constexpr int kMaxDamped = 20;
 
+// A start that is farther from the prior's mean, in standard deviations, comes from other sensors.
+constexpr double kNearStart = 3.0;
+
 // Gauss-Newton. Each step leaves far less than its own length, so that after a step of 1e-3
-// standard deviations nothing that counts is left (the rule of the damped fit is the same).
+// standard deviations nothing that counts is left. One of 1e-4 is not worth a rod.
 constexpr int kMaxGaussNewton = 8;
 constexpr double kSettled = 1e-6;   // squared step in standard deviations
+constexpr double kNothing = 1e-8;   // the same
 constexpr double kLeastGain = 0.1;  // of the gain that the linear model promises
-constexpr double kRounding = 1e-12;
 
 /// Returns whether nothing of what is handed on for control is infinite or not a number.
 bool IsFinite(const ShaftEstimate& e) {
@@ -113,14 +116,18 @@ bool GaussNewton(const RodFit& fit, RodParameters& x) {
     const RodParameters step = -Ldlt(Information(J)).Solve(gradient);
     const double cost = r.squaredNorm(), gain = -step.dot(gradient);
     if (!(gain >= 0.0)) return false;
-    const RodParameters next = at + step;
-    if (!fit(next.data(), r.data(), J.data())) return false;
-    if (!(r.squaredNorm() <= cost - kLeastGain * gain + kRounding * (1.0 + cost))) return false;
-    at = next;
-    if (gain < kSettled) {
-      x = at;
-      return true;
+    const bool settled = gain < kSettled;
+    if (gain >= kNothing) {
+      const RodParameters next = at + step;
+      if (!fit(next.data(), r.data(), J.data())) return false;
+      // What the rod is solved to is more than a tenth of the least gains.
+      const double most = settled ? cost + kSettled : cost - kLeastGain * gain;
+      if (!(r.squaredNorm() <= most)) return false;
+      at = next;
     }
+    if (!settled) continue;
+    x = at;
+    return true;
   }
   return false;
 }
@@ -175,10 +182,18 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
   prior.mean.segment<3>(3) += port_shift_m_;
   prior.port_whitening = port_whitening_;
   RodFit fit(shaft, z, prior, options_.use_positions, solver_);
+  // A sample that is asked about again starts where its fit ended. A new one has noise of its own.
   RodParameters x = prior.mean;
-  x.tail<3>() = last_force_N_ / fit.ForceUnit();
+  const auto near = [](const Eigen::Vector3d& shift_m, double sd_m) {
+    return shift_m.norm() < kNearStart * sd_m;
+  };
+  if (z.p_RW == last_.p_RW && near(last_.wrist_m, prior.sd[0]) && near(last_.port_m, prior.sd[3])) {
+    x.head<3>() += last_.wrist_m;
+    x.segment<3>(3) += last_.port_m;
+  }
+  x.tail<3>() = last_.force_N / fit.ForceUnit();
 
-  if (!IsPlain(change.effects) && last_force_N_.isZero(0.0)) {
+  if (!IsPlain(change.effects) && last_.force_N.isZero(0.0)) {
     // Without a past the steps may be long. The plain shaft's force is a start near enough.
     ShaftProblem plain = shaft;
     plain.rod.effects = RodEffects();
@@ -190,12 +205,11 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
     ShaftEstimate nothing;
     nothing.model = straight;
     nothing.status = EstimateStatus::kNotConverged;
-    last_force_N_.setZero();
-    last_misfit_ = 0.0;
+    last_ = {};
     return nothing;
   };
   if (!FitFromAnyStart(fit, x, estimate)) return give_up();
-  last_misfit_ = estimate.chi2 / (1 + estimate.measurements);
+  last_.misfit = estimate.chi2 / (1 + estimate.measurements);
   if (options_.compare_sensors) CompareSensors(fit, x, estimate);
   Describe(fit, x, estimate);
   if (!IsFinite(estimate)) return give_up();
@@ -206,11 +220,10 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
 }
 
 bool ShaftEstimator::FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate) {
-  RodParameters unloaded = x;
-  unloaded.tail<3>().setZero();
+  const RodParameters unloaded = fit.PriorMean();
   bool ok = Fit(fit, x, estimate);
   const double most =
-      last_misfit_ > 0.0 ? std::clamp(kSudden * last_misfit_, kSuddenMisfit, kMisfit) : kMisfit;
+      last_.misfit > 0.0 ? std::clamp(kSudden * last_.misfit, kSuddenMisfit, kMisfit) : kMisfit;
   const auto fits = [&] { return ok && estimate.chi2 < most * (1 + estimate.measurements); };
   // With effects a fit that is not at the bottom yet goes on from here with the next sample.
   if (fits() || (ok && !IsPlain(estimate.model.effects))) return ok;
@@ -225,7 +238,7 @@ bool ShaftEstimator::FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimat
   // The last force may be far from this one. Or a step went too far along the shaft, where the
   // sensors say little, and the fit ended at a shaft that has buckled or is pulled straight: a
   // start from the best modest force stays clear of both.
-  if (!last_force_N_.isZero(0.0)) {
+  if (!last_.force_N.isZero(0.0)) {
     solver_.Reset();
     try_from(unloaded);
   }
@@ -315,7 +328,10 @@ void ShaftEstimator::FillModel(const RodFit& fit, const RodParameters& x, const 
   model.p_RP = x.segment<3>(3);
   model.f_tip_N = x.tail<3>() * fit.ForceUnit();
   model.force_known = true;
-  last_force_N_ = model.f_tip_N;
+  last_.p_RW = z.p_RW;
+  last_.wrist_m = x.head<3>() - fit.PriorMean().head<3>();
+  last_.port_m = x.segment<3>(3) - fit.PriorMean().segment<3>(3);
+  last_.force_N = model.f_tip_N;
   model.beam = ChooseBeamFit(z, model.instrument, model, options_.use_positions);
   if (options_.estimate_tissue) {
     // A fit that misses by more than its noise knows its force by so much less.

@@ -84,14 +84,28 @@ class ShaftEstimator {
 
   void VisitState(StateText& state) {
     state(solver_);
-    state(last_force_N_);
-    state(last_misfit_);
+    state(last_);
     state(port_shift_m_);
     state(port_whitening_);
     state(tissue_);
   }
 
  private:
+  /// Where the last fit ended.
+  struct Last {
+    Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();     // as measured
+    Eigen::Vector3d wrist_m = Eigen::Vector3d::Zero();  // less the prior's mean
+    Eigen::Vector3d port_m = Eigen::Vector3d::Zero();   // less the prior's mean
+    Eigen::Vector3d force_N = Eigen::Vector3d::Zero();
+    double misfit = 0.0;  // chi2 a measurement; 0: there is none
+    void VisitState(StateText& state) {
+      state(p_RW);
+      state(wrist_m);
+      state(port_m);
+      state(force_N);
+      state(misfit);
+    }
+  };
   bool FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   bool Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   static void CompareSensors(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
@@ -104,8 +118,7 @@ class ShaftEstimator {
 
   EstimatorOptions options_;
   ShaftRod solver_;
-  Eigen::Vector3d last_force_N_ = Eigen::Vector3d::Zero();
-  double last_misfit_ = 0.0;  // of the last fit, chi2 a measurement; 0: there is none
+  Last last_;
   Eigen::Vector3d port_shift_m_ = Eigen::Vector3d::Zero();
   std::optional<Eigen::Matrix3d> port_whitening_;
   TissueSecants tissue_;

@@ -17,9 +17,11 @@ PYTHON_PACKAGES=(
   python3-matplotlib python3-mypy
 )
 # More for tests, benchmarks, the thesis's figures and checks; librosbag-storage-dev reads bags of
-# ROS 1, Open MPI spreads batches, parallel is their peer in bench/, opencv-doc holds real chessboard pictures, poppler-utils turns printed pages into pictures.
+# ROS 1, openigtlink-examples are peers at the virtual robot, Open MPI spreads batches, parallel is
+# their peer in bench/, opencv-doc holds real chessboard pictures, poppler-utils turns printed pages into pictures.
 TEST_PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev libgeos-dev librosbag-storage-dev
+  openigtlink-examples
   libopenmpi-dev openmpi-bin parallel g++ libclang-rt-14-dev llvm clang-format clang-tidy groff-base opencv-doc poppler-utils chromium
   "${SITE_PACKAGES[@]}" "${PYTHON_PACKAGES[@]}"
 )

@@ -14,6 +14,10 @@ using gauss_collocation::kTables;
 constexpr int kOrder = 20;
 constexpr double kTolerance = 1e-12;  // of the last two terms, against a unit tangent
 constexpr int kMaxSteps = 64;
+// Two terms in a row below this one, over all that is left: the rest is below rounding. (A force
+// that grows along the rod alone leaves out every third order.)
+constexpr double kNothing = 1e-18;
+constexpr int kLeastOrder = 8;
 // Gauss's error over N nodes is the coefficient of order 2 N times (h / 4)^2N, about.
 constexpr double kMapTolerance = 1e-12;
 
@@ -49,26 +53,31 @@ constexpr auto kInverse = [] {
 
 /// The series of one step.
 struct RodSeries {
+  int order = kOrder;                // of the last terms that are there
   std::array<Pair3, kOrder + 1> ty;  // the tangent, and the vector across
   std::array<Pair3, kOrder + 1> mm;  // the moment, twice
 
-  RodSeries(const RodPoint& start, const RodForce& force);
+  /// Takes as many terms as matter over the length `left`, kOrder at most.
+  RodSeries(const RodPoint& start, const RodForce& force, double left);
   /// Returns the length, at most `left`, over which the series may be trusted: up to where its last
   /// two terms reach the tolerance. Not a number where the series is not.
   double TrustedLength(double left) const;
   RodPoint At(double u, const Eigen::Vector3d& P0) const;
-  /// Returns the size of the coefficient of order k.
-  double SizeOf(int k) const {
-    return std::sqrt(std::max(ty[k].Get<0>().squaredNorm(), mm[k].Get<0>().squaredNorm()));
+  double SquaredSizeOf(int k) const {
+    return std::max(ty[k].Get<0>().squaredNorm(), mm[k].Get<0>().squaredNorm());
   }
+  /// Returns the size of the coefficient of order k.
+  double SizeOf(int k) const { return k > order ? 0.0 : std::sqrt(SquaredSizeOf(k)); }
   /// Returns the map of variations over the step's length, with as few nodes as do.
   template <int N>
   RodMap Map(double h, const RodForce& force) const;
 };
 
-RodSeries::RodSeries(const RodPoint& start, const RodForce& force) {
+RodSeries::RodSeries(const RodPoint& start, const RodForce& force, double left) {
   ty[0] = Pair3::Of(start.t, start.y);
   mm[0] = Pair3::Of(start.m, start.m);
+  double power2 = 1.0;  // of left, to twice the order
+  bool last_is_nothing = false;
   for (int k = 0; k < kOrder; ++k) {
     Pair3 ty_next;
     for (int j = 0; j <= k; ++j) ty_next.AddCross(ty[j], mm[k - j]);
@@ -77,11 +86,19 @@ RodSeries::RodSeries(const RodPoint& start, const RodForce& force) {
     m_next *= kInverse[k + 1];
     ty[k + 1] = ty_next * kInverse[k + 1];
     mm[k + 1] = Pair3::Of(m_next, m_next);
+    power2 *= left * left;
+    const bool is_nothing = SquaredSizeOf(k + 1) * power2 <= kNothing * kNothing;
+    if (is_nothing && last_is_nothing && k + 1 >= kLeastOrder) {
+      order = k + 1;
+      return;
+    }
+    last_is_nothing = is_nothing;
   }
 }
 
 double RodSeries::TrustedLength(double left) const {
   double trusted = left;
+  if (order < kOrder) return trusted;
   for (const int k : {kOrder - 1, kOrder}) {
     const double size = SizeOf(k);
     double power = 1.0;
@@ -93,8 +110,8 @@ double RodSeries::TrustedLength(double left) const {
 }
 
 RodPoint RodSeries::At(double u, const Eigen::Vector3d& P0) const {
-  Pair3 ty_sum = ty[kOrder], mm_sum = mm[kOrder], P_sum;
-  for (int k = kOrder - 1; k >= 0; --k) {
+  Pair3 ty_sum = ty[order], mm_sum = mm[order], P_sum;
+  for (int k = order - 1; k >= 0; --k) {
     P_sum.Horner(u, ty[k + 1] * kInverse[k + 2]);
     ty_sum.Horner(u, ty[k]);
     mm_sum.Horner(u, mm[k]);
@@ -113,8 +130,8 @@ RodMap RodSeries::Map(double h, const RodForce& force) const {
   std::array<RodNode, N> nodes;
   for (int i = 0; i < N; ++i) {
     const double s = h * kTables<N>.node[i];
-    Pair3 ty_sum = ty[kOrder], mm_sum = mm[kOrder];
-    for (int k = kOrder - 1; k >= 0; --k) {
+    Pair3 ty_sum = ty[order], mm_sum = mm[order];
+    for (int k = order - 1; k >= 0; --k) {
       ty_sum.Horner(s, ty[k]);
       mm_sum.Horner(s, mm[k]);
     }
@@ -136,7 +153,7 @@ bool Advance(double length, RodForce force, RodPoint& point, RodMap* map) {
   double left = length;
   for (int step = 0; left > 0.0; ++step) {
     if (step == kMaxSteps) return false;
-    const RodSeries series(point, force);
+    const RodSeries series(point, force, left);
     const double trusted = series.TrustedLength(left);
     if (!(trusted > left / (kMaxSteps - step))) return false;  // also where it is not a number
     const double h = left / std::ceil(left / trusted);
