@@ -13,6 +13,7 @@ namespace {
 constexpr double kStopsBelow_hz = 5.0;  // rows rarer than this are stops
 constexpr double kSameTime_s = 1e-3;
 constexpr double kStart_s = 0.5;
+constexpr Eigen::Index kFewestRows = 20;  // fewer show nothing, which is no verdict
 
 double Seconds(TimeNs t_ns, TimeNs start_ns) { return 1e-9 * double(t_ns - start_ns); }
 
@@ -161,6 +162,11 @@ ArmData::ArmData(const Recording& recording, std::string recording_name)
   has_command = recording.joints_command0.has_value();
   if (has_command) command = TrackOf(recording.joints_command0->q, start_ns);
   joints = has_encoders ? TrackOf(recording.joints0->q, start_ns) : command;
+  if (joints.Rows() < kFewestRows) {
+    throw InputError::At(name, 0,
+                         fmt::format("{} rows of joints, at least {} are needed to judge",
+                                     joints.Rows(), kFewestRows));
+  }
   at_stops = 1.0 / MedianStep(joints.t_s) < kStopsBelow_hz;
   if (has_encoders && has_command && !at_stops) {
     followed = PutOn(command.t_s, WithoutStart(joints), false);

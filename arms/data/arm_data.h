@@ -35,6 +35,7 @@ struct Measured {
 };
 
 struct ArmData {
+  /// Throws InputError for fewer than 20 rows of joints, or where nothing else was measured.
   ArmData(const Recording& recording, std::string recording_name);
 
   int Size() const { return arm.Size(); }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
+#include "arms/effects/effects.h"
 #include "core/error.h"
 #include "recording/text/text.h"
 #include "recording/text/yaml_map.h"
@@ -33,11 +36,24 @@ std::string SectionText(const std::string& name, const std::vector<EffectFit>& e
   return text;
 }
 
-std::vector<EffectFit> ReadSection(const YamlMap& top, const std::string& key) {
+/// The names of all effects, or of all nuisances.
+std::set<std::string> Names(bool nuisances) {
+  Arm arm;
+  arm.payload_places.resize(1);  // without a place there is no payload
+  std::set<std::string> names;
+  const Effects all = nuisances ? MakeNuisances() : MakeEffects(arm);
+  for (const auto& effect : all) names.insert(effect->Name());
+  return names;
+}
+
+std::vector<EffectFit> ReadSection(const YamlMap& top, const std::string& key, bool nuisances) {
   std::vector<EffectFit> effects;
   if (!top.Has(key)) return effects;
   const YamlMap section = top.Map(key);
+  const std::set<std::string> known = Names(nuisances);
   for (const std::string& name : section.Keys()) {
+    if (!known.contains(name))
+      throw section.Error(name, fmt::format("found {}, which is unknown", Quoted(name)));
     EffectFit fit{name, {}};
     const YamlMap map = section.Map(name);
     for (const std::string& parameter : map.Keys()) {
@@ -78,8 +94,15 @@ ArmModel ReadArmModel(const std::filesystem::path& file) {
   if (const auto version = top.Integer("version"); version != kArmModelVersion)
     throw top.Error("version", fmt::format("found {}, expected {}", version, kArmModelVersion));
   (void)top.Has("sd");
-  return {ReadSection(top, "effects"), ReadSection(top, "within_tolerance"),
-          ReadSection(top, "nuisances"), ReadSection(top, "base_nuisances")};
+  ArmModel model{ReadSection(top, "effects", false), ReadSection(top, "within_tolerance", false),
+                 ReadSection(top, "nuisances", true), ReadSection(top, "base_nuisances", true)};
+  ReadLog log;
+  top.WarnUnknown(log);
+  if (!log.warnings.empty()) {
+    const std::string& first = log.warnings.front();
+    throw InputError(first.substr(0, first.rfind(" ignored")));
+  }
+  return model;
 }
 
 }  // namespace flextip::arms

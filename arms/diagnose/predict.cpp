@@ -35,9 +35,8 @@ Eigen::VectorXd WindowsOf(const EffectFit& fit) {
 /// A payload's block is that of its place.
 bool IsOfPlace(const Layout& layout, const Layout::Block& block, const EffectFit& fit) {
   if (fit.effect != "payload") return true;
-  double wanted = 0.0, own = 0.0;
-  for (const auto& p : fit.parameters)
-    if (p.name == "place") wanted = p.value[0];
+  double own = 0.0;
+  const double wanted = ListOf(fit.effect, Parameters(fit), "place", 1)[0];
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(block.size);
   for (const auto& p : block.effect->Report(layout.DataOf(block), zero,
                                             Eigen::MatrixXd::Zero(block.size, block.size)))

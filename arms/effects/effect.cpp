@@ -25,17 +25,22 @@ Eigen::VectorXd PlainEffect::FromReported(const ArmData& data,
                                           const std::vector<ArmParameter>& reported) const {
   std::vector<double> theta;
   for (const Named& named : Names(data)) {
-    const ArmParameter* found = nullptr;
-    for (const ArmParameter& p : reported)
-      if (p.name == named.name) found = &p;
-    const std::size_t count = found == nullptr ? 0 : found->value.size();
-    if (count != std::size_t(named.size)) {
-      throw InputError(fmt::format("{}.{}: found {} numbers, expected {} for this arm", Name(),
-                                   named.name, count, named.size));
-    }
-    for (const double value : found->value) theta.push_back(value - named.nominal);
+    for (const double value : ListOf(Name(), reported, named.name, named.size))
+      theta.push_back(value - named.nominal);
   }
   return Eigen::Map<Eigen::VectorXd>(theta.data(), Eigen::Index(theta.size()));
+}
+
+std::vector<double> ListOf(const std::string& effect, const std::vector<ArmParameter>& reported,
+                           const std::string& name, int size) {
+  std::vector<double> found;
+  for (const ArmParameter& p : reported)
+    if (p.name == name) found = p.value;
+  if (int(found.size()) != size) {
+    throw InputError(fmt::format("{}.{}: found {} numbers, expected {} for this arm", effect, name,
+                                 found.size(), size));
+  }
+  return found;
 }
 
 std::vector<double> ToleranceOf(const ArmData& data, const std::string& key, double fallback,

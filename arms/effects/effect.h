@@ -158,6 +158,11 @@ class PlainEffect : public ArmEffect {
   virtual std::vector<Named> Names(const ArmData& data) const = 0;
 };
 
+/// Returns the reported list of that name. Throws InputError where it has another length; one that
+/// is absent is empty.
+std::vector<double> ListOf(const std::string& effect, const std::vector<ArmParameter>& reported,
+                           const std::string& name, int size);
+
 /// One parameter a joint: tolerance and typical size by the joint's unit; the recording's own
 /// tolerance for `effect.parameter` first.
 struct JointSizes {

@@ -90,13 +90,15 @@ class JointBacklash : public ArmEffect {
                                const std::vector<ArmParameter>& reported) const override {
     const int n = data.Size();
     Eigen::VectorXd theta = Eigen::VectorXd::Zero(n * n);
-    for (const ArmParameter& p : reported)
-      if (p.name == "width" && int(p.value.size()) == n)
-        theta.head(n) = Eigen::Map<const Eigen::VectorXd>(p.value.data(), n);
+    const std::vector<double> width = ListOf(Name(), reported, "width", n);
+    const std::vector<double> drag = ListOf(Name(), reported, "drag", n * n - n);
+    theta.head(n) = Eigen::Map<const Eigen::VectorXd>(width.data(), n);
+    for (int m = 0; m < n * n - n; ++m)
+      theta[n + m] = drag[m] * Divisor(data, theta, OffDiagonal(n, m).column);
+    // What SetWindows takes: they may be absent.
     for (const ArmParameter& p : reported) {
-      if (p.name != "drag" || int(p.value.size()) != n * n - n) continue;
-      for (int m = 0; m < n * n - n; ++m)
-        theta[n + m] = p.value[m] * Divisor(data, theta, OffDiagonal(n, m).column);
+      if (p.name == "window") ListOf(Name(), reported, p.name, n);
+      if (p.name == "carried") ListOf(Name(), reported, p.name, n * n);
     }
     return theta;
   }

@@ -40,11 +40,12 @@ class LinkGeometry : public ArmEffect {
   Eigen::VectorXd FromReported(const ArmData& data,
                                const std::vector<ArmParameter>& reported) const override {
     Eigen::VectorXd theta = Eigen::VectorXd::Zero(3 * data.Size());
-    const std::string names[] = {"a_m", "d_m", "alpha_rad"};
-    for (const ArmParameter& p : reported)
-      for (int kind = 0; kind < 3; ++kind)
-        for (int i = 0; p.name == names[kind] && i < data.Size() && i < int(p.value.size()); ++i)
-          theta[3 * i + kind] = p.value[i];
+    int kind = 0;
+    for (const char* name : {"a_m", "d_m", "alpha_rad"}) {
+      const std::vector<double> values = ListOf(Name(), reported, name, data.Size());
+      for (int i = 0; i < data.Size(); ++i) theta[3 * i + kind] = values[i];
+      ++kind;
+    }
     return theta;
   }
 };

@@ -76,8 +76,24 @@ class Campaign:
         sample = data / "recordings/sample_0"
         (options.out / "map").mkdir()
         self.cases = []
-        for name in ("estimate", "diagnose", "check", "align"):
+        for name in ("estimate", "check", "align"):
             self.cases.append((name, sample, lambda f, n=name: [n, f]))
+        inputs = self.commands.inputs
+        short, arm = inputs / "short", inputs / "arm"
+        self.cases.append(("diagnose", short, lambda f: ["diagnose", f]))
+        self.cases.append(("diagnose several", inputs / "later", lambda f: [
+            "diagnose", short, f, "--no-closed-loop"]))
+        self.cases.append(("diagnose motion", short, lambda f: [
+            "diagnose", f, "--no-closed-loop", "--plan-motion", "--plan-seconds", "2"]))
+        for _ in range(2):  # their files are many
+            self.cases.append(("diagnose arm", arm, lambda f: ["diagnose", f]))
+        self.cases.append(("predict", short, lambda f: ["predict", f, "--model",
+                                                        inputs / "found/model.yaml"]))
+        for recording, found in ((short, "found"), (arm, "arm_found")):
+            self.cases.append(("predict by", inputs / found / "model.yaml",
+                               lambda f, r=recording: ["predict", r, "--model", f]))
+        self.cases.append(("effect new", inputs / "term.yaml", lambda f: ["effect", "new", f]))
+        self.cases.append(("replay", self.commands.simulated, lambda f: ["replay", f]))
         self.cases.append(("track", data / "recordings/rendered", lambda f: ["track", f]))
         self.cases.append(("export csv", sample, lambda f: ["export", "csv", f]))
         for scenario in ("press", "chapter4_up", "direction"):
@@ -85,10 +101,10 @@ class Campaign:
                                lambda f: ["simulate", f]))
         for name in ("thesis", "tolerance"):
             self.cases.append(("map", data / f"maps/{name}.yaml", lambda f: ["map", f]))
-        self.cases.append(("corners", self.commands.inputs / "corners.csv",
+        self.cases.append(("corners", inputs / "corners.csv",
                            lambda f: ["calibrate", "camera", "--corners", f, "--board",
                                       "chessboard:9x6:0.025"]))
-        self.cases.append(("import", self.commands.inputs / "robot.csv",
+        self.cases.append(("import", inputs / "robot.csv",
                            lambda f: ["import", "csv", f, "--length", "0.6", "--diameter", "2.4mm",
                                       "--stiffness", "0.3", "--port", "0.28,0,0", "--set",
                                       "wrist0.orientation_noise_rad=0.001"]))
@@ -118,6 +134,8 @@ class Campaign:
             file.write_bytes(text)
         out = self.place / "out"
         shutil.rmtree(out, ignore_errors=True)
+        if out.is_file():
+            out.unlink()
         words = [self.commands.program, *map(str, line(target)), "-o", str(out), "--quiet"]
 
         def limit():

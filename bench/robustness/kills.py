@@ -9,6 +9,7 @@ folder is write-protected (left out for root), two runs go into one folder at on
 --force, and the input changes while it is read.
 """
 import argparse
+import math
 import os
 import pathlib
 import random
@@ -146,8 +147,8 @@ class Trial:
 
     def changing_input(self, name, count):
         """A table of the input is cut, grows or is exchanged while the command runs."""
-        files = [f for f in self.commands.sample.rglob("data.csv")]
-        if not any(str(self.commands.sample) == str(a) for a in self.commands.lines[name][0]):
+        files = self.commands.tables(name)
+        if not files:
             return
         for _ in range(count):
             out = self.fresh()
@@ -175,6 +176,12 @@ class Trial:
                 self.blame(name, f"input {way}: failed and left a result")
 
 
+def allot(kills, seconds):
+    """Returns how many kills each command gets: the fewer the longer it runs, twelve at least."""
+    whole = sum(1.0 / (1.0 + s) for s in seconds.values())
+    return {n: max(12, math.ceil(kills / (1.0 + s) / whole)) for n, s in seconds.items()}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", required=True)
@@ -186,8 +193,9 @@ def main():
     options = parser.parse_args()
     trial = Trial(options)
     names = [options.only] if options.only else list(trial.commands.lines)
-    each, kills, late = -(-options.kills // len(names)), 0, 0
-    for name in names:
+    shares = allot(options.kills, {n: trial.seconds for n in names if trial.undisturbed(n)})
+    kills, late = 0, 0
+    for name, each in shares.items():
         if not trial.undisturbed(name):
             continue
         came_late = trial.kill(name, each)

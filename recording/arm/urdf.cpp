@@ -9,12 +9,14 @@
 #include "core/error.h"
 #include "core/rotation.h"
 #include "recording/arm/arm_file.h"
+#include "recording/text/bounds.h"
 #include "recording/text/text.h"
 
 namespace flextip {
 namespace {
 
-constexpr std::size_t kMostUrdfJoints = 32;
+constexpr std::size_t kMostUrdfJoints = 32;      // of the chain
+constexpr std::size_t kMostJointsInFile = 1000;  // a humanoid has some 100
 
 struct Element {
   std::string name;
@@ -42,8 +44,12 @@ class XmlReader {
 
  private:
   InputError Error(const std::string& what) const { return InputError::At(file_, Line(), what); }
+  /// The line of the place, counted on from where it was asked for last: once over the file.
   long Line() const {
-    return 1 + std::count(text_.begin(), text_.begin() + std::ptrdiff_t(at_), '\n');
+    line_ += std::count(text_.begin() + std::ptrdiff_t(counted_),
+                        text_.begin() + std::ptrdiff_t(at_), '\n');
+    counted_ = at_;
+    return line_;
   }
 
   bool Skip(const std::string& begin, const std::string& end) {
@@ -120,7 +126,9 @@ class XmlReader {
   }
 
   std::string file_, text_;
-  std::size_t at_ = 0;
+  std::size_t at_ = 0;  ///< never goes back
+  mutable std::size_t counted_ = 0;
+  mutable long line_ = 1;
 };
 
 struct UrdfJoint {
@@ -160,6 +168,11 @@ class Urdf {
       if (inertial == nullptr || inertial->Child("mass") == nullptr) return {};
       const Element& mass = *inertial->Child("mass");
       ArmLink link{Numbers(mass, "value", 1)[0], Eigen::Vector3d::Zero()};
+      const Bounds bounds = BoundsOf("mass_kg");
+      if (link.mass_kg < 0.0 || link.mass_kg > bounds.most) {
+        throw Error(mass.line, fmt::format("link {}: found a mass of {:g} kg, expected 0 to {:g}",
+                                           name, link.mass_kg, bounds.most));
+      }
       if (const Element* origin = inertial->Child("origin")) link.com_m = Origin(*origin).p;
       return link;
     }
@@ -231,6 +244,9 @@ class Urdf {
       joint.axis = Eigen::Vector3d::Map(Numbers(*axis, "xyz", 3).data());
     if (joint.axis.norm() < 1e-6) throw Error(e.line, fmt::format("joint {}: no axis", joint.name));
     joint.axis.normalize();
+    if (joints_.size() == kMostJointsInFile) {
+      throw Error(e.line, fmt::format("found more than {} joints", kMostJointsInFile));
+    }
     if (!joints_.emplace(joint.child, joint).second)
       throw Error(e.line, fmt::format("link {} has two parents", joint.child));
   }
@@ -240,9 +256,10 @@ class Urdf {
     for (auto found = joints_.find(child); found != joints_.end(); found = joints_.find(child)) {
       if (chain.size() > joints_.size())
         throw Error(found->second.line, fmt::format("link {} is its own ancestor", child));
-      chain.insert(chain.begin(), found->second);
+      chain.push_back(found->second);
       child = found->second.parent;
     }
+    std::reverse(chain.begin(), chain.end());
     return chain;
   }
 

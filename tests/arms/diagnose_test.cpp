@@ -132,6 +132,13 @@ TEST(DiagnoseArm, FoundModelPredictsAnotherMotion) {
   EXPECT_GT(prediction.base_rms.at("joints_seen0_q4_rad"), 3e-2);
 }
 
+TEST(DiagnoseArm, RefusesTooFewRows) {
+  Recording recording = SeenAtStops(10);
+  recording.joints_command0->q.resize(19);
+  recording.joints_seen0->q.resize(19);
+  EXPECT_THROW(ArmData(recording, "short"), InputError);
+}
+
 TEST(DiagnoseArm, RefusesAnotherArm) {
   Recording other = ArmRecording(ThreeJointsWithMasses());
   other.joints0 = SmoothMotion(*other.arm, 100, 50.0, 1);

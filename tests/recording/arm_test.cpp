@@ -141,5 +141,33 @@ TEST_F(ArmFiles, AUrdfIsAnArm) {
   EXPECT_THROW(ReadArm(folder_ / "arm.urdf", log), InputError);
 }
 
+/// A URDF of joints one behind the other, a line each, whose first link has this mass.
+std::string ChainOf(int joints, const std::string& mass = "1") {
+  std::string text =
+      "<robot><link name='1'><inertial><mass value='" + mass + "'/></inertial></link>\n";
+  for (int i = 0; i < joints; ++i) {
+    text += fmt::format("<joint name='j' type='{}'><parent link='{}'/><child link='{}'/></joint>\n",
+                        i < 2 ? "revolute" : "fixed", i, i + 1);
+  }
+  return text + "</robot>";
+}
+
+TEST_F(ArmFiles, AUrdfIsRefusedWithItsLine) {
+  const auto refusal = [&](const std::string& text) -> std::string {
+    Write("arm.urdf", text);
+    ReadLog log;
+    try {
+      ReadArm(folder_ / "arm.urdf", log);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(ChainOf(1000)), "");
+  EXPECT_THAT(refusal(ChainOf(1001)), HasSubstr("arm.urdf:1002: found more than 1000 joints"));
+  EXPECT_THAT(refusal(ChainOf(2, "-1")), HasSubstr("arm.urdf:1: link 1: found a mass of -1 kg"));
+  EXPECT_THAT(refusal(ChainOf(2, "2e5")), HasSubstr("expected 0 to 100000"));
+}
+
 }  // namespace
 }  // namespace flextip

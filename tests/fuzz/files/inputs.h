@@ -10,10 +10,13 @@ namespace flextip {
 
 /// The parts of the input are "STREAM\n", sensor.yaml and data.csv; or recording.yaml alone.
 int CheckRecordingInput(std::span<const std::uint8_t> input);
+/// An arm.yaml, or a URDF where it begins with '<'.
+int CheckArmInput(std::span<const std::uint8_t> input);
 int CheckCsvInput(std::span<const std::uint8_t> input);
 int CheckScenarioInput(std::span<const std::uint8_t> input);
 int CheckSessionInput(std::span<const std::uint8_t> input);
 int CheckModelInput(std::span<const std::uint8_t> input);
+int CheckArmModelInput(std::span<const std::uint8_t> input);
 int CheckMapInput(std::span<const std::uint8_t> input);
 int CheckMeshInput(std::span<const std::uint8_t> input);
 int CheckCalibrationInput(std::span<const std::uint8_t> input);

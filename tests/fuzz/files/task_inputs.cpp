@@ -1,4 +1,5 @@
-// Scenarios, sessions, models, maps and meshes.
+// Scenarios, sessions, models (of shafts and of arms), maps and meshes.
+#include "arms/diagnose/model_file.h"
 #include "diagnosis/model/extended_model.h"
 #include "live/session/session.h"
 #include "simulation/closed_loop/scenario.h"
@@ -36,6 +37,16 @@ int CheckModelInput(std::span<const std::uint8_t> input) {
   if (!ReadsOrRefuses([&] { model = diagnosis::ReadModel(file); })) return 0;
   const std::string text = diagnosis::ModelYaml(model);
   Require(diagnosis::ModelYaml(diagnosis::ReadModel(folder.Write("again.yaml", text))) == text);
+  return 1;
+}
+
+int CheckArmModelInput(std::span<const std::uint8_t> input) {
+  static const InputFolder folder;
+  const auto file = folder.Write("model.yaml", TextOf(input));
+  arms::ArmModel model;
+  if (!ReadsOrRefuses([&] { model = arms::ReadArmModel(file); })) return 0;
+  const std::string text = arms::ArmModelYaml(model);
+  Require(arms::ArmModelYaml(arms::ReadArmModel(folder.Write("again.yaml", text))) == text);
   return 1;
 }
 

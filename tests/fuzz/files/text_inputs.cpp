@@ -1,8 +1,7 @@
-// Tables, calibrations, camera files and corners.
+// Tables, calibrations and camera files.
 #include <cmath>
 #include <string>
 
-#include "calibration/boards/corners_file.h"
 #include "recording/calibrations/file.h"
 #include "recording/cameras/camera_file.h"
 #include "recording/cameras/camera_formats.h"
@@ -65,20 +64,6 @@ int CheckCameraInput(std::span<const std::uint8_t> input) {
     understood = 1;
   }
   return understood;
-}
-
-int CheckCornersInput(std::span<const std::uint8_t> input) {
-  static const InputFolder folder;
-  const auto file = folder.Write("corners.csv", TextOf(input));
-  CornersFile corners;
-  if (!ReadsOrRefuses([&] { corners = ReadCorners(file); })) return 0;
-  for (const BoardView& view : corners.views) {
-    Require(view.sighting.ids.size() == view.sighting.px.size());
-    for (const auto& px : view.sighting.px) Require(px.cwiseAbs().maxCoeff() <= 1e6);
-  }
-  WriteCorners(folder / "again.csv", corners);
-  Require(ReadCorners(folder / "again.csv").views.size() == corners.views.size());
-  return 1;
 }
 
 }  // namespace flextip
