@@ -1,7 +1,20 @@
-// How often a test repeats a trial that it takes statistics of.
+// What tests ask of the sanitizers: how often to repeat a trial that they take statistics of.
 #pragma once
 
 namespace flextip {
+
+/// Whether the thread sanitizer is in the program, which has a thread of its own.
+#if defined(__SANITIZE_THREAD__)
+inline constexpr bool kThreadSanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+inline constexpr bool kThreadSanitized = true;
+#else
+inline constexpr bool kThreadSanitized = false;
+#endif
+#else
+inline constexpr bool kThreadSanitized = false;
+#endif
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kSanitized = true;
