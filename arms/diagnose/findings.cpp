@@ -63,6 +63,7 @@ std::vector<ReportedParameter> Reported(const Layout& layout, const Layout::Bloc
   const auto own =
       block.effect->Report(layout.DataOf(block), theta.segment(block.first, block.size),
                            covariance.block(block.first, block.first, block.size, block.size));
+  reported.reserve(own.size());
   for (const ArmParameter& p : own) reported.push_back({p.name, p.value, p.sd});
   return reported;
 }

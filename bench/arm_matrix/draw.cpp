@@ -14,7 +14,6 @@ using simulation::ArmFaults;
 using simulation::ArmSensors;
 
 constexpr int kJoints = 3;  // the third slides
-constexpr double kSlide = 0.1;
 
 struct Sensors {
   const char* name;

@@ -87,7 +87,7 @@ void Summarize(const std::filesystem::path& file) {
       c.right += r.at("right").get<bool>();
     };
     const std::string part = r.at("part"), size = r.at("size");
-    count(by_part[size.empty() ? part : part + ", " + size]);
+    count(by_part[size.empty() ? part : fmt::format("{}, {}", part, size)]);
     seconds.push_back(r.at("seconds"));
     if (part != "single") continue;
     count(by_effect[r.at("effects")[0]]);

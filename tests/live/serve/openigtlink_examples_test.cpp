@@ -96,7 +96,7 @@ int FreePort() {
   const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address = Local(0);
   socklen_t size = sizeof address;
-  ::bind(listener, reinterpret_cast<sockaddr*>(&address), size);
+  EXPECT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
   ::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
   ::close(listener);
   return ntohs(address.sin_port);
