@@ -60,9 +60,4 @@ struct SensorMisfit {
 };
 using SensorMisfits = std::array<SensorMisfit, kComparedSensors>;
 
-/// Rows of a fit that belong to one sensor.
-struct SensorRows {
-  int from = 0, count = 0;
-};
-
 }  // namespace flextip

@@ -53,14 +53,20 @@ class RodFit {
   /// Returns the number of scalar measurements (without the priors) that the last call used.
   int MeasurementCount() const { return rows_ - NUM_PARAMETERS; }
 
-  /// Returns the rows of the last call that are the wrist's reading and each sensor's.
-  const std::array<SensorRows, kComparedSensors>& RowsOfSensors() const { return sensor_rows_; }
+  /// Returns each sensor against all others, where the least squares are and leave `covariance`.
+  SensorMisfits MisfitsAt(const RodParameters& x,
+                          const Eigen::Matrix<double, 9, 9>& covariance) const;
 
   ShaftProblem ProblemAt(const RodParameters& parameters) const;
   const RodParameters& PriorMean() const { return prior_.mean; }
   double ForceUnit() const { return force_unit_; }
 
  private:
+  /// Rows that belong to one sensor.
+  struct SensorRows {
+    int from = 0, count = 0;
+  };
+  double FallWithout(const SensorRows& rows, const Eigen::Matrix<double, 9, 9>& covariance) const;
   void AddPosition(const Eigen::Vector3d& measured, const Eigen::Matrix3d& whiten,
                    const Eigen::Vector3d& p, const RodDerivative& dp) const;
   void AddDirection(const Eigen::Vector3d& measured, double noise_rad, const Eigen::Vector3d& t,

@@ -86,24 +86,6 @@ Matrix9d Information(const RodFit::Jacobian& jacobian) {
   return information;
 }
 
-/// Returns by how much chi-squared falls without the rows of one sensor. With the rows' residuals r
-/// and P the part of their unit covariance that the fit leaves, that is r^T P^-1 r. What the others
-/// know ten times worse than the sensor itself leaves a P of a hundredth, and is not compared.
-double FallWithout(const SensorRows& rows, const RodFit::Residuals& residuals,
-                   const RodFit::Jacobian& jacobian, const Matrix9d& covariance) {
-  constexpr int kMost = 6;  // a place and a direction have five
-  constexpr double kAlone = 0.01;
-  const auto r = residuals.segment(rows.from, rows.count);
-  const auto J = jacobian.middleRows(rows.from, rows.count);
-  const Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor, kMost, 9> JC = J * covariance;
-  Eigen::Matrix<double, kMost, kMost> P = Eigen::Matrix<double, kMost, kMost>::Identity();
-  P.topLeftCorner(rows.count, rows.count) -= JC * J.transpose();
-  P.diagonal().array() += kAlone;
-  Eigen::Matrix<double, kMost, 1> all = Eigen::Matrix<double, kMost, 1>::Zero();
-  all.head(rows.count) = r;
-  return all.dot(Ldlt(P).Solve(all));
-}
-
 /// Goes from `x` to the least squares by steps without damping. Returns false where the sum of
 /// squares does not fall, as far from the end; `x` is then what it was.
 bool GaussNewton(const RodFit& fit, RodParameters& x) {
@@ -210,7 +192,7 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
   };
   if (!FitFromAnyStart(fit, x, estimate)) return give_up();
   last_.misfit = estimate.chi2 / (1 + estimate.measurements);
-  if (options_.compare_sensors) CompareSensors(fit, x, estimate);
+  if (options_.compare_sensors) estimate.misfits = fit.MisfitsAt(x, estimate.covariance);
   Describe(fit, x, estimate);
   if (!IsFinite(estimate)) return give_up();
   FillModel(fit, x, z, estimate);
@@ -273,20 +255,6 @@ bool ShaftEstimator::Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate)
   estimate.measurements = fit.MeasurementCount();
   estimate.covariance = Ldlt(Information(jacobian)).Inverse();
   return estimate.covariance.allFinite();
-}
-
-/// Takes the covariance as Fit left it, in the units of the fit.
-void ShaftEstimator::CompareSensors(const RodFit& fit, const RodParameters& x,
-                                    ShaftEstimate& estimate) {
-  RodFit::Residuals residuals;
-  RodFit::Jacobian jacobian;
-  if (!fit(x.data(), residuals.data(), jacobian.data())) return;
-  for (std::size_t i = 0; i < estimate.misfits.size(); ++i) {
-    const SensorRows& rows = fit.RowsOfSensors()[i];
-    estimate.misfits[i] = {};
-    if (rows.count == 0) continue;
-    estimate.misfits[i] = {FallWithout(rows, residuals, jacobian, estimate.covariance), rows.count};
-  }
 }
 
 void ShaftEstimator::Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate) {

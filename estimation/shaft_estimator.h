@@ -108,7 +108,6 @@ class ShaftEstimator {
   };
   bool FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
   bool Fit(RodFit& fit, RodParameters& x, ShaftEstimate& estimate);
-  static void CompareSensors(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
   void Describe(const RodFit& fit, const RodParameters& x, ShaftEstimate& estimate);
   /// Returns whether the load bends the shaft by more than the doubt in the tip, so that the load
   /// improves the tip.

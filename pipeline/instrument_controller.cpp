@@ -110,7 +110,6 @@ void InstrumentController::VisitState(StateText& state) {
   state(by_all_);
   state(p_RW_watched_);
   state(p_goal_last_);
-  state(about_reading_);
   state(about_command_);
   state(corrections_);
   state(excess_m_);

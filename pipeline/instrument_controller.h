@@ -141,7 +141,6 @@ class InstrumentController {
   PathWatch path_watch_;
   std::optional<VotedShaft> by_all_;  // of this cycle
   std::optional<Eigen::Vector3d> p_RW_watched_, p_goal_last_;
-  CorrectionLimit about_reading_;  // of one cycle: each reading has its own noise
   CorrectionLimit about_command_;
   int corrections_ = 0;                                 // limited ones in a row, in one direction
   Eigen::Vector3d excess_m_ = Eigen::Vector3d::Zero();  // of the last one

@@ -7,7 +7,6 @@ namespace flextip {
 namespace {
 
 constexpr double kStands_m = 1e-9;
-constexpr double kVideo_hz = 30.0;  // of tips that are seen
 
 /// The largest part of `v`, at most all, with which `before` and `v` together are no longer than
 /// `most_m`, or than `before` is.

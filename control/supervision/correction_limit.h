@@ -8,6 +8,8 @@
 
 namespace flextip {
 
+inline constexpr double kVideo_hz = 30.0;  ///< of tips that are seen
+
 /// How far commands may move the tip (m): across the goal's motion, and along it beyond that motion
 /// or back.
 struct CorrectionLimits {

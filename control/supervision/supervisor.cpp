@@ -73,6 +73,7 @@ double Supervisor::Beside_m(const SupervisedCycle& cycle) const {
         NearestOnSegment(sent.p_RW, later.value_or(sent.p_RW), *cycle.p_RW);
     nearest_m = std::min(nearest_m, (*cycle.p_RW - on_way).norm());
     later = sent.p_RW;
+    // The command of before the lag counts: the robot may only now leave it.
     if (Seconds(cycle.t_ns - sent.t_ns) > options_.follow_lag_s) return nearest_m;
   }
   // Not commanded for long enough yet to say.
@@ -84,19 +85,13 @@ bool Supervisor::IsAstray(const SupervisedCycle& cycle) const {
   const double allowed_m = AllowedBeside_m(cycle);
   const Sent& newest = sent_[(next_ + kSize - 1) % kSize];
   const double moved_m = (*cycle.p_RW - newest.p_RW_before).norm();
-  double nearest_m = std::numeric_limits<double>::infinity(), farthest_m = 0.0, away_m = 0.0;
-  std::optional<Eigen::Vector3d> later;
+  double farthest_m = 0.0, away_m = 0.0;
   for (std::size_t i = 1; i <= count_; ++i) {
     const Sent& sent = sent_[(next_ + kSize - i) % kSize];
-    const Eigen::Vector3d on_way =
-        NearestOnSegment(sent.p_RW, later.value_or(sent.p_RW), *cycle.p_RW);
-    nearest_m = std::min(nearest_m, (*cycle.p_RW - on_way).norm());
     farthest_m = std::max(farthest_m, (sent.p_RW - newest.p_RW_before).norm());
     away_m = std::max(away_m, (sent.p_RW_before - *cycle.p_RW).norm());
-    later = sent.p_RW;
-    // The command of before the lag counts: the robot may only now leave it.
     if (Seconds(cycle.t_ns - sent.t_ns) <= options_.follow_lag_s) continue;
-    const bool stands = nearest_m > allowed_m && away_m < allowed_m;
+    const bool stands = away_m < allowed_m && Beside_m(cycle) > allowed_m;
     return stands || moved_m > farthest_m + allowed_m;
   }
   // Not commanded for long enough yet to say.

@@ -149,6 +149,7 @@ void SampleScreen::ScreenTip(TimeNs t_ns, std::optional<Sample<TipMeasurement>>&
   figures.head<3>() = seen.p_RE;
   if (seen.d_RE) figures.tail<3>() = *seen.d_RE;
   const bool finite = figures.allFinite() && seen.covariance_m2.allFinite();
+  repeats_ = false;
   const Stop stop = Look(tip_past_, t_ns, tip->t_ns, figures, finite, p_RW, 0.0);
   if (repeats_) found.doubt = Stop::kStaleTip;
   if (stop == Stop::kNone) return;

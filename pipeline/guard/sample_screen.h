@@ -63,7 +63,6 @@ class SampleScreen {
     state(tip_);
     state(em_);
     state(has_news_);
-    state(repeats_);
   }
 
  private:
@@ -114,7 +113,8 @@ class SampleScreen {
   SupervisorOptions options_;
   Past wrist_, tip_past_, em0_past_, em1_past_, strain_past_, load_past_;
   Place tip_, em_;
-  bool has_news_ = false, repeats_ = false;  // in this cycle
+  bool has_news_ = false;  // in this cycle
+  bool repeats_ = false;   // a stream that was looked at since it was set false
 };
 
 }  // namespace flextip

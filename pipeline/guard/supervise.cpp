@@ -21,7 +21,6 @@ constexpr double kCorrection = 0.4;
 constexpr double kCorrections = 1.5;
 // Along the goal's way a tip that lags may catch up by half of a correction.
 constexpr double kCatchUp = 0.5;
-constexpr double kVideo_hz = 30.0;  // of tips that are seen
 
 constexpr double kForceDeviations = 3.0;
 constexpr double kLeastShaft = 0.01;  // of its length, on either side of the port
@@ -117,8 +116,9 @@ Limited InstrumentController::Corrected(const ControllerCommand& command) {
   const double once_m = kCorrection * options.max_tip_deviation_m;
   const double pictures = std::min(1.0, kVideo_hz / options.rate_hz);  // a cycle
   const double most_m = once_m * (1.0 + pictures * corrections_);
-  Limited limited = about_reading_.Limit(command.measurements.p_RW, command.p_RW_command, *J, way,
-                                         {most_m, kCatchUp * most_m});
+  // Each reading has its own noise: what it led to before does not count.
+  Limited limited = CorrectionLimit().Limit(command.measurements.p_RW, command.p_RW_command, *J,
+                                            way, {most_m, kCatchUp * most_m});
   if (const auto& p_last = supervisor_.LastCommand()) {
     const double next_m = kCorrections * once_m;
     const Limited next =

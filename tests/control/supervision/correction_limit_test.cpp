@@ -73,18 +73,20 @@ TEST(CorrectionLimit, NoiseOfFastCyclesIsNotLimited) {
   // The tip follows each sample, so that a correction takes the last one back.
   std::mt19937_64 rng(4);
   std::normal_distribution<double> normal(0.0, 0.0001);
-  CorrectionLimit limit(1000.0);
+  CorrectionLimit limit(1000.0), one;
   const Eigen::Vector3d way(1.5e-5, 0.0, 0.0);
   Eigen::Vector3d last = kZero;
-  int limited = 0;
+  int limited = 0, by_each = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Eigen::Vector3d sample = DrawVector<3>(normal, rng);
-    limited +=
-        limit.Limit(kZero, way + sample - last, Eigen::Matrix3d::Identity(), way, {0.0008, 0.0004})
-            .limited;
+    const Eigen::Vector3d sample = DrawVector<3>(normal, rng), p_wish = way + sample - last;
+    const Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
+    limited += limit.Limit(kZero, p_wish, J, way, {0.0008, 0.0004}).limited;
+    by_each += one.Limit(kZero, p_wish, J, way, {0.000024, 0.000012}).limited;
     last = sample;
   }
-  EXPECT_LT(limited, 150);  // a twentieth; a thirtieth of the limit a cycle would limit nearly all
+  // A thirtieth of the limit for each cycle would cut nearly all.
+  EXPECT_GT(by_each, 2900);
+  EXPECT_LT(10 * limited, by_each);
 }
 
 }  // namespace
