@@ -62,7 +62,7 @@ ArmPlantSettings SettingsOf(const Arm& arm, const ArmFaults& faults) {
         faults.servo_damping.size() > 0 ? faults.servo_damping[i] : 1e-3 * drive.servo_stiffness;
     drive.cable_stiffness =
         faults.cable_stiffness.size() > 0 ? faults.cable_stiffness[i] : 4e4 * unit;
-    drive.cable_damping = 1e-3 * drive.cable_stiffness;
+    drive.cable_damping = 2e-4 * drive.cable_stiffness;
     drive.play = play[i];
     drive.motor_coulomb = coulomb[i];
     drive.motor_viscous = viscous[i];

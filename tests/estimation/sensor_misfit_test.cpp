@@ -1,6 +1,7 @@
 // Each sensor against all others, by fits without it.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 #include "core/draw_vector.h"
@@ -46,24 +47,24 @@ TEST(SensorMisfit, IsWhatChiSquaredFallsByWithoutTheSensor) {
       if (sensor == kWristPlace) EXPECT_GE(misfit, 0.7 * fall - 0.05);
       large += fall > 5.0;
     };
-    Measurements rest = z;
-    rest.wrist_position_noise_m = 1.0;
-    expect(kWristPlace, 3, rest);
-    rest = z;
-    rest.tip.reset();
-    expect(kTipRows, 5, rest);
-    rest = z;
-    rest.em.reset();
-    expect(kEmRows, 5, rest);
-    rest = z;
-    rest.port_direction.reset();
-    expect(kPortRows, 2, rest);
-    rest = z;
-    rest.strain.reset();
-    expect(kStrainRows, 4, rest);
-    rest = z;
-    rest.load.reset();
-    expect(kLoadRows, 3, rest);
+    struct Sensor {
+      std::size_t index;
+      int degrees;
+      void (*drop)(Measurements&);
+    };
+    const std::array<Sensor, 6> sensors{{
+        {kWristPlace, 3, [](Measurements& rest) { rest.wrist_position_noise_m = 1.0; }},
+        {kTipRows, 5, [](Measurements& rest) { rest.tip.reset(); }},
+        {kEmRows, 5, [](Measurements& rest) { rest.em.reset(); }},
+        {kPortRows, 2, [](Measurements& rest) { rest.port_direction.reset(); }},
+        {kStrainRows, 4, [](Measurements& rest) { rest.strain.reset(); }},
+        {kLoadRows, 3, [](Measurements& rest) { rest.load.reset(); }},
+    }};
+    for (const Sensor& sensor : sensors) {
+      Measurements rest = z;
+      sensor.drop(rest);
+      expect(sensor.index, sensor.degrees, rest);
+    }
     // The gages' axes hang on the wrist's turn.
     EXPECT_EQ(all.misfits[kTurn].degrees, 2);
   }
