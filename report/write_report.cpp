@@ -16,6 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A robot that moved until it knew has the page of what it found.
+void WritePageOfSimulate(const fs::path& folder) {
+  const bool diagnosed = fs::exists(folder / "diagnosis.json");
+  diagnosed ? WriteDiagnoseReport(folder) : WriteSimulateReport(folder);
+}
+
 struct CommandPage {
   const char* command;  ///< or its first word
   void (*write)(const fs::path& folder);
@@ -24,7 +30,7 @@ struct CommandPage {
 
 const std::vector<CommandPage>& Pages() {
   static const std::vector<CommandPage> pages{
-      {"simulate", WriteSimulateReport},
+      {"simulate", WritePageOfSimulate},
       {"track", WriteTrackReport, {"vision0/data.csv", "frames.csv"}},
       {"estimate", WriteEstimateReport, {"state0/data.csv"}},
       {"excerpt", WriteExcerptReport, {"stop.csv"}},

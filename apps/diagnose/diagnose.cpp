@@ -22,9 +22,7 @@
 #include "diagnosis/diagnose.h"
 #include "diagnosis/judge_diagnosis.h"
 #include "diagnosis/model/extended_model.h"
-#include "diagnosis/planning/motion_file.h"
 #include "diagnosis/several/diagnose_several.h"
-#include "recording/text/text.h"
 #include "report/pages.h"
 #include "simulation/closed_loop/gain.h"
 
@@ -123,17 +121,6 @@ void Finish(const Options& options, const std::vector<NamedRead>& reads, const J
   fmt::print("{}\n", (options.input.out / "report.html").string());
 }
 
-void WriteResult(const std::filesystem::path& folder, const std::string& json,
-                 const diagnosis::DiagnosisResult& result) {
-  WriteTextFile(folder / "diagnosis.json", json);
-  WriteTextFile(folder / "residuals.csv", ResidualsCsv(result.residuals));
-  diagnosis::WriteModel(folder / "model.yaml", diagnosis::FromResult(result));
-  if (!result.discovered.empty())
-    WriteTextFile(folder / "discovered.csv", DiscoveredCsv(result.discovered));
-  if (result.plan && !result.plan->places_m.empty())
-    diagnosis::WriteMotion(folder / "motion.yaml", *result.plan);
-}
-
 std::optional<simulation::ClosedLoopGain> GainOf(const Options& options, const Recording& recording,
                                                  const diagnosis::DiagnosisResult& result,
                                                  OutputFolder& output) {
@@ -151,16 +138,13 @@ void RunOne(const Options& options, const std::vector<NamedRead>& reads, bool qu
                           {.without = options.without, .plan = options.plan.Limits()});
   output.Warn(result.warnings);
   const auto gain = GainOf(options, read.recording, result, output);
-  WriteResult(output.folder(), DiagnosisJson(result, gain ? &*gain : nullptr), result);
+  WriteDiagnosisFiles(output.folder(), DiagnosisJson(result, gain ? &*gain : nullptr), result);
   Judgement judged = diagnosis::JudgeDiagnosis(result);
   MentionFindings(read.findings, judged);
   Finish(options, reads, judged, SummaryOf(result), output, quiet);
 }
 
 void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, bool quiet) {
-  if (options.plan.plan)
-    throw InputError(
-        "--plan-motion is of one recording, found several: plan from the last of them");
   OutputFolder output = OutputOf(options);
   std::vector<plausibility::Finding> findings;
   std::vector<diagnosis::NamedRecording> recordings;
@@ -170,17 +154,18 @@ void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, boo
     recordings.push_back({one.name, one.read.recording});
   }
   output.Beware(FindingsJson(findings));
-  const diagnosis::SeveralResult several =
-      diagnosis::DiagnoseSeveral(recordings, {.without = options.without});
+  const diagnosis::SeveralResult several = diagnosis::DiagnoseSeveral(
+      recordings, {.without = options.without, .plan = options.plan.Limits()});
   output.Warn(several.common.warnings);
   const auto gain = GainOf(options, recordings.front().recording, several.common, output);
-  WriteResult(output.folder(), DiagnosisJson(several, gain ? &*gain : nullptr), several.common);
+  WriteDiagnosisFiles(output.folder(), DiagnosisJson(several, gain ? &*gain : nullptr),
+                      several.common);
   nlohmann::json summary = SummaryOf(several.common);
   summary["recordings"] = several.names;
   summary["changes"] = several.changes.size();
   for (std::size_t r = 0; r < several.own.size(); ++r) {
     const auto folder = output.folder() / "recordings" / several.names[r];
-    WriteResult(folder, DiagnosisJson(several.own[r]), several.own[r]);
+    WriteDiagnosisFiles(folder, DiagnosisJson(several.own[r]), several.own[r]);
   }
   Judgement judged = diagnosis::JudgeSeveral(several);
   MentionFindings(findings, judged);

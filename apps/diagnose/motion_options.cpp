@@ -2,8 +2,7 @@
 
 namespace flextip {
 
-std::optional<diagnosis::MotionLimits> MotionOptions::Limits() const {
-  if (!plan) return {};
+diagnosis::MotionLimits MotionOptions::Within() const {
   diagnosis::MotionLimits within = limits;
   if (inserted_m.size() == 2) {
     within.inserted_from_m = inserted_m[0];
@@ -13,11 +12,20 @@ std::optional<diagnosis::MotionLimits> MotionOptions::Limits() const {
   return within;
 }
 
+std::optional<diagnosis::MotionLimits> MotionOptions::Limits() const {
+  if (!plan) return {};
+  return Within();
+}
+
 void AddMotionOptions(CLI::App& command, MotionOptions& options) {
-  constexpr double kAnHour = 3600.0, kHalfTurn = 1.5;
   auto* plan = command.add_flag("--plan-motion", options.plan,
                                 "Write OUT/motion.yaml: the path of the tip that tells the leading "
                                 "causes apart soonest. Limits not given are the recording's own");
+  AddMotionLimits(command, options, plan);
+}
+
+void AddMotionLimits(CLI::App& command, MotionOptions& options, CLI::Option* plan) {
+  constexpr double kAnHour = 3600.0, kHalfTurn = 1.5;
   const auto limit = [&](const char* name, auto& value, const char* text, const char* unit) {
     return command.add_option(name, value, text)->type_name(unit)->needs(plan);
   };

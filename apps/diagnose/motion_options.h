@@ -15,11 +15,14 @@ struct MotionOptions {
   std::vector<double> inserted_m;
   bool no_weight = false;
 
+  diagnosis::MotionLimits Within() const;
   /// Returns the limits where a plan is asked for.
   std::optional<diagnosis::MotionLimits> Limits() const;
 };
 
 /// Adds --plan-motion and its limits.
 void AddMotionOptions(CLI::App& command, MotionOptions& options);
+/// Adds the limits, which need `plan`.
+void AddMotionLimits(CLI::App& command, MotionOptions& options, CLI::Option* plan);
 
 }  // namespace flextip

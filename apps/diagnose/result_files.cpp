@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "diagnosis/model/catalogue.h"
+#include "diagnosis/model/extended_model.h"
 #include "diagnosis/planning/motion_file.h"
 #include "diagnosis/replay/sample_input.h"
 #include "recording/text/csv.h"
+#include "recording/text/text.h"
 
 namespace flextip {
 namespace {
@@ -267,6 +269,17 @@ std::string DiscoveredCsv(const std::vector<Discovered>& terms) {
     csv.EndRow();
   }
   return csv.TakeText();
+}
+
+void WriteDiagnosisFiles(const std::filesystem::path& folder, const std::string& json,
+                         const DiagnosisResult& result) {
+  WriteTextFile(folder / "diagnosis.json", json);
+  WriteTextFile(folder / "residuals.csv", ResidualsCsv(result.residuals));
+  WriteModel(folder / "model.yaml", FromResult(result));
+  if (!result.discovered.empty())
+    WriteTextFile(folder / "discovered.csv", DiscoveredCsv(result.discovered));
+  if (result.plan && !result.plan->places_m.empty())
+    WriteMotion(folder / "motion.yaml", *result.plan);
 }
 
 }  // namespace flextip

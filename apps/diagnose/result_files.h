@@ -1,6 +1,7 @@
 // The files of a diagnosis as text: diagnosis.json and residuals.csv (docs/formats.md).
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "diagnosis/diagnose.h"
@@ -25,5 +26,10 @@ std::string ResidualsCsv(const diagnosis::ResidualTable& residuals);
 /// Returns discovered.csv: of each term the variable, what the sensors say of it and what it says,
 /// sample by sample, thinned to a thousand; empty without terms.
 std::string DiscoveredCsv(const std::vector<diagnosis::Discovered>& terms);
+
+/// Writes into `folder` what a diagnosis has beside its page: `json`, residuals.csv, model.yaml,
+/// discovered.csv where there are terms and motion.yaml where one was planned. Throws WorkError.
+void WriteDiagnosisFiles(const std::filesystem::path& folder, const std::string& json,
+                         const diagnosis::DiagnosisResult& result);
 
 }  // namespace flextip

@@ -16,6 +16,8 @@
 #include "apps/common/next_step.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
+#include "apps/simulate/deviation.h"
+#include "apps/simulate/diagnose.h"
 #include "apps/simulate/frame_files.h"
 #include "apps/simulate/serve.h"
 #include "apps/stops/stops.h"
@@ -24,7 +26,6 @@
 #include "diagnosis/running/running_diagnosis.h"
 #include "diagnosis/running/warnings_table.h"
 #include "recording/recording_writer.h"
-#include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "recording/truth.h"
 #include "report/pages.h"
@@ -45,6 +46,7 @@ struct SimulateOptions {
   std::vector<std::string> frames_of;  ///< controllers whose frames are kept; empty: of all
   bool render = false, force = false;
   ServeCommand serve;
+  DiagnosingCommand diagnosing;
 };
 
 /// Progress of several runs at once.
@@ -66,19 +68,6 @@ class SharedProgress {
   Progress progress_;
   std::vector<std::size_t> done_;
 };
-
-void WriteDeviation(const fs::path& file, const simulation::LoopResult& result) {
-  CsvWriter csv({"timestamp [ns]", "p_desired_x [m]", "p_desired_y [m]", "p_desired_z [m]",
-                 "p_RE_x [m]", "p_RE_y [m]", "p_RE_z [m]", "deviation [m]"});
-  for (const simulation::LoopUpdate& update : result.updates) {
-    csv.Add(update.t_ns);
-    for (int i = 0; i < 3; ++i) csv.Add(update.p_RE_desired[i]);
-    for (int i = 0; i < 3; ++i) csv.Add(update.p_RE[i]);
-    csv.Add(update.deviation_m);
-    csv.EndRow();
-  }
-  WriteTextFile(file, csv.text());
-}
 
 /// A controller's run and what stopped it.
 struct OneRun {
@@ -175,8 +164,19 @@ bool Serves(const SimulateOptions& options, bool quiet) {
   return false;
 }
 
+/// Hands over to --diagnose.
+bool Diagnoses(const SimulateOptions& options, bool quiet) {
+  if (!options.diagnosing.asked) return false;
+  DiagnosingCommand diagnosing = options.diagnosing;
+  diagnosing.scenario = options.scenario;
+  diagnosing.out = options.out;
+  diagnosing.force = options.force;
+  RunDiagnosing(diagnosing, quiet);
+  return true;
+}
+
 void RunSimulate(const SimulateOptions& options, bool quiet) {
-  if (Serves(options, quiet)) return;
+  if (Serves(options, quiet) || Diagnoses(options, quiet)) return;
   simulation::Scenario scenario = simulation::ReadScenario(options.scenario);
   simulation::RequireRunnable(scenario, options.scenario, options.render);
   CheckFramesOf(options, scenario);
@@ -268,6 +268,10 @@ void AddSimulate(CLI::App& app, AppContext& context) {
           ->type_name("CONTROLLER");
   auto* serve = AddServeOptions(*command, options->serve);
   serve->excludes(model)->excludes(frames_of);
+  AddDiagnosingOptions(*command, options->diagnosing)
+      ->excludes(serve)
+      ->excludes(model)
+      ->excludes(render);
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->footer(
       "With several controllers each gets a folder of its name, a recording of its own.\n"
@@ -275,7 +279,9 @@ void AddSimulate(CLI::App& app, AppContext& context) {
       "the same, with the frames of one controller of six\n"
       "  flextip simulate testdata/scenarios/press.yaml --render --frames-of rod-track -o press\n"
       "a robot that is not there, for flextip control and other clients\n"
-      "  flextip simulate testdata/scenarios/press.yaml --serve 18944\n");
+      "  flextip simulate testdata/scenarios/press.yaml --serve 18944\n"
+      "a robot that moves until it knows what is wrong with its instrument\n"
+      "  flextip simulate testdata/scenarios/tag_or_camera.yaml --diagnose -o found\n");
   OnRun(*command, context, [options, &context] { RunSimulate(*options, context.quiet); });
 }
 

@@ -70,6 +70,8 @@ class Planner {
     one.size = size;
     one.drawn = 2;
     if (Wanted("pairs")) Add(one, "pairs", plan_.pairs);
+    one.drawn = 3;
+    if (Wanted("triples")) Add(one, "triples", plan_.triples);
     one.drawn = 0;
     for (const std::string& effect : effects_) {
       if (hidden::SensorOf(effect) == "load0" && !one.load) continue;
@@ -117,7 +119,7 @@ std::string MatrixCase::Key() const {
 }
 
 const std::vector<std::string>& MatrixParts() {
-  static const Names parts{"singles", "healthy",      "pairs",
+  static const Names parts{"singles", "healthy",      "pairs",       "triples",
                            "unknown", "leave_sensor", "leave_effect"};
   return parts;
 }

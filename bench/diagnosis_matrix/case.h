@@ -28,7 +28,7 @@ struct MatrixCase {
   std::string Key() const;
 };
 
-/// singles, healthy, pairs, unknown, leave_sensor, leave_effect.
+/// singles, healthy, pairs, triples, unknown, leave_sensor, leave_effect.
 const std::vector<std::string>& MatrixParts();
 
 struct MatrixPlan {
@@ -37,7 +37,8 @@ struct MatrixPlan {
   std::vector<std::string> loads = {"known", "unknown"};
   std::vector<std::string> effects;  ///< for singles and leave-outs; empty: the whole catalogue
   int seeds_per_cell = 1;            ///< a cell: part, effect or form, size, load, left-out part
-  int healthy = 10, pairs = 5;       ///< for each load; pairs for each size too
+  int healthy = 10;                  ///< for each load
+  int pairs = 5, triples = 5;        ///< for each load and size
   std::uint64_t first_seed = 1;
   std::string family = "tuning";
   double duration_s = 20.0;

@@ -40,6 +40,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--pairs", plan.pairs, "Random pairs for each load and size")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--triples", plan.triples, "Random three for each load and size")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--first-seed", plan.first_seed, "Another one gives other recordings");
   app.add_option("--family", plan.family, "Motions: tuning, held_out or any")
       ->check(CLI::IsMember({"tuning", "held_out", "any"}));

@@ -30,8 +30,8 @@ struct MatrixRecord {
   int attempt = 0;           ///< draws that had no equilibrium
   EffectNames label;         ///< right answer, sorted: effects, or none, or unknown
   std::string form;          ///< where unknown: which
-  /// Of a single effect or a pair from its nearest rival (matrix_rival.h), of a form outside the
-  /// catalogue from all that is in it (matrix_form.h).
+  /// Of a single effect, a pair or three from their nearest rival (matrix_rival.h), of a form
+  /// outside the catalogue from all that is in it (matrix_form.h).
   double separation = 0.0;
   std::string rival;  ///< empty where that was not measured
   std::string error;  ///< a refusal's message; the members below are empty then
@@ -57,7 +57,7 @@ struct MatrixRecord {
   EffectNames warnings;
 
   bool IsRight() const { return verdict == label; }
-  /// One effect or two that the recording holds enough to tell.
+  /// One effect, two or three that the recording holds enough to tell.
   bool IsSeparable() const { return !rival.empty() && separation >= kSeparable; }
   /// Whether every effect of the label is in the verdict, or in a group declared indistinguishable
   /// from it.

@@ -69,14 +69,6 @@ Separation Nearest(const Explanations& explanations,
   return nearest;
 }
 
-std::vector<diagnosis::Hypothesis> SimpleFirst(std::vector<diagnosis::Hypothesis> hypotheses) {
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const diagnosis::Hypothesis& a, const diagnosis::Hypothesis& b) {
-                     return a.effects.size() < b.effects.size();
-                   });
-  return hypotheses;
-}
-
 }  // namespace
 
 Eigen::VectorXd WidePrior(const diagnosis::ParameterLayout& layout,
@@ -96,7 +88,7 @@ Eigen::MatrixXd WithoutGeneric(const diagnosis::LinearProblem& problem,
 
 Separation NearestRival(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
                         const diagnosis::ParameterLayout& layout, const std::vector<int>& present) {
-  auto rivals = diagnosis::KnownHypotheses(layout.EffectCount(), present.size() > 1);
+  auto rivals = diagnosis::KnownHypotheses(layout.EffectCount(), present.size());
   std::erase(rivals, diagnosis::Hypothesis{present, false});
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(theta.size());
   for (const int b : present) {
@@ -105,14 +97,13 @@ Separation NearestRival(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
   }
   const Eigen::VectorXd g = H * truth;
   const Explanations explanations(H, g, truth.dot(g), layout);
-  return Nearest(explanations, SimpleFirst(std::move(rivals)), explanations.CostOf(present),
-                 layout);
+  return Nearest(explanations, rivals, explanations.CostOf(present), layout);
 }
 
 Separation NearestKnown(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, double c,
                         const diagnosis::ParameterLayout& layout) {
-  return Nearest(Explanations(H, g, c, layout),
-                 SimpleFirst(diagnosis::KnownHypotheses(layout.EffectCount(), true)), 0.0, layout);
+  return Nearest(Explanations(H, g, c, layout), diagnosis::KnownHypotheses(layout.EffectCount(), 2),
+                 0.0, layout);
 }
 
 }  // namespace flextip::bench

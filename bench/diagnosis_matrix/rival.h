@@ -35,10 +35,11 @@ Eigen::VectorXd WidePrior(const diagnosis::ParameterLayout& layout,
 Eigen::MatrixXd WithoutGeneric(const diagnosis::LinearProblem& problem,
                                const Eigen::VectorXd& generic_sd);
 
-/// Of the signal that the blocks of `present` (one or two, in order) make with parameters `theta`.
-/// `H` is the parameters' normal matrix. A single effect's rivals are none and every other single
-/// one; a pair's are none, every single one (its own two, too) and every other pair. Simple ones
-/// come first: where one of them is nearer than kSeparable, larger ones are not looked at.
+/// Of the signal that the blocks of `present` (one to three, in order) make with parameters
+/// `theta`. `H` is the parameters' normal matrix. A single effect's rivals are none and every other
+/// single one; a pair's are none, every single one (its own two, too) and every other pair, and so
+/// on for three. Simple ones come first: where one of them is nearer than kSeparable, larger ones
+/// are not looked at.
 Separation NearestRival(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
                         const diagnosis::ParameterLayout& layout, const std::vector<int>& present);
 

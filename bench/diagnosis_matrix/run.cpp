@@ -149,7 +149,7 @@ MatrixRecord RunMatrixCase(const MatrixCase& one) {
     hidden::WriteHidden(folder.Path(), hidden);
     const Recording recording = ReadRecording(folder.Path()).recording;
     std::optional<TrueModel> truth;
-    if (one.part == "singles" || one.part == "pairs") {
+    if (one.part == "singles" || one.part == "pairs" || one.part == "triples") {
       truth.emplace(recording, hidden);
       SetSeparation(*truth, record);
     } else if (one.part == "unknown") {

@@ -38,6 +38,14 @@ std::string Sentence(const NextMotion& plan) {
     return fmt::format("{:.1f} s of the planned motion{} are enough to {}.", plan.seconds, weight,
                        Task(plan));
   }
+  if (plan.probability >= kCertain) {
+    return fmt::format(
+        "{:.1f} s of the planned motion{} should just do to {}: if {} is right, it will be {:.0f} "
+        "% "
+        "likely.",
+        plan.seconds, weight, Task(plan), fmt::join(plan.least_sure, "+"),
+        100.0 * plan.probability);
+  }
   return fmt::format(
       "{:.1f} s of the planned motion{} are not enough to {}: if {} is right, it will be {:.0f} % "
       "likely.",

@@ -28,6 +28,8 @@ const double kCertainLogOdds = std::log(kCertain / (1.0 - kCertain));
 constexpr double kWeightCosts = 1.3;                      // in time: a person has to hang it
 constexpr double kSmallWeight = 0.4, kLargeWeight = 1.2;  // of EI / L^2
 constexpr double kMostWeight_N = 6.0;
+// A force across the shaft that any port bears: an unloaded recording must not forbid all weights.
+constexpr double kGentle = 1.2;  // of EI / L^2
 
 double Uniform(Rng& rng, double from, double to) {
   return std::uniform_real_distribution<double>(from, to)(rng);
@@ -87,9 +89,9 @@ class Planner {
     space_.inserted_from_m = limits.inserted_from_m.value_or(space_.inserted_from_m);
     space_.inserted_to_m = limits.inserted_to_m.value_or(space_.inserted_to_m);
     space_.angle_rad = limits.angle_rad.value_or(space_.angle_rad);
-    most_force_N_ = limits.port_force_N.value_or(MostRecordedForce());
     const double unit_N =
         set_.instrument.bending_stiffness_Nm2 / std::pow(set_.instrument.length_m, 2);
+    most_force_N_ = limits.port_force_N.value_or(std::max(MostRecordedForce(), kGentle * unit_N));
     weights_N_ = {0.0};
     if (!limits.may_hang_weight) return;
     for (const double part : {kSmallWeight, kLargeWeight})
@@ -263,7 +265,9 @@ NextMotion PlanNextMotion(const Replay& replay, const Selection& selection,
   for (const Rival& rival : rivals.All())
     plan.rivals.push_back(VerdictOf(rival.hypothesis, layout));
   const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(layout.Size(), layout.Size());
-  plan.needed = rivals.LeastSureWith(nothing).log_odds < kCertainLogOdds;
+  const double log_odds_now = rivals.LeastSureWith(nothing).log_odds;
+  plan.probability_now = Probability(log_odds_now);
+  plan.needed = log_odds_now < kCertainLogOdds;
   if (!plan.needed) return plan;
   Planner planner(replay, layout, selection, rivals, limits);
   const auto [course, told] = planner.Search();

@@ -11,7 +11,8 @@ namespace flextip::diagnosis {
 /// A hypothesis is certain with this probability.
 inline constexpr double kCertain = 0.95;
 
-/// What the robot and the room allow; what is absent is as it was in the recording.
+/// What the robot and the room allow; what is absent is as it was in the recording. The port's
+/// force may then always be 1.2 EI / L^2, which bears a small weight at the tip.
 struct MotionLimits {
   double seconds = 20.0;
   std::optional<double> wrist_speed_m_s;
@@ -32,6 +33,7 @@ struct NextMotion {
   std::optional<double> seconds_to_certain;  ///< empty: `seconds` are not enough
   double probability = 0.0;  ///< least, over the rivals, if that one is right, at the end
   std::vector<std::string> least_sure;  ///< that rival
+  double probability_now = 0.0;         ///< the same without a motion
   /// The same of the best of the simple motions that a person can make, within no limits.
   std::string library_motion;
   std::optional<double> library_seconds_to_certain;

@@ -96,16 +96,25 @@ std::vector<double> Rivals::LogPosteriors(const NormalSums& sums) const {
   return log_posteriors;
 }
 
+/// One that says the same and names a further effect, which was no rival, is not wrong.
+bool Rivals::IsRight(std::size_t rival, std::size_t contender) const {
+  if (contender == rival) return true;
+  return contender >= rivals_.size() &&
+         std::ranges::includes(contenders_[contender].effects, contenders_[rival].effects) &&
+         !contenders_[rival].effects.empty();
+}
+
 Rivals::LeastSure Rivals::LeastSureWith(const Eigen::MatrixXd& H) const {
   LeastSure least;
   for (std::size_t i = 0; i < rivals_.size(); ++i) {
     NormalSums sums = known_;
     sums.H += H;
     sums.g += H * rivals_[i].theta;
-    std::vector<double> others = LogPosteriors(sums);
-    const double right = others[i];
-    others.erase(others.begin() + std::ptrdiff_t(i));
-    const double log_odds = others.empty() ? 1e300 : right - LogSumExp(others);
+    const std::vector<double> logs = LogPosteriors(sums);
+    std::vector<double> right, others;
+    for (std::size_t j = 0; j < logs.size(); ++j)
+      (IsRight(i, j) ? right : others).push_back(logs[j]);
+    const double log_odds = others.empty() ? 1e300 : LogSumExp(right) - LogSumExp(others);
     if (log_odds < least.log_odds) least = {log_odds, i};
   }
   return least;

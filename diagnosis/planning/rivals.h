@@ -31,11 +31,13 @@ class Rivals {
     double log_odds = 1e300;  ///< against all else
     std::size_t rival = 0;
   };
-  /// Each rival in turn is taken as right. The recording goes on with data of normal matrix `H`
-  /// (the layout's parameters, noise of unit covariance).
+  /// Each rival in turn is taken as right: that its effects act, alone or beside one that is no
+  /// rival, since a second effect that hardly shows can never be ruled out. The recording goes on
+  /// with data of normal matrix `H` (the layout's parameters, noise of unit covariance).
   LeastSure LeastSureWith(const Eigen::MatrixXd& H) const;
 
  private:
+  bool IsRight(std::size_t rival, std::size_t contender) const;
   std::vector<double> LogPosteriors(const NormalSums& sums) const;
 
   const Selection& selection_;

@@ -213,7 +213,8 @@ auto Replay::Around(std::size_t k, Get get) const {
 
 /// The geometry's derivatives, those by compliances and by stiffness (with the force in its units)
 /// as the samples around have them: they grow with the force, and the noise of a force found from
-/// this very sample must not look like something explained.
+/// this very sample must not look like something explained. With a known load that by stiffness is
+/// its own less the load's noise: shapes are those of force over stiffness.
 GeometryByInputs Replay::ExpectedDerivatives(std::size_t k) const {
   GeometryByInputs by = replayed_[k].solved.by_inputs;
   for (const int input : {rod_input::kPortCompliance, rod_input::kWristCompliance})
@@ -221,11 +222,14 @@ GeometryByInputs Replay::ExpectedDerivatives(std::size_t k) const {
         k, [&](std::size_t j) -> Geometry { return replayed_[j].solved.by_inputs.col(input); });
   const auto with_force = [&](std::size_t j) -> Geometry {
     const GeometryByInputs& own = replayed_[j].solved.by_inputs;
-    if (samples_.has_load) return own.col(rod_input::kStiffness);
     return own.col(rod_input::kStiffness) +
            own.middleCols<3>(rod_input::kForce) * replayed_[j].f_tip_N;
   };
-  by.col(rod_input::kStiffness) += Around(k, with_force) - with_force(k);
+  if (!samples_.has_load) {
+    by.col(rod_input::kStiffness) += Around(k, with_force) - with_force(k);
+  } else if (const auto noise_N = LoadNoise(k); noise_N && !own_derivatives_) {
+    by.col(rod_input::kStiffness) += by.middleCols<3>(rod_input::kForce) * *noise_N;
+  }
   return by;
 }
 

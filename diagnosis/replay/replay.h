@@ -159,6 +159,7 @@ class Replay {
   auto Around(std::size_t k, Get get) const;
   GeometryByInputs ExpectedDerivatives(std::size_t k) const;
   Eigen::Matrix3d ForcePrior(std::size_t k) const;
+  std::optional<Eigen::Vector3d> LoadNoise(std::size_t k) const;
   double ByInput(std::size_t k, int r, int input) const;
   Eigen::MatrixXd OwnCovariance(std::size_t k, const std::vector<int>& rows) const;
   Statistics StatisticsOf(std::size_t k, const std::bitset<row::kCount>& rows_used) const;

@@ -71,6 +71,10 @@ Replay::Statistics Replay::StatisticsOf(std::size_t k,
   }
   s.force_prior = ForcePrior(k);
   s.e += s.by_force * (sample.f_tip_N - MeanForce(k));
+  if (const auto noise_N = LoadNoise(k); noise_N && !input_noise_.empty()) {
+    const auto fixed = input_noise_[k].rightCols<3>() / samples_.samples[k].force_noise_N;
+    s.e += (s.by_force - fixed(s.rows, Eigen::all)) * *noise_N;
+  }
   const InputNoise all = input_noise_.empty() ? InputNoiseHere(k) : input_noise_[k];
   const Eigen::MatrixXd by_noise = all(s.rows, Eigen::all);
   s.covariance = Llt(OwnCovariance(k, s.rows) + by_noise * by_noise.transpose());
@@ -84,6 +88,15 @@ Replay::InputNoise Replay::InputNoiseHere(std::size_t k) const {
       samples_.samples[k].p_RW_noise_m * by_inputs.middleCols<3>(sample_input::kWrist);
   noise.rightCols<3>() = by_inputs.middleCols<3>(sample_input::kForce) * Llt(ForcePrior(k)).L();
   return noise;
+}
+
+/// What a known load's own noise is in a sample, as far as the samples around say. The covariance
+/// has it as FixNoiseModel found it. A shaft that yields more would have more of it in its
+/// residual, and look less likely for that alone.
+std::optional<Eigen::Vector3d> Replay::LoadNoise(std::size_t k) const {
+  const DiagnosisSample& sample = samples_.samples[k];
+  if (!samples_.has_load || sample.force_noise_N <= 0.0) return {};
+  return sample.f_tip_N - sample.f_around_N;
 }
 
 /// An unknown force is one in units of EI / L^2: a stiffer shaft comes with a larger force, and

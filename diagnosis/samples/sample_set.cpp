@@ -256,9 +256,18 @@ class Builder {
       set_.samples[k].f_around_N = LoadAround(k);
   }
 
+  /// As the neighbours say; as read where that differs by more than noise: the load itself moves.
+  Eigen::Vector3d LoadAround(std::size_t k) const {
+    constexpr double kNoNoise = 4.0;  // standard deviations
+    const DiagnosisSample& sample = set_.samples[k];
+    const Eigen::Vector3d around_N = LoadOfNeighbours(k);
+    const bool moves = (around_N - sample.f_tip_N).norm() > kNoNoise * sample.force_noise_N;
+    return moves ? sample.f_tip_N : around_N;
+  }
+
   /// From near and far neighbours on both sides, so that the load's curvature cancels; itself at
   /// the ends and where samples are apart in time.
-  Eigen::Vector3d LoadAround(std::size_t k) const {
+  Eigen::Vector3d LoadOfNeighbours(std::size_t k) const {
     constexpr std::size_t kNear = 9, kFar = 18, kEach = 4;  // samples; nearer ones share its noise
     const auto& samples = set_.samples;
     const std::size_t reach = kFar + kEach - 1;

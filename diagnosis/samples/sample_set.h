@@ -36,7 +36,7 @@ struct DiagnosisSample {
   Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();  ///< where the load is known
   double force_noise_N = 0.0;                         ///< of f_tip_N, per axis
   /// The same as the samples around say, whose noise is another: what a load cell misreads goes
-  /// with the force, and must not look like its noise.
+  /// with the force, and must not look like its noise. Where they say another force: f_tip_N.
   Eigen::Vector3d f_around_N = Eigen::Vector3d::Zero();
   /// When sensors spoke, less t_s: EM, strain, vision, the port's sensor.
   double dt_em_s = 0.0, dt_strain_s = 0.0, dt_tip_s = 0.0, dt_port_s = 0.0;

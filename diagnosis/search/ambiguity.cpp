@@ -40,8 +40,14 @@ std::vector<int> AlikeTo(int effect, const LinearProblem& problem, const Paramet
     swapped.push_back(h);
     others.push_back(b);
   }
+  // Three and more at once were not all weighed.
+  std::vector<Hypothesis> weighed_here = swapped;
+  weighed_here.push_back(weighed.hypothesis);
+  const Evidence evidence(problem.total, layout, selection.generic_sd, {.unknown_sd = {}});
+  const auto scored = Score(evidence, layout.EffectCount(), weighed_here, SelectionOptions{},
+                            selection.corrections);
   const auto found = [&](const Hypothesis& h) {
-    for (const auto& s : selection.scored)
+    for (const auto& s : scored)
       if (s.weighed.hypothesis == h) return s.log_posterior;
     return -1e300;
   };

@@ -79,7 +79,7 @@ LinearProblem ProblemHere(const Replay& replay, const Eigen::MatrixXd& basis,
 }
 
 Weighing Weigh(const Replay& replay, LinearProblem here, const std::vector<Hypothesis>& hypotheses,
-               const SelectionOptions& options, const Rows& may_miss) {
+               const SelectionOptions& options, const Rows& may_miss, bool grow) {
   const ParameterLayout& layout = replay.Layout();
   const int P = layout.Size();
   Weighing w;
@@ -88,6 +88,7 @@ Weighing Weigh(const Replay& replay, LinearProblem here, const std::vector<Hypot
   const EvidenceOptions known{.unknown_sd = {}};
   const Evidence evidence(w.problem.total, layout, w.generic_sd, known);
   w.scored = Score(evidence, layout.EffectCount(), hypotheses, options);
+  if (grow) w.scored = Grown(evidence, layout.EffectCount(), std::move(w.scored), options);
   const WeighedHypothesis& best = w.scored.front().weighed;
   w.log_none = evidence.LogEvidenceOfNone();
   const Eigen::MatrixXd covariance = evidence.Covariance(best);

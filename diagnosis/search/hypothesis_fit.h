@@ -38,8 +38,9 @@ Rows MayMiss(const Rows& residual_size, double part, const SelectionOptions& opt
 /// Standard deviations of the generic coefficients; those of a row share what the row may miss.
 Eigen::VectorXd GenericSd(const LinearProblem& problem, const Rows& may_miss);
 
+/// `grow`: and the leaders of them with more effects (Grown).
 Weighing Weigh(const Replay& replay, LinearProblem here, const std::vector<Hypothesis>& hypotheses,
-               const SelectionOptions& options, const Rows& may_miss);
+               const SelectionOptions& options, const Rows& may_miss, bool grow = false);
 
 /// Towards the weighing's target as far as that explains more than standing still: the problem
 /// there. Empty: nowhere, and the replay is where it was.

@@ -8,6 +8,7 @@
 #include "diagnosis/samples/noise_level.h"
 #include "diagnosis/search/hypothesis_fit.h"
 #include "diagnosis/search/parameter_scan.h"
+#include "diagnosis/search/tried_fits.h"
 
 namespace flextip::diagnosis {
 namespace {
@@ -17,8 +18,10 @@ constexpr double kClearly = 60.0;     // log odds, seen from there, that a leade
 constexpr double kClearlyPart = 0.1;  // or that part of what it gains: the farther, the less linear
 constexpr int kFirstRounds = 6;       // of the fit from the base simulation
 constexpr int kScans = 3;  // of them, before the second and third of which frequencies are scanned
-constexpr int kFitRounds = 4;  // of a fit from where another hypothesis fits
-constexpr int kMostFits = 12;
+constexpr int kFitRounds = 4;         // of a fit from where another hypothesis fits
+constexpr double kNearLeader = 10.0;  // log odds behind the best leader that may still be right
+constexpr int kMostFits = 14;
+constexpr int kFitsAnEffect = 4;        // beyond the first one of the best
 constexpr int kFreshFits = 6;           // from the base, where nothing explains the recording
 constexpr double kRival = 2.0;          // log odds below the best that are worth a fit
 constexpr double kNearRest = 3.0;       // distance, in standard deviations
@@ -45,7 +48,7 @@ class Search {
     const Rows base_size = tempered_by_ * base.residual_size;
     const Rows at_first = MayMiss(base.residual_size, options_.first_discrepancy, options_);
     const Weighing first = Weigh(replay_, std::move(base),
-                                 KnownHypotheses(layout_.EffectCount(), false), options_, at_first);
+                                 KnownHypotheses(layout_.EffectCount(), 1), options_, at_first);
     FitLeadersFromBase(first);
     FixMeasure(base_size);
     FitRivals();
@@ -53,11 +56,12 @@ class Search {
     if (Unexplained()) {
       int fresh = 0;
       for (const auto& s : first.scored)
-        if (Tried(s.weighed.hypothesis) == nullptr && fresh++ < kFreshFits)
+        if (tried_.Find(s.weighed.hypothesis) == nullptr && fresh++ < kFreshFits)
           FitFromBase(s.weighed.hypothesis);
       FitRivals();
     }
     WeighAtBest();
+    selection_.fits = tried_.Count();
     return std::move(selection_);
   }
 
@@ -72,7 +76,7 @@ class Search {
     for (std::size_t i = 0; i < kLeaders && i < first.scored.size(); ++i)
       if (first.scored[i].log_posterior > best - clearly)
         FitFromBase(first.scored[i].weighed.hypothesis);
-    if (Tried({}) == nullptr) FitFromBase({});
+    if (tried_.Find({}) == nullptr) FitFromBase({});
   }
 
   /// Far from any answer an unknown force takes up what it can of the misfit, most of it by pulling
@@ -97,23 +101,25 @@ class Search {
   }
 
   /// Where the best leader fits, noise and forces are known better; from here on they stay as they
-  /// are, and what is fitted is comparable. What was fitted before is not.
+  /// are, and what is fitted is comparable. What was fitted before is not: the leaders that came
+  /// near the best are fitted again. Seen from the best's place they may look far.
   void FixMeasure(const Rows& base_size) {
     if (tempered_by_ != 1.0) {
       SetNoise(1.0);
       replay_.SetAlongPrior(1.0);
       may_miss_ = MayMiss(base_size, options_.discrepancy, options_);
     }
-    GoTo(replay_, layout_, best_.place);
+    const std::vector<HypothesisFit> near = tried_.Near(kNearLeader);
+    GoTo(replay_, layout_, tried_.Best().place);
     LeaveOutFarSamples();
     replay_.SetNoiseScale(NoiseScale(replay_));
     replay_.FixNoiseModel();
     basis_ = GenericBasis(replay_);
-    const Hypothesis leader = best_.hypothesis;
-    tried_.clear();
-    best_ = {};
-    Keep(FitHypothesis(replay_, layout_, leader, options_,
-                       {.basis = basis_, .may_miss = may_miss_, .rounds = kFitRounds}));
+    tried_.Clear();
+    for (const HypothesisFit& leader : near) {
+      GoTo(replay_, layout_, leader.place);
+      FitFromHere(leader.hypothesis, kFitRounds);
+    }
   }
 
   void LeaveOutFarSamples() {
@@ -125,103 +131,72 @@ class Search {
 
   void FitFromBase(const Hypothesis& hypothesis) {
     GoTo(replay_, layout_, base_);
-    Keep(FitHypothesis(replay_, layout_, hypothesis, options_,
-                       {.basis = basis_,
-                        .may_miss = may_miss_,
-                        .rounds = kFirstRounds,
-                        .scans = kScans,
-                        .worth = best_.log_posterior}));
+    tried_.Keep(FitHypothesis(replay_, layout_, hypothesis, options_,
+                              {.basis = basis_,
+                               .may_miss = may_miss_,
+                               .rounds = kFirstRounds,
+                               .scans = kScans,
+                               .worth = tried_.Best().log_posterior}));
   }
 
-  const HypothesisFit* Tried(const Hypothesis& hypothesis) const {
-    for (const auto& fit : tried_)
-      if (fit.hypothesis == hypothesis) return &fit;
-    return nullptr;
+  /// Weighs all that the catalogue holds from the place of the best fit.
+  Weighing WeighKnown() {
+    GoTo(replay_, layout_, tried_.Best().place);
+    return Weigh(replay_, ProblemHere(replay_, basis_, options_),
+                 tried_.WithLarger(KnownHypotheses(layout_.EffectCount(), 2)), options_, may_miss_,
+                 true);
   }
 
-  /// Of several fits of one hypothesis the best counts.
-  void Keep(const HypothesisFit& fit) {
-    ++selection_.fits;
-    const auto before = std::find_if(tried_.begin(), tried_.end(), [&](const HypothesisFit& f) {
-      return f.hypothesis == fit.hypothesis;
-    });
-    if (before == tried_.end()) {
-      tried_.push_back(fit);
-    } else if (fit.log_posterior > before->log_posterior) {
-      *before = fit;
-    }
-    if (fit.log_posterior > best_.log_posterior) best_ = fit;
+  /// Fits `hypothesis` from where the replay stands.
+  void FitFromHere(const Hypothesis& hypothesis, int rounds) {
+    tried_.Keep(FitHypothesis(replay_, layout_, hypothesis, options_,
+                              {.basis = basis_,
+                               .may_miss = may_miss_,
+                               .rounds = rounds,
+                               .worth = tried_.Best().log_posterior}));
+  }
+
+  /// More effects at once take more fits to be found one after another.
+  bool MayFitMore() const {
+    const int more = std::max(0, int(tried_.Best().hypothesis.effects.size()) - 1);
+    return tried_.Count() < kMostFits + more * kFitsAnEffect;
   }
 
   /// Whatever looks better from the best place than the best itself is fitted from there.
   void FitRivals() {
-    const auto known = KnownHypotheses(layout_.EffectCount(), true);
-    for (rivals_left_ = true; selection_.fits < kMostFits;) {
-      GoTo(replay_, layout_, best_.place);
-      const Weighing weighing =
-          Weigh(replay_, ProblemHere(replay_, basis_, options_), known, options_, may_miss_);
+    for (rivals_left_ = true; MayFitMore();) {
+      const Weighing weighing = WeighKnown();
       const ScoredHypothesis* rival = nullptr;
-      double log_rival = best_.log_posterior - kRival;
+      double log_rival = tried_.Best().log_posterior - kRival;
       for (const auto& s : weighing.scored) {
-        const double log = s.log_posterior + weighing.log_none + Shortfall(s, weighing);
-        if (Tried(s.weighed.hypothesis) != nullptr || log < log_rival) continue;
+        const double log = s.log_posterior + weighing.log_none + tried_.Shortfall(s, weighing);
+        if (tried_.Find(s.weighed.hypothesis) != nullptr || log < log_rival) continue;
         rival = &s;
         log_rival = log;
       }
       rivals_left_ = rival != nullptr;
       if (!rivals_left_) return;
-      Keep(FitHypothesis(replay_, layout_, rival->weighed.hypothesis, options_,
-                         {.basis = basis_,
-                          .may_miss = may_miss_,
-                          .rounds = kFitRounds,
-                          .worth = best_.log_posterior}));
+      FitFromHere(rival->weighed.hypothesis, kFitRounds);
     }
   }
 
-  /// One of a pair may do, or none, with the rest of the world elsewhere than where the best fits.
+  /// Fewer effects may do, or none, with the rest of the world elsewhere than where the best fits.
   /// A part that was fitted and fell short of its promise may have stopped on its way to there.
   void FitPartsOfBest() {
-    const Hypothesis whole = best_.hypothesis;
-    if (whole.effects.empty()) return;
-    const Place place = best_.place;
-    GoTo(replay_, layout_, place);
+    const HypothesisFit whole = tried_.Best();
+    GoTo(replay_, layout_, whole.place);
+    const std::vector<Hypothesis> parts = PartsOf(whole.hypothesis);
+    if (parts.empty()) return;
     const Weighing weighing =
-        Weigh(replay_, ProblemHere(replay_, basis_, options_),
-              KnownHypotheses(layout_.EffectCount(), false), options_, may_miss_);
+        Weigh(replay_, ProblemHere(replay_, basis_, options_), parts, options_, may_miss_);
     for (const auto& s : weighing.scored) {
-      const Hypothesis& part = s.weighed.hypothesis;
-      const bool is_part = part.effects.size() + 1 == whole.effects.size() &&
-                           std::ranges::all_of(part.effects, [&](int effect) {
-                             return std::ranges::find(whole.effects, effect) != whole.effects.end();
-                           });
-      if (!is_part) continue;
-      const HypothesisFit* tried = Tried(part);
+      const HypothesisFit* tried = tried_.Find(s.weighed.hypothesis);
       if (tried != nullptr && tried->log_posterior > s.log_posterior + weighing.log_none - kRival)
         continue;
-      GoTo(replay_, layout_, place);
-      Keep(FitHypothesis(replay_, layout_, part, options_,
-                         {.basis = basis_,
-                          .may_miss = may_miss_,
-                          .rounds = kFirstRounds,
-                          .worth = best_.log_posterior}));
+      GoTo(replay_, layout_, whole.place);
+      FitFromHere(s.weighed.hypothesis, kFirstRounds);
     }
     FitRivals();
-  }
-
-  /// What the fits say of a hypothesis beyond the linear problem about the best place: its own fit,
-  /// or the worst of those of its parts, whose broken promise is its promise too.
-  double Shortfall(const ScoredHypothesis& s, const Weighing& weighing) const {
-    if (const HypothesisFit* own = Tried(s.weighed.hypothesis))
-      return own->log_posterior - s.log_posterior - weighing.log_none;
-    double worst = 0.0;
-    for (const int effect : s.weighed.hypothesis.effects) {
-      const HypothesisFit* part = Tried({{effect}, false});
-      if (part == nullptr || part->hypothesis == best_.hypothesis) continue;
-      for (const auto& single : weighing.scored)
-        if (single.weighed.hypothesis == part->hypothesis)
-          worst = std::min(worst, part->log_posterior - single.log_posterior - weighing.log_none);
-    }
-    return worst;
   }
 
   /// Where something unknown would explain much more, the best may be a wrong turn.
@@ -230,31 +205,30 @@ class Search {
     const auto& best = selection_.Best();
     if (!best.weighed.hypothesis.unknown) return false;
     for (const auto& s : selection_.scored)
-      if (s.weighed.hypothesis == best_.hypothesis)
+      if (s.weighed.hypothesis == tried_.Best().hypothesis)
         return best.log_posterior - s.log_posterior > kUnexplained;
     return true;
   }
 
   /// Everything weighed at the best place; what was fitted counts as it was found to be.
   void WeighAtBest() {
-    GoTo(replay_, layout_, best_.place);
-    const auto all = AllHypotheses(layout_.EffectCount());
-    Weighing weighing = Weigh(replay_, ProblemHere(replay_, basis_, options_),
-                              KnownHypotheses(layout_.EffectCount(), true), options_, may_miss_);
+    Weighing weighing = WeighKnown();
     double common = 0.0;  // what the linear problem promises to all
     for (const auto& s : weighing.scored)
-      if (s.weighed.hypothesis == best_.hypothesis) common = Shortfall(s, weighing);
+      if (s.weighed.hypothesis == tried_.Best().hypothesis) common = tried_.Shortfall(s, weighing);
     selection_.corrections.clear();
+    std::vector<Hypothesis> all = AllHypotheses(layout_.EffectCount());
     for (const auto& s : weighing.scored) {
-      const bool tried = Tried(s.weighed.hypothesis) != nullptr;
-      const double log = Shortfall(s, weighing) - (tried ? common : 0.0);
+      const bool tried = tried_.Find(s.weighed.hypothesis) != nullptr;
+      const double log = tried_.Shortfall(s, weighing) - (tried ? common : 0.0);
       if (log != 0.0) selection_.corrections.push_back({s.weighed.hypothesis, log});
+      if (s.weighed.hypothesis.effects.size() > 2) all.push_back(s.weighed.hypothesis);
     }
     CountMemory(weighing);
     selection_.scored = Score({weighing.problem.total, layout_, weighing.generic_sd},
                               layout_.EffectCount(), all, options_, selection_.corrections);
     selection_.chi2_per_dof = replay_.ChiSquaredPerDof();
-    selection_.converged = best_.distance < kNearRest && !rivals_left_;
+    selection_.converged = tried_.Best().distance < kNearRest && !rivals_left_;
     selection_.problem = std::move(weighing.problem);
     selection_.generic_sd = std::move(weighing.generic_sd);
   }
@@ -264,7 +238,7 @@ class Search {
   void CountMemory(Weighing& weighing) {
     const Evidence evidence(weighing.problem.total, layout_, weighing.generic_sd,
                             {.unknown_sd = {}});
-    const WeighedHypothesis best = evidence.Weigh(best_.hypothesis);
+    const WeighedHypothesis best = evidence.Weigh(tried_.Best().hypothesis);
     const Eigen::VectorXd mode = evidence.Mode(best, evidence.Covariance(best));
     selection_.memory = MemoryOfResiduals(replay_, basis_, weighing.problem, mode);
     const double as_one = selection_.memory.SamplesAsOne();
@@ -279,8 +253,7 @@ class Search {
   Eigen::MatrixXd basis_;
   Rows may_miss_ = Rows::Zero();
   double tempered_by_ = 1.0;  // noise taken over the stated noise, while leaders are fitted
-  std::vector<HypothesisFit> tried_;
-  HypothesisFit best_;
+  TriedFits tried_;
   bool rivals_left_ = false;
   Selection selection_;
 };

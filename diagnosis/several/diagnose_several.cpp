@@ -10,6 +10,7 @@
 #include "diagnosis/describe.h"
 #include "diagnosis/heldout.h"
 #include "diagnosis/model/catalogue.h"
+#include "diagnosis/planning/next_motion.h"
 #include "diagnosis/several/joint_probabilities.h"
 #include "diagnosis/signature.h"
 
@@ -60,7 +61,9 @@ struct Known {
   const JointProbabilities& probabilities;
   const JointEvidence& evidence;
   const SelectionOptions& options;
-  bool few = true;
+  std::size_t recordings = 1;
+
+  bool AreFew() const { return recordings <= kFew; }
 };
 
 Selection SelectionOf(std::size_t r, const Member& member, MemberProblem& at, const Known& known) {
@@ -135,8 +138,8 @@ Judged Judge(std::size_t r, Member& member, const NamedRecording& recording, con
                     member.far_samples, member.samples.samples.size()));
   }
   result.memory = selection.memory;
-  const Probabilities probabilities =
-      MakeProbabilities(selection, member.layout, known.options, {.bags = known.few ? kBags : 0});
+  const Probabilities probabilities = MakeProbabilities(selection, member.layout, known.options,
+                                                        {.bags = known.AreFew() ? kBags : 0});
   result.probabilities = probabilities.hypotheses;
   result.presence = probabilities.presence;
   result.credible_set = probabilities.credible_set;
@@ -155,6 +158,8 @@ Judged Judge(std::size_t r, Member& member, const NamedRecording& recording, con
   result.residuals = MakeResidualTable(base, *at.extended);
   DescribeRecording(*at.extended, selection, recording.recording.wrist0->samples.front().t_ns,
                     result);
+  if (options.plan && r + 1 == known.recordings)
+    result.plan = PlanNextMotion(*at.extended, selection, result.indistinguishable, *options.plan);
   const Verdict& common = known.probabilities.common.hypotheses.front().verdict;
   if (r == 0) DescribeCommon(at, selection, known, NamesEffects(common), judged);
   return judged;
@@ -207,6 +212,7 @@ DiagnosisResult CommonOf(const std::vector<Judged>& judged, const SeveralResult&
   common.indistinguishable = judged.front().common_groups;
   common.separating_motion = judged.front().separating_motion;
   common.separating_motion_score = judged.front().separating_score;
+  common.plan = several.own.back().plan;
   common.signatures = Strongest(several.own);
   common.residuals = Joined(several.own);
   common.warnings.clear();
@@ -253,6 +259,8 @@ SeveralResult DiagnoseSeveral(const std::vector<NamedRecording>& recordings,
   RequireEffects(options.without, options.own_effects);
   const SelectionOptions selection_options;
   Fleet fleet(recordings, options);
+  if (options.plan)
+    RequireUsable(*options.plan, fleet.At(fleet.Size() - 1).samples, recordings.back().name);
   const JointSelection selection = SearchJointly(fleet, selection_options);
   const std::vector<MemberSums> sums = AllSums(fleet, selection_options);
   const JointProbabilities probabilities =
@@ -260,7 +268,7 @@ SeveralResult DiagnoseSeveral(const std::vector<NamedRecording>& recordings,
   std::vector<NormalSums> narrow;
   for (const MemberSums& member : sums) narrow.push_back(member.narrow);
   const JointEvidence evidence(fleet, std::move(narrow));
-  const Known known{selection, probabilities, evidence, selection_options, fleet.Size() <= kFew};
+  const Known known{selection, probabilities, evidence, selection_options, fleet.Size()};
   std::vector<Judged> judged(fleet.Size());
   tbb::parallel_for(std::size_t{0}, fleet.Size(), [&](std::size_t r) {
     judged[r] = Judge(r, fleet.At(r), recordings[r], known, options);

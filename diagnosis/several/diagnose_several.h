@@ -32,7 +32,8 @@ struct SeveralResult {
   std::vector<FoundChange> changes;
 };
 
-/// In order of time. Throws as Diagnose does, and InputError where the recordings are not of one
+/// In order of time. A motion that is planned goes on from the last recording, in the light of all.
+/// Throws as Diagnose does, and InputError where the recordings are not of one
 /// instrument.
 SeveralResult DiagnoseSeveral(const std::vector<NamedRecording>& recordings,
                               const DiagnoseOptions& options = {});

@@ -46,7 +46,7 @@ std::map<Verdict, double> Shares(const std::vector<JointScored>& scored, const F
 /// Something unknown by itself, beside each single effect and beside the best answer.
 std::vector<JointHypothesis> Unknowns(const Fleet& fleet, const JointHypothesis& best) {
   std::vector<JointHypothesis> all;
-  for (const Hypothesis& h : KnownHypotheses(fleet.EffectCount(), false))
+  for (const Hypothesis& h : KnownHypotheses(fleet.EffectCount(), 1))
     all.push_back({h.effects, {}, true});
   JointHypothesis beside = best;
   beside.unknown = true;

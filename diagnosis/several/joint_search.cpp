@@ -12,14 +12,15 @@ constexpr std::size_t kLeaders = 4;   // fitted from the base simulation
 constexpr double kClearly = 60.0;     // log odds, seen from there, that a leader is ahead by
 constexpr double kClearlyPart = 0.1;  // or that part of what it gains
 constexpr int kFirstRounds = 6, kFitRounds = 4;
-constexpr int kMostFits = 12;
+constexpr double kNearLeader = 10.0;  // log odds behind the best leader that may still be right
+constexpr int kMostFits = 14;
 constexpr double kRival = 2.0;        // log odds below the best that are worth a fit
 constexpr std::size_t kBesides = 10;  // hypotheses beside which changes are weighed, with singles
 constexpr std::size_t kMostEffects = 2;  // in any recording: three at once are not weighed
 
 std::vector<JointHypothesis> Commons(const Fleet& fleet, bool pairs) {
   std::vector<JointHypothesis> all;
-  for (const Hypothesis& h : KnownHypotheses(fleet.EffectCount(), pairs))
+  for (const Hypothesis& h : KnownHypotheses(fleet.EffectCount(), pairs ? 2 : 1))
     all.push_back({h.effects, {}, false});
   return all;
 }
@@ -80,10 +81,15 @@ class Search {
     FitLeadersFrom(base);
     GoTo(fleet_, best_.place);
     FixMeasure(fleet_, options_);
-    const JointHypothesis leader = best_.weighed.hypothesis;
+    std::vector<JointHypothesis> near{best_.weighed.hypothesis};
+    for (const JointFit& fit : tried_)
+      if (fit.log_posterior > best_.log_posterior - kNearLeader &&
+          !(fit.weighed.hypothesis == near[0]))
+        near.push_back(fit.weighed.hypothesis);
     tried_.clear();
     best_ = {};
-    Keep(FitJointly(fleet_, leader, kFitRounds, best_.log_posterior, options_));
+    for (const JointHypothesis& leader : near)
+      Keep(FitJointly(fleet_, leader, kFitRounds, best_.log_posterior, options_));
     FitRivals();
     FitPartsOfBest();
     GoTo(fleet_, best_.place);

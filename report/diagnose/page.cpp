@@ -271,6 +271,7 @@ void WriteDiagnoseReport(const fs::path& folder) {
   AddDiscovered(report, folder, result);
   if (fs::exists(folder / "figures.json"))
     report.AddFigureFile(folder / "figures.json", "Joint by joint");
+  AddRounds(report, folder);
   AddRecordings(report, folder);
   AddWhatIsWrong(report, result, residuals);
   report.AddHeading(result.Is("none") || result.Is("unknown") ? "How well the models predict"

@@ -76,7 +76,31 @@ Table ChangeTable(const Json& diagnosis) {
   return table;
 }
 
+/// A number of a round.
+std::string Number(const Json& round, const char* key, const char* format) {
+  return fmt::format(fmt::runtime(format), round.at(key).get<double>());
+}
+
 }  // namespace
+
+void AddRounds(Report& report, const std::filesystem::path& folder) {
+  const Json summary = Json::parse(ReadBytes(folder / "summary.json"));
+  if (!summary.contains("rounds")) return;
+  Table table{
+      .title = "Motions, and what was known after each",
+      .caption = fmt::format("{} s of motion; {}.", Number(summary, "seconds_of_motion", "{:.1f}"),
+                             summary.at("end").get<std::string>()),
+      .header = {"recording", "seconds", "weight at the tip (N)", "answer", "probability",
+                 "the next motion"}};
+  for (const auto& round : summary.at("rounds")) {
+    table.rows.push_back(
+        {round.at("recording").get<std::string>(), Number(round, "seconds", "{:.1f}"),
+         Number(round, "hung_weight_N", "{:.2g}"),
+         SpokenHypothesis(round.at("answer").get<std::string>()),
+         Percent(round.at("probability").get<double>()), round.at("next").get<std::string>()});
+  }
+  report.AddTable(table);
+}
 
 std::string WhatBegan(const std::filesystem::path& folder) {
   const Json diagnosis = Json::parse(ReadBytes(folder / "diagnosis.json"));

@@ -77,7 +77,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--count", arguments.count, "How many recordings")->check(CLI::PositiveNumber);
   app.add_option("--effects", arguments.effects,
                  "Names with commas between (docs/effects.md, port_grip, taper, shaft_tissue, "
-                 "second_contact, strain_clip), none, or draw1, draw2")
+                 "second_contact, strain_clip), none, or draw1, draw2, draw3")
       ->delimiter(',');
   app.add_option("--size", options.size, "subtle, plain or strong")
       ->transform(CLI::CheckedTransformer(kSizes));
@@ -112,11 +112,11 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       "--size plain --family held_out -o recordings --label labels.json\n");
 }
 
-/// none, draw1 and draw2 are not names of effects.
+/// none and draw1 to draw3 are not names of effects.
 void TakeEffects(Arguments& arguments) {
   for (const std::string& name : arguments.effects) {
-    if (name == "draw1" || name == "draw2") {
-      arguments.options.drawn_effects = name == "draw1" ? 1 : 2;
+    if (name == "draw1" || name == "draw2" || name == "draw3") {
+      arguments.options.drawn_effects = name.back() - '0';
     } else if (name != "none") {
       arguments.options.effects.push_back(name);
     }

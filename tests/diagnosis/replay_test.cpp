@@ -55,6 +55,34 @@ TEST(ReplayResiduals, WithAnUnknownLoadAreShortOfThreeRows) {
   ExpectMeanSquare(rows, expected);
 }
 
+/// A massless shaft has the shape of force over stiffness: without gages nothing tells a softer one
+/// from a load cell that reads too little, the load's noise included.
+TEST(ReplayResiduals, OfASofterShaftAreThoseOfALoadThatIsReadTooSmall) {
+  hidden::HiddenOptions options{.effects = {"stiffness"}, .left_out = {"strain0"}};
+  options.scene.load = hidden::LoadKind::kHungMass;
+  SampleSet samples = MakeSampleSet(hidden::MakeHidden(options, 42).recording, "hung");
+  samples.instrument.mass_per_length_kg_m = 0.0;
+  const ParameterLayout layout(samples, MakeCatalogue(samples));
+  Replay replay(samples, layout);
+  const Eigen::VectorXd base = Eigen::VectorXd::Zero(layout.Size());
+  ASSERT_TRUE(replay.Evaluate(base));
+  replay.FixNoiseModel();
+  const auto first = [&](const char* effect) { return layout.Blocks()[layout.Find(effect)].first; };
+  const int softer = first("stiffness"), too_small = first("load_scale");
+  const auto rows_at = [&](int parameter) {
+    Eigen::VectorXd theta = base;
+    theta[parameter] = -0.2;
+    EXPECT_TRUE(replay.Evaluate(theta));
+    return replay.Whiten();
+  };
+  const WhitenedRows stiffness = rows_at(softer), load = rows_at(too_small);
+  EXPECT_LT((stiffness.e - load.e).norm(), 1e-3 * stiffness.e.norm());
+  for (const WhitenedRows* rows : {&stiffness, &load}) {
+    const Eigen::VectorXd a = rows->X.col(softer), b = rows->X.col(too_small);
+    EXPECT_LT((a - b).norm(), 1e-3 * b.norm());
+  }
+}
+
 /// Squared whitened residual of each sample.
 std::vector<double> Squares(const Replay& replay) {
   const WhitenedRows rows = replay.Whiten();

@@ -7,8 +7,9 @@
 namespace flextip::bench {
 namespace {
 
-constexpr std::array<const char*, 6> kOtherAnswers{
-    "none", "unknown", "one of the two", "both of the two", "truth + another", "two others"};
+constexpr std::array<const char*, 8> kOtherAnswers{
+    "none",      "unknown",          "one of the two",  "both of the two",
+    "all three", "two of the three", "truth + another", "two others"};
 constexpr const char* kRefused = "refused";
 
 bool Holds(const EffectNames& names, const std::string& name) {
@@ -18,6 +19,7 @@ bool Holds(const EffectNames& names, const std::string& name) {
 std::string RowOf(const MatrixRecord& r) {
   if (!r.made.without.empty()) return r.made.without;
   if (r.made.part == "pairs") return "two effects";
+  if (r.made.part == "triples") return "three effects";
   return r.form.empty() ? r.label.at(0) : r.form;
 }
 
@@ -29,6 +31,10 @@ std::string ColumnOf(const MatrixRecord& r) {
     if (r.IsRight()) return "both of the two";
     if (r.verdict.size() == 1 && found == 1) return "one of the two";
   }
+  if (r.made.part == "triples") {
+    if (r.IsRight()) return "all three";
+    if (r.verdict.size() == 2 && found == 2) return "two of the three";
+  }
   if (r.verdict.size() > 1) return found > 0 ? "truth + another" : "two others";
   return r.verdict.at(0);
 }
@@ -36,6 +42,7 @@ std::string ColumnOf(const MatrixRecord& r) {
 std::string RightColumn(const std::string& row, bool deleted) {
   if (deleted) return "unknown";
   if (row == "two effects") return "both of the two";
+  if (row == "three effects") return "all three";
   return Holds(hidden::OtherForms(), row) ? "unknown" : row;
 }
 
@@ -43,7 +50,7 @@ Confusion MakeConfusion(const std::string& title, const std::vector<const Matrix
   Confusion confusion{title, {}, simulation::CatalogueEffects(), {}, {}};
   confusion.columns.insert(confusion.columns.end(), kOtherAnswers.begin(), kOtherAnswers.end());
   EffectNames rows = simulation::CatalogueEffects();
-  rows.insert(rows.end(), {"none", "two effects"});
+  rows.insert(rows.end(), {"none", "two effects", "three effects"});
   rows.insert(rows.end(), hidden::OtherForms().begin(), hidden::OtherForms().end());
   bool deleted = false;
   for (const MatrixRecord* r : cases) {

@@ -92,6 +92,7 @@ class FigureMaker {
         healthy, "<= 0.01");
     Unknowns();
     for (const std::string& size : sizes) Pairs(size);
+    for (const std::string& size : sizes) Triples(size);
     LeaveOuts();
     Overall();
     for (const std::string& size : sizes) {
@@ -132,6 +133,8 @@ class FigureMaker {
     Add("right or declared indistinguishable", name, Share(group, &MatrixRecord::IsRightOrDeclared),
         group);
     if (!load.empty()) return;
+    const auto beside = [](const MatrixRecord& r) { return r.verdict.size() > 1 && Found(r) > 0; };
+    Add("right with a spurious second", name, Share(group, beside), group, "<= 0.02");
     Group alone = group;
     std::erase_if(alone, [](const MatrixRecord* r) { return !StandsAlone(*r); });
     Add("right cause first, none declared", name, Share(alone, &MatrixRecord::IsRight), alone);
@@ -175,6 +178,20 @@ class FigureMaker {
     Add("at least one right, separable only", name, Share(separable, one), separable, ">= 0.99");
     Add("truth in the 90 % set", name,
         Share(group, [](auto& r) { return r.truth_in_credible_set; }), group, ">= 0.90");
+  }
+
+  void Triples(const std::string& size) {
+    const Group group = Where(records_, [&](const MatrixRecord& r) {
+      return r.made.part == "triples" && r.made.size == size;
+    });
+    const std::string name = "triples " + size;
+    const Group separable = Separable(group);
+    const auto two = [](auto& r) { return Found(r) >= 2; };
+    Add("all three right", name, Share(group, &MatrixRecord::IsRight), group);
+    Add("all three right, separable only", name, Share(separable, &MatrixRecord::IsRight),
+        separable, ">= 0.85");
+    Add("at least two right", name, Share(group, two), group);
+    Add("at least two right, separable only", name, Share(separable, two), separable, ">= 0.98");
   }
 
   void LeaveOuts() {
