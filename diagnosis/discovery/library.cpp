@@ -106,6 +106,9 @@ class Grid {
   }
   bool Fits(V variable) const {
     if (variable == V::kDistanceToCamera) return IsOfVision() && set_.has_camera;
+    // A force that is found from the sample's own sensors has their noise: any of them would
+    // follow it.
+    if (variable == V::kPortForce || variable == V::kLoad) return set_.has_load;
     if (variable == V::kSlidingVelocity || variable == V::kWristSpeed || variable == V::kTime)
       return set_.resolved_in_time;
     return true;

@@ -13,6 +13,7 @@ namespace flextip::diagnosis {
 namespace {
 
 constexpr double kSeconds = 20.0;
+constexpr int kPlaces = 200;  // of a path
 // What may hang from an instrument, however stiff it is; a slender one carries a part of EI / L^2.
 constexpr double kSmallMost_N = 2.0, kLargeMost_N = 6.0;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
@@ -69,13 +70,14 @@ struct Condition {
   bool roll = false;
 };
 
-/// Where the wrist of the straight shaft is.
-Eigen::Vector3d WristOf(const Aim& aim, const SampleSet& recorded, const Eigen::Matrix3d& R_mean) {
+/// Where the straight shaft is, `along` of its length from the wrist.
+Eigen::Vector3d PlaceOf(const Aim& aim, double along, const SampleSet& recorded,
+                        const Eigen::Matrix3d& R_mean) {
   const Eigen::Vector3d d =
       R_mean * Eigen::Vector3d(std::cos(aim.yaw_rad) * std::cos(aim.pitch_rad),
                                std::sin(aim.yaw_rad) * std::cos(aim.pitch_rad),
                                std::sin(aim.pitch_rad));
-  return recorded.p_RP - (1.0 - aim.inserted) * recorded.instrument.length_m * d;
+  return recorded.p_RP + (along - 1.0 + aim.inserted) * recorded.instrument.length_m * d;
 }
 
 }  // namespace
@@ -100,10 +102,16 @@ std::vector<LibraryMotion> MotionLibrary(const SampleSet& recorded) {
       const ImaginedMotion motion{
           .seconds = kSeconds, .load_N = condition.load_N, .at = [&](double t_s) {
             const double u = t_s / kSeconds;
-            return ImaginedInstant{WristOf(path.at(u), recorded, R_mean),
+            return ImaginedInstant{PlaceOf(path.at(u), 0.0, recorded, R_mean),
                                    condition.roll ? kTwoPi * u : 0.0};
           }};
-      motions.push_back({path.text + ", " + condition.text, ImagineSamples(recorded, motion)});
+      motions.push_back({path.text + ", " + condition.text,
+                         ImagineSamples(recorded, motion),
+                         {},
+                         condition.load_N});
+      for (int i = 0; i <= kPlaces; ++i)
+        motions.back().places_m.push_back(
+            PlaceOf(path.at(double(i) / kPlaces), 1.0, recorded, R_mean));
     }
   }
   return motions;

@@ -2,6 +2,7 @@
 // real one.
 #pragma once
 
+#include <Eigen/Dense>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,10 @@
 namespace flextip::diagnosis {
 
 struct LibraryMotion {
-  std::string text;   ///< what to do, for a person
-  SampleSet samples;  ///< imagined (planning/imagined_samples.h)
+  std::string text;                       ///< what to do, for a person
+  SampleSet samples;                      ///< imagined (planning/imagined_samples.h)
+  std::vector<Eigen::Vector3d> places_m;  ///< of the straight shaft's tip in R, ten a second
+  double load_N = 0.0;                    ///< hung from the tip
 };
 
 /// Some thirty motions about the port of `recorded`, 20 s each: insertions, sweeps, circles, slow
