@@ -108,6 +108,15 @@ SineMotion MotionAbout(const arms::ArmData& data) {
   return motion;
 }
 
+/// Whether a command of the joints can take away any of what was found.
+bool CanCorrect(const ArmModel& model, const std::vector<std::string>& not_corrected) {
+  return std::any_of(model.effects.begin(), model.effects.end(), [&](const EffectFit& fit) {
+    return std::none_of(not_corrected.begin(), not_corrected.end(), [&](const std::string& line) {
+      return line.starts_with(fit.effect + ":");
+    });
+  });
+}
+
 }  // namespace
 
 JointGain MeasureJointGain(const arms::ArmData& data, const ArmModel& model) {
@@ -134,6 +143,7 @@ JointGain MeasureJointGain(const arms::ArmData& data, const ArmModel& model) {
   arms::CommandModel command = CommandModelOf(arm, known, gravity_m_s2);
   command.joints.effort_at_rest = false;  // the plant's masses are the file's, and known
   gain.notes.insert(gain.notes.end(), command.not_corrected.begin(), command.not_corrected.end());
+  if (!CanCorrect(model, command.not_corrected)) return gain;
   const ArmFaults faults = FaultsOf(data, model, command.joints, gain.notes);
   JointLoopSetup setup;
   setup.plant = PlantOf(arm, faults);
