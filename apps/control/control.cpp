@@ -9,12 +9,14 @@
 #include "apps/common/commands.h"
 #include "apps/common/output.h"
 #include "apps/control/figures.h"
+#include "apps/control/joint_session.h"
 #include "apps/control/joints.h"
 #include "apps/control/tables.h"
 #include "apps/stops/stops.h"
 #include "core/error.h"
 #include "diagnosis/running/running_diagnosis.h"
 #include "diagnosis/running/warnings_table.h"
+#include "live/joints/joint_session.h"
 #include "live/loop/control_loop.h"
 #include "live/recorder/excerpt.h"
 #include "recording/text/text.h"
@@ -75,6 +77,12 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
   if (!options.model.empty()) {
     if (options.out.empty()) throw InputError("-o RECORDING is missing, expected it with --model");
     return WriteJointCommands({options.session, options.model, options.out, options.force, quiet});
+  }
+  if (live::IsJointSession(options.session)) {
+    if (options.page || options.page_port || options.timing_s)
+      throw InputError("--page and --timing are for a session with a shaft, found one of joints");
+    return ControlJoints(
+        {options.session, options.out, options.duration_s, options.wait, options.force, quiet});
   }
   const live::Session session = live::ReadSession(options.session);
   if (options.out.empty() && !options.timing_s)

@@ -15,9 +15,8 @@
 #include "recording/recording_writer.h"
 
 namespace flextip {
-namespace {
 
-arms::Track TrackOf(const JointStream& stream) {
+arms::Track TrackOfJoints(const JointStream& stream) {
   const auto rows = Eigen::Index(stream.q.size());
   arms::Track track{Eigen::VectorXd(rows),
                     Eigen::MatrixXd(rows, Eigen::Index(stream.types.size()))};
@@ -29,21 +28,22 @@ arms::Track TrackOf(const JointStream& stream) {
   return track;
 }
 
-}  // namespace
+void RequireDesiredJoints(const Recording& wish, const std::filesystem::path& file) {
+  if (wish.arm && wish.joints_command0 && !wish.joints_command0->q.empty()) return;
+  throw InputError::At(file.string(), 0,
+                       "no joints_command0 of an arm, expected the desired joints there");
+}
 
 void WriteJointCommands(const JointCommandsRun& run) {
   const ReadResult read = ReadRecording(run.wish);
   const Recording& wish = read.recording;
-  if (!wish.arm || !wish.joints_command0 || wish.joints_command0->q.empty()) {
-    throw InputError::At(run.wish.string(), 0,
-                         "no joints_command0 of an arm, expected the desired joints there");
-  }
+  RequireDesiredJoints(wish, run.wish);
   OutputFolder output(run.out, "control joints",
                       {.force = run.force, .inputs = {run.wish, run.model}});
   output.Warn(read.warnings);
   const arms::CommandModel model =
       arms::CommandModelOf(*wish.arm, arms::ReadArmModel(run.model), wish.gravity_m_s2);
-  const arms::SampledPath path(TrackOf(*wish.joints_command0));
+  const arms::SampledPath path(TrackOfJoints(*wish.joints_command0));
   const arms::PathCommands commands = arms::CommandsFor(path, model.joints);
   Recording result;
   result.has_shaft = false;

@@ -4,7 +4,16 @@
 
 #include <filesystem>
 
+#include "arms/data/arm_data.h"
+#include "recording/recording.h"
+
 namespace flextip {
+
+/// Joints as rows from time 0.
+arms::Track TrackOfJoints(const JointStream& stream);
+
+/// Throws InputError where a recording has no desired joints of an arm.
+void RequireDesiredJoints(const Recording& wish, const std::filesystem::path& file);
 
 struct JointCommandsRun {
   std::filesystem::path wish;   ///< recording whose joints_command0 are the desired joints

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "arms/model/dynamics.h"
@@ -13,6 +14,8 @@ namespace {
 
 using diagnosis::EffectFit;
 using Fits = std::vector<EffectFit>;
+
+constexpr double kMeasured = 0.3;  // of its tolerance a number's deviation is at most
 
 bool Has(const Fits& fits, const std::string& effect) {
   return std::any_of(fits.begin(), fits.end(),
@@ -30,6 +33,32 @@ Eigen::VectorXd List(const Fits& fits, const std::string& effect, const std::str
     return Eigen::Map<const Eigen::VectorXd>(values.data(), size);
   }
   return Eigen::VectorXd::Constant(size, fallback);
+}
+
+/// What is within specification of a number behind the encoders (docs/effects.md); 0: of no such.
+double ToleranceOf(const std::string& effect, bool turns) {
+  if (effect == "joint_offset") return turns ? 5e-4 : 2e-4;
+  if (effect == "joint_scale") return 5e-4;
+  if (effect == "joint_coupling") return 1e-3;
+  if (effect == "joint_compliance") return turns ? 2e-4 : 1e-5;
+  return 0.0;
+}
+
+/// An effect within tolerance, behind the encoders without the numbers that the data hardly
+/// measured: they may be a marker's place.
+EffectFit WhatIsMeasured(EffectFit fit, const Arm& arm) {
+  const auto n = std::size_t(arm.Size());
+  for (auto& p : fit.parameters) {
+    const double none = fit.effect == "joint_scale" ? 1.0 : 0.0;
+    for (std::size_t i = 0; i < p.value.size() && i < p.sd.size(); ++i) {
+      const std::size_t joint =
+          p.value.size() == n ? i : std::size_t(OffDiagonal(int(n), int(i)).row);
+      const double tolerance =
+          ToleranceOf(fit.effect, arm.joints[joint % n].type == JointType::kRevolute);
+      if (p.sd[i] > kMeasured * tolerance && tolerance > 0.0) p.value[i] = none;
+    }
+  }
+  return fit;
 }
 
 JointMatrix Square(const Eigen::VectorXd& off_diagonal, int n) {
@@ -139,8 +168,9 @@ CommandModel CommandModelOf(const Arm& arm, const ArmModel& model,
   const int n = arm.Size();
   CommandModel result{JointModel(n), {}};
   JointModel& joints = result.joints;
-  Fits given = model.effects;
-  given.insert(given.end(), model.within_tolerance.begin(), model.within_tolerance.end());
+  const Fits& found = model.effects;
+  Fits given = found;
+  for (const EffectFit& fit : model.within_tolerance) given.push_back(WhatIsMeasured(fit, arm));
   const auto positive = [](const Eigen::VectorXd& list) { return list.cwiseMax(0.0); };
   for (int i = 0; i < n; ++i)
     joints.turns[std::size_t(i)] = arm.joints[std::size_t(i)].type == JointType::kRevolute;
@@ -152,8 +182,8 @@ CommandModel CommandModelOf(const Arm& arm, const ArmModel& model,
   joints.offset = List(given, "joint_offset", "offset", n, 0.0);
   joints.scale = List(given, "joint_scale", "scale", n, 1.0);
   joints.coupling = Square(List(given, "joint_coupling", "matrix", n * n - n, 0.0), n);
-  const Eigen::VectorXd width = List(model.effects, "joint_backlash", "width", n, 0.0);
-  const JointMatrix drag = Square(List(model.effects, "joint_backlash", "drag", n * n - n, 0.0), n);
+  const Eigen::VectorXd width = List(found, "joint_backlash", "width", n, 0.0);
+  const JointMatrix drag = Square(List(found, "joint_backlash", "drag", n * n - n, 0.0), n);
   joints.play = drag * width.asDiagonal();
   joints.play.diagonal() = width;
   if (!arm.links.empty() || Has(model.nuisances, "masses")) {

