@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <deque>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -92,7 +93,7 @@ live::JointCycle CycleOf(const Task& task, bool wait) {
 }
 
 /// The cycles as streams of a recording.
-Recording RecordingOf(const Task& task, const std::vector<live::JointRecord>& cycles) {
+Recording RecordingOf(const Task& task, const std::deque<live::JointRecord>& cycles) {
   Recording recording;
   recording.has_shaft = false;
   recording.gravity_m_s2 = task.wish.gravity_m_s2;
@@ -137,6 +138,8 @@ void ControlJoints(const JointSessionRun& run) {
       task.session, CycleOf(task, run.wait), n,
       {.duration_s = run.duration_s, .stop = [&] { return output.StopRequested(); }});
   output.Warn(report.events);
+  if (const long lacking = report.cycle_count - long(report.cycles.size()); lacking > 0)
+    output.Warn(fmt::format("the last {} cycles are not in the recording", lacking));
   WriteRecording(output.folder(), RecordingOf(task, report.cycles));
   WriteTextFile(output.folder() / kCycles, live::JointCyclesCsv(report.cycles, n));
   WriteTextFile(output.folder() / kSession, ReadTextFile(run.session));

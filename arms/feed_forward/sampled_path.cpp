@@ -35,13 +35,13 @@ bool SampledPath::IsWithin(double t_s) const {
   return t_s >= rows_.t_s[0] && t_s <= rows_.t_s[rows_.Rows() - 1];
 }
 
-Eigen::RowVectorXd SampledPath::Between(const Eigen::MatrixXd& values, double t_s) const {
-  if (!IsWithin(t_s)) return Eigen::RowVectorXd::Zero(values.cols());
+JointVector SampledPath::Between(const Eigen::MatrixXd& values, double t_s) const {
+  if (!IsWithin(t_s)) return JointVector::Zero(values.cols());
   const auto* begin = rows_.t_s.data();
   const auto after = std::upper_bound(begin, begin + rows_.Rows(), t_s) - begin;
   const Eigen::Index k = std::clamp<Eigen::Index>(after - 1, 0, rows_.Rows() - 2);
   const double u = (t_s - rows_.t_s[k]) / (rows_.t_s[k + 1] - rows_.t_s[k]);
-  return (1.0 - u) * values.row(k) + u * values.row(k + 1);
+  return ((1.0 - u) * values.row(k) + u * values.row(k + 1)).transpose();
 }
 
 JointVector SampledPath::JointsAt(double t_s) const {
@@ -56,11 +56,11 @@ JointVector SampledPath::JointsAt(double t_s) const {
       .transpose();
 }
 
-JointVector SampledPath::RatesAt(double t_s) const { return Between(rates_, t_s).transpose(); }
+JointVector SampledPath::RatesAt(double t_s) const { return Between(rates_, t_s); }
 
 JointWish SampledPath::WishAt(double t_s, const JointFeedForward& feed_forward) const {
   const double at = t_s + feed_forward.Lead_s();
-  JointWish wish{JointsAt(at), RatesAt(at), Between(accelerations_, at).transpose(), {}};
+  JointWish wish{JointsAt(at), RatesAt(at), Between(accelerations_, at), {}};
   wish.v_ahead.resize(feed_forward.Size());
   for (int j = 0; j < feed_forward.Size(); ++j)
     wish.v_ahead[j] = RatesAt(at + feed_forward.TurnAhead_s()[j])[j];

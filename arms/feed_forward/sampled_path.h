@@ -9,6 +9,7 @@
 
 namespace flextip::arms {
 
+/// Looking at it allocates nothing.
 class SampledPath {
  public:
   /// Throws InputError for fewer than five rows, times that do not ascend, or numbers that are not
@@ -23,7 +24,7 @@ class SampledPath {
   JointWish WishAt(double t_s, const JointFeedForward& feed_forward) const;
 
  private:
-  Eigen::RowVectorXd Between(const Eigen::MatrixXd& values, double t_s) const;
+  JointVector Between(const Eigen::MatrixXd& values, double t_s) const;
   bool IsWithin(double t_s) const;
 
   Track rows_;

@@ -31,9 +31,9 @@ enum class JointHold : std::uint8_t {
 /// Returns the name as in recordings: "not_following".
 const char* Name(JointHold hold);
 
-/// The desired path, from time 0.
+/// The desired path, from time 0. It should begin at rest: the joints stand where it starts.
 struct JointWay {
-  /// What the feed-forward wants to know at a time of the path.
+  /// What the feed-forward wants to know at a time of the path. May neither allocate nor throw.
   std::function<JointWish(double t_s, const JointFeedForward& feed_forward)> wish;
   double seconds = 0.0;
 };

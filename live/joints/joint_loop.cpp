@@ -42,7 +42,6 @@ class JointLoop {
       const RealTime real_time;
       ClockBeats beats(session_.rate_hz);
       begin_ns_ = Now_ns();
-      report_.cycles.reserve(std::min<std::size_t>(options_.most_cycles, 1 << 16));
       while (!IsOver()) {
         Step(beats.Next().t_ns);
         report_.missed = beats.Missed();

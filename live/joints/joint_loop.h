@@ -1,6 +1,7 @@
 // Moves the robot of a joint session: connections, clock, cycle, and a record of every cycle.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
@@ -20,12 +21,12 @@ struct JointRecord {
 
 struct JointLoopOptions {
   std::optional<double> duration_s;
-  std::function<bool()> stop;           ///< asked every cycle; true: the robot is paused
-  std::size_t most_cycles = 2'000'000;  ///< that are kept
+  std::function<bool()> stop;         ///< asked every cycle; true: the robot is paused
+  std::size_t most_cycles = 600'000;  ///< that are kept
 };
 
 struct JointLoopReport {
-  std::vector<JointRecord> cycles;
+  std::deque<JointRecord> cycles;   ///< the first `most_cycles`
   std::vector<std::string> events;  ///< of the connections, one line each
   JointHold last_hold = JointHold::kNone;
   long cycle_count = 0, missed = 0, unsent = 0, limited = 0, bad_messages = 0;

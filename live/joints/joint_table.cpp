@@ -39,7 +39,7 @@ bool Same(const JointOutputs& a, const JointOutputs& b) {
 
 }  // namespace
 
-std::string JointCyclesCsv(const std::vector<JointRecord>& cycles, int joints) {
+std::string JointCyclesCsv(const std::deque<JointRecord>& cycles, int joints) {
   CsvWriter csv(ColumnsOf(joints));
   for (const JointRecord& record : cycles) {
     const auto& [inputs, outputs, sent] = record;
@@ -59,10 +59,10 @@ std::string JointCyclesCsv(const std::vector<JointRecord>& cycles, int joints) {
   return csv.text();
 }
 
-std::vector<JointRecord> ReadJointCycles(const std::filesystem::path& file, int joints,
-                                         ReadLog& log) {
+std::deque<JointRecord> ReadJointCycles(const std::filesystem::path& file, int joints,
+                                        ReadLog& log) {
   CsvReader csv(file, ColumnsOf(joints), log);
-  std::vector<JointRecord> cycles;
+  std::deque<JointRecord> cycles;
   const auto n = std::size_t(joints);
   while (csv.Next()) {
     JointRecord record;
@@ -93,7 +93,7 @@ std::vector<JointRecord> ReadJointCycles(const std::filesystem::path& file, int 
   return cycles;
 }
 
-long CyclesThatDiffer(const std::vector<JointRecord>& cycles, JointCycle cycle) {
+long CyclesThatDiffer(const std::deque<JointRecord>& cycles, JointCycle cycle) {
   long differ = 0;
   for (const JointRecord& record : cycles)
     differ += !Same(record.outputs, cycle.Step(record.inputs));

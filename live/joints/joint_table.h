@@ -2,9 +2,9 @@
 // cycles again.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "live/joints/joint_loop.h"
 #include "recording/read_log.h"
@@ -12,13 +12,13 @@
 namespace flextip::live {
 
 /// Returns the table's text.
-std::string JointCyclesCsv(const std::vector<JointRecord>& cycles, int joints);
+std::string JointCyclesCsv(const std::deque<JointRecord>& cycles, int joints);
 
 /// Reads a table of so many joints. Throws InputError with file and line.
-std::vector<JointRecord> ReadJointCycles(const std::filesystem::path& file, int joints,
-                                         ReadLog& log);
+std::deque<JointRecord> ReadJointCycles(const std::filesystem::path& file, int joints,
+                                        ReadLog& log);
 
 /// Gives the recorded inputs to a new cycle, and returns how many outputs differ in any bit.
-long CyclesThatDiffer(const std::vector<JointRecord>& cycles, JointCycle cycle);
+long CyclesThatDiffer(const std::deque<JointRecord>& cycles, JointCycle cycle);
 
 }  // namespace flextip::live

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "simulation/joints/arm_recording.h"
 #include "tests/arms/made_arm.h"
+#include "tests/control/allocation_counter.h"
 
 namespace flextip::arms {
 namespace {
@@ -123,6 +124,12 @@ TEST(SampledPath, IsSmoothBetweenRowsAndRestsBeyondThem) {
   EXPECT_EQ(path.JointsAt(-1.0)[0], 0.0);
   EXPECT_EQ(path.JointsAt(9.0)[0], std::sin(6.0));
   EXPECT_EQ(path.RatesAt(9.0)[0], 0.0);
+  JointFeedForward feed_forward(JointModel(1), {}, JointVector::Zero(1));
+  if (CountsAllocations()) {
+    const long before = AllocationCount();
+    for (double t = 0.0; t < 2.0; t += 0.01) feed_forward.Step(path.WishAt(t, feed_forward), 0.01);
+    EXPECT_EQ(AllocationCount(), before);
+  }
   rows.t_s[50] = rows.t_s[49];
   EXPECT_THROW(SampledPath{rows}, InputError);
 }
