@@ -39,6 +39,9 @@ set(FLEXTIP_PUBLIC_HEADERS
   control/delay_gain.h
   control/direction_controller.h
   control/fixtures.h
+  control/joints/arm_effort.h
+  control/joints/joint_feed_forward.h
+  control/joints/joint_model.h
   control/motion_error.h
   control/supervision/chi_squared.h
   control/supervision/jerk_filter.h

@@ -9,11 +9,14 @@
 #include "apps/common/commands.h"
 #include "apps/common/output.h"
 #include "apps/control/figures.h"
+#include "apps/control/joint_session.h"
+#include "apps/control/joints.h"
 #include "apps/control/tables.h"
 #include "apps/stops/stops.h"
 #include "core/error.h"
 #include "diagnosis/running/running_diagnosis.h"
 #include "diagnosis/running/warnings_table.h"
+#include "live/joints/joint_session.h"
 #include "live/loop/control_loop.h"
 #include "live/recorder/excerpt.h"
 #include "recording/text/text.h"
@@ -28,7 +31,7 @@ namespace fs = std::filesystem;
 constexpr int kPagePort = 18080;
 
 struct ControlCommandOptions {
-  fs::path session, out;
+  fs::path session, out, model;
   std::optional<double> duration_s, timing_s;
   std::optional<int> page_port;
   bool page = false, wait = false, force = false;
@@ -71,6 +74,16 @@ StopsOfRun CutStops(OutputFolder& output, bool quiet) {
 
 /// Ctrl-C ends the loop, not the program.
 void RunControl(const ControlCommandOptions& options, bool quiet) {
+  if (!options.model.empty()) {
+    if (options.out.empty()) throw InputError("-o RECORDING is missing, expected it with --model");
+    return WriteJointCommands({options.session, options.model, options.out, options.force, quiet});
+  }
+  if (live::IsJointSession(options.session)) {
+    if (options.page || options.page_port || options.timing_s)
+      throw InputError("--page and --timing are for a session with a shaft, found one of joints");
+    return ControlJoints(
+        {options.session, options.out, options.duration_s, options.wait, options.force, quiet});
+  }
   const live::Session session = live::ReadSession(options.session);
   if (options.out.empty() && !options.timing_s)
     throw InputError("-o RECORDING is missing, expected it without --timing");
@@ -127,11 +140,19 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
 void AddControl(CLI::App& app, AppContext& context) {
   auto* command = app.add_subcommand("control", "Steer a robot by the streams of a session");
   auto options = std::make_shared<ControlCommandOptions>();
-  command->add_option("session", options->session, "Streams, robot, limits and path")
+  command
+      ->add_option("session", options->session,
+                   "Streams, robot, limits and path; with --model a recording whose "
+                   "joints_command0 are an arm's desired joints")
       ->required()
       ->type_name("SESSION.yaml");
   command->add_option("-o,--output", options->out, "Folder of the recording, written while it runs")
       ->type_name("RECORDING");
+  command
+      ->add_option("--model", options->model,
+                   "What flextip diagnose found at an arm's joints: no robot moves, and the "
+                   "commands that bring its true joints to the desired ones are written")
+      ->type_name("MODEL.yaml");
   command->add_flag("--wait", options->wait,
                     "Wait until somebody else has homed and enabled the robot");
   command->add_option("--duration", options->duration_s, "End after so many seconds at the latest")
@@ -155,7 +176,8 @@ void AddControl(CLI::App& app, AppContext& context) {
       "Ctrl-C pauses the robot and ends.\n"
       "Examples:\n  flextip control session.yaml -o session\n"
       "  flextip control --page session.yaml -o session\n"
-      "  flextip control session.yaml --timing 10\n");
+      "  flextip control session.yaml --timing 10\n"
+      "  flextip control desired --model diagnosis/model.yaml -o commands\n");
   OnRun(*command, context, [options, &context] { RunControl(*options, context.quiet); });
 }
 

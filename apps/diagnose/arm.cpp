@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "apps/common/judgement.h"
@@ -79,7 +80,11 @@ void DiagnoseArm(const ArmRun& run) {
   const std::vector<arms::ArmData> recordings = ReadArms(run, output);
   const arms::ArmResult result = arms::Diagnose(recordings, {.without = run.without});
   output.Warn(result.answer.warnings);
-  WriteTextFile(output.folder() / "diagnosis.json", ArmDiagnosisJson(result));
+  std::optional<simulation::JointGain> gain;
+  if (run.closed_loop && diagnosis::NamesEffects(result.answer.verdict))
+    gain = simulation::MeasureJointGain(recordings.front(), result.model);
+  WriteTextFile(output.folder() / "diagnosis.json",
+                ArmDiagnosisJson(result, gain ? &*gain : nullptr));
   WriteTextFile(output.folder() / "model.yaml", arms::ArmModelYaml(result.model));
   report::WriteFigures(output.folder() / "figures.json", ArmFigures(result));
   WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(result.answer.residuals));

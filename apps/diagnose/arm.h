@@ -13,6 +13,7 @@ struct ArmRun {
   std::filesystem::path out;
   std::vector<std::string> without;
   bool force = false, quiet = false;
+  bool closed_loop = true;  ///< measure the gain on a simulated arm, too
 };
 
 /// Whether a recording holds an arm's joints: joints0, or joints_command0 with joints_seen0.

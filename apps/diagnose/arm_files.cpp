@@ -106,6 +106,29 @@ FigureTrace Dots(const std::string& name, const std::string& color) {
   return {.name = name, .kind = FigureTrace::Kind::kPoints, .color = color};
 }
 
+Json TipJson(const simulation::JointLoopResult& run) {
+  return {{"max_deviation_m", run.tip_max_m}, {"rms_deviation_m", run.tip_rms_m}};
+}
+
+Json LoopJson(const arms::ArmResult& result, const simulation::JointGain& gain) {
+  Json json = {{"controller", "joint-feed-forward"}};
+  for (Eigen::Index i = 0; gain.ran && i < gain.base.rms.size(); ++i) {
+    const bool turns = result.joint_types[std::size_t(i)] == "revolute";
+    json["joints"].push_back({{"component", fmt::format("q{}_{}", i + 1, turns ? "rad" : "m")},
+                              {"rms_before", gain.base.rms[i]},
+                              {"rms_after", gain.extended.rms[i]},
+                              {"max_before", gain.base.max[i]},
+                              {"max_after", gain.extended.max[i]}});
+  }
+  if (gain.ran) {
+    json["before"] = TipJson(gain.base);
+    json["after"] = TipJson(gain.extended);
+    json["limited_cycles"] = gain.extended.rate_limited + gain.extended.correction_limited;
+  }
+  json["notes"] = gain.notes;
+  return json;
+}
+
 }  // namespace
 
 std::vector<Figure> CurveFigures(const std::vector<arms::ComponentCurve>& curves) {
@@ -143,7 +166,7 @@ std::vector<Figure> ArmFigures(const arms::ArmResult& result) {
   return figures;
 }
 
-std::string ArmDiagnosisJson(const arms::ArmResult& result) {
+std::string ArmDiagnosisJson(const arms::ArmResult& result, const simulation::JointGain* gain) {
   Json json = Json::parse(DiagnosisJson(result.answer));
   Json joints = Json::array();
   for (std::size_t i = 0; i < result.joint_types.size(); ++i)
@@ -162,6 +185,7 @@ std::string ArmDiagnosisJson(const arms::ArmResult& result) {
   for (const arms::ComponentScore& c : result.components)
     noise[c.channel + "_" + c.component] = c.noise;
   json["noise_sd"] = noise;
+  if (gain != nullptr) json["closed_loop"] = LoopJson(result, *gain);
   if (result.recordings.size() < 2) return json.dump(2) + "\n";
   json["recordings"] = result.recordings;
   Json changes = Json::array();

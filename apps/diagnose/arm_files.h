@@ -8,11 +8,14 @@
 #include "arms/diagnose/diagnose.h"
 #include "arms/diagnose/predict.h"
 #include "report/figure.h"
+#include "simulation/closed_loop/joints/joint_gain.h"
 
 namespace flextip {
 
-/// Returns diagnosis.json of all recordings together.
-std::string ArmDiagnosisJson(const arms::ArmResult& result);
+/// Returns diagnosis.json of all recordings together; `gain`, where there is one, adds
+/// `closed_loop`.
+std::string ArmDiagnosisJson(const arms::ArmResult& result,
+                             const simulation::JointGain* gain = nullptr);
 /// Returns diagnosis.json of one of several.
 std::string ArmRecordingJson(const arms::RecordingAnswer& recording);
 

@@ -174,6 +174,7 @@ void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, boo
 
 void RunArm(const Options& options, bool quiet) {
   ArmRun run{{options.input.recording}, options.input.out, options.without, options.force, quiet};
+  run.closed_loop = !options.no_closed_loop;
   run.recordings.insert(run.recordings.end(), options.others.begin(), options.others.end());
   DiagnoseArm(run);
 }

@@ -8,6 +8,7 @@
 #include "apps/common/commands.h"
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
+#include "apps/control/joint_session.h"
 #include "core/error.h"
 #include "diagnosis/model/extended_model.h"
 #include "live/recorder/replay.h"
@@ -164,10 +165,25 @@ std::vector<report::Figure> Figures(const std::vector<Pair>& pairs) {
   return {commands, difference};
 }
 
+/// Of a session of joints: numbers alone.
+void ReplayJoints(const ReplayOptions& options, OutputFolder& output, bool quiet) {
+  if (!options.session.empty())
+    throw InputError("--session is for a session with a shaft, found one of joints");
+  const JointReplay replay = ReplayJointCycles(options.recording);
+  const long equal = replay.cycles - replay.differ;
+  output.WriteSummary({{"of", "joints"}, {"cycles", replay.cycles}, {"equal_cycles", equal}});
+  output.Commit();
+  if (!quiet) fmt::print("{} of {} cycles are the same bit for bit.\n", equal, replay.cycles);
+  if (replay.differ > 0)
+    throw WorkError(fmt::format("{}: {} of {} cycles came out differently",
+                                options.recording.string(), replay.differ, replay.cycles));
+}
+
 void RunReplay(const ReplayOptions& options, bool quiet) {
   std::vector<fs::path> inputs{options.recording};
   if (!options.session.empty()) inputs.push_back(options.session);
   OutputFolder output(options.out, "replay", {.force = options.force, .inputs = inputs});
+  if (HasJointCycles(options.recording)) return ReplayJoints(options, output, quiet);
   const Replayed replayed =
       live::HasSession(options.recording) ? OfSession(options) : OfSimulation(options);
   output.Warn(replayed.warnings);

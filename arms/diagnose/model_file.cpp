@@ -66,6 +66,18 @@ std::vector<EffectFit> ReadSection(const YamlMap& top, const std::string& key, b
   return effects;
 }
 
+/// Gives the parameters their deviations, where there are as many.
+void TakeDeviations(const std::vector<EffectFit>& sd, std::vector<EffectFit>& fits) {
+  for (EffectFit& fit : fits) {
+    for (const EffectFit& of : sd) {
+      if (of.effect != fit.effect) continue;
+      for (ReportedParameter& p : fit.parameters)
+        for (const ReportedParameter& q : of.parameters)
+          if (p.name == q.name && p.value.size() == q.value.size()) p.sd = q.value;
+    }
+  }
+}
+
 }  // namespace
 
 std::string ArmModelYaml(const ArmModel& model) {
@@ -93,9 +105,10 @@ ArmModel ReadArmModel(const std::filesystem::path& file) {
   }
   if (const auto version = top.Integer("version"); version != kArmModelVersion)
     throw top.Error("version", fmt::format("found {}, expected {}", version, kArmModelVersion));
-  (void)top.Has("sd");
   ArmModel model{ReadSection(top, "effects", false), ReadSection(top, "within_tolerance", false),
                  ReadSection(top, "nuisances", true), ReadSection(top, "base_nuisances", true)};
+  const std::vector<EffectFit> sd = ReadSection(top, "sd", false);
+  for (auto* section : {&model.effects, &model.within_tolerance}) TakeDeviations(sd, *section);
   ReadLog log;
   top.WarnUnknown(log);
   if (!log.warnings.empty()) {

@@ -100,6 +100,18 @@ void ReadNumbers(const double* values, std::size_t count, const char* what, Read
   reading.message.body = std::move(numbers);
 }
 
+/// Positions, and the efforts after them where there are as many.
+void ReadJoints(const sensor_msgs_msg_dds__JointState_& sample, Reading& reading) {
+  const auto &position = sample.position, &effort = sample.effort;
+  ReadNumbers(position._buffer, position._length, "position", reading);
+  if (!reading.why.empty() || effort._length != position._length) return;
+  WireNumbers joints = std::get<WireNumbers>(reading.message.body);
+  ReadNumbers(effort._buffer, effort._length, "effort", reading);
+  const auto& efforts = std::get<WireNumbers>(reading.message.body).values;
+  joints.values.insert(joints.values.end(), efforts.begin(), efforts.end());
+  reading.message.body = std::move(joints);
+}
+
 void ReadForce(const geometry_msgs_msg_dds__WrenchStamped_& sample, Reading& reading) {
   const auto& f = sample.wrench.force;
   const double values[] = {f.x, f.y, f.z};
@@ -181,6 +193,10 @@ void ReadSample(Ros2Type type, const void* sample, TimeNs source_ns, Reading& re
       ReadStamped<sensor_msgs_msg_dds__JointState_>(sample, reading, [&](const auto& m) {
         ReadNumbers(m.effort._buffer, m.effort._length, "effort", reading);
       });
+      break;
+    case Ros2Type::kJoints:
+      ReadStamped<sensor_msgs_msg_dds__JointState_>(sample, reading,
+                                                    [&](const auto& m) { ReadJoints(m, reading); });
       break;
     case Ros2Type::kWrenchStamped:
       ReadStamped<geometry_msgs_msg_dds__WrenchStamped_>(

@@ -148,6 +148,15 @@ void WithRos2(Ros2Type type, const WireMessage& message,
       out.effort._buffer = const_cast<double*>(values.data());
       return use(&out);
     }
+    case Ros2Type::kJoints: {
+      constexpr std::size_t kMostNumbers = 1024;
+      const auto& values = NumbersOf(type, message, 1, kMostNumbers);
+      sensor_msgs_msg_dds__JointState_ out{};
+      out.header = HeaderOf(message);
+      out.position._length = out.position._maximum = static_cast<std::uint32_t>(values.size());
+      out.position._buffer = const_cast<double*>(values.data());
+      return use(&out);
+    }
     case Ros2Type::kWrenchStamped: {
       const auto& values = NumbersOf(type, message, 3, 3);
       geometry_msgs_msg_dds__WrenchStamped_ out{};

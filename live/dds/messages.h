@@ -23,7 +23,8 @@ struct Ros2Decoded {
 /// numbers finite; quaternions are made exact. A stamp of 0 is time 0: invalid data.
 /// `source_ns`: the time of a type that has none. Content by type: poses; of
 /// PoseWithCovarianceStamped the 16 numbers of vision0 (docs/live/protocols.md); the effort of
-/// JointState; the force of WrenchStamped; texts; pictures in mono8, bgr8 or rgb8.
+/// JointState, or its positions and efforts; the force of WrenchStamped; texts; pictures in mono8,
+/// bgr8 or rgb8.
 Ros2Decoded DecodeRos2(Ros2Type type, const void* sample, std::string_view device,
                        TimeNs source_ns);
 

@@ -53,8 +53,9 @@ void ReadRos2(const YamlMap& section, Address& address) {
 }
 
 Ros2Topic TopicOf(const Address& address) {
-  const auto type = Ros2TypeOf(address.type);
-  return {address.device, type ? std::vector{*type} : Ros2TypesFor(address.content)};
+  for (const Ros2Type type : Ros2TypesFor(address.content))
+    if (address.type == Name(type)) return {address.device, {type}};
+  return {address.device, Ros2TypesFor(address.content)};
 }
 
 Ros2Setup SetupOf(const PeerWish& wish) {

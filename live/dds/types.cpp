@@ -15,6 +15,7 @@ const char* Name(Ros2Type type) {
       "crtk_msgs/OperatingState",
       "crtk_msgs/StringStamped",
       "std_msgs/String",
+      "sensor_msgs/JointState",
   };
   return names[static_cast<std::size_t>(type)];
 }
@@ -39,6 +40,8 @@ std::vector<Ros2Type> Ros2TypesFor(Content content) {
       return {Ros2Type::kImage};
     case Content::kState:
       return {Ros2Type::kOperatingState};
+    case Content::kJoints:
+      return {Ros2Type::kJoints};
     case Content::kText:
       break;
   }

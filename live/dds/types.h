@@ -20,8 +20,9 @@ enum class Ros2Type : std::uint8_t {
   kOperatingState,
   kStringStamped,
   kString,
+  kJoints,  ///< JointState, too: its positions, and its efforts after them
 };
-inline constexpr int kRos2Types = 9;
+inline constexpr int kRos2Types = 10;
 
 /// Returns the type as ROS 2 writes it: "geometry_msgs/PoseStamped".
 const char* Name(Ros2Type type);

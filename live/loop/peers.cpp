@@ -8,6 +8,14 @@ namespace {
 
 class AllPeers : public Peers {
  public:
+  AllPeers(const std::vector<Address>& in, const std::vector<Address>& out,
+           const PeerHandlers& handlers)
+      : handlers_(handlers) {
+    for (const Address& address : in) Read(address);
+    for (const Address& address : out) Of(address).wish.out.push_back(address);
+    Open();
+  }
+
   AllPeers(const Session& session, const PeerHandlers& handlers) : handlers_(handlers) {
     for (const auto& stream : session.streams)
       if (stream) Read(stream->address);
@@ -22,7 +30,7 @@ class AllPeers : public Peers {
       wish.lockstep = static_cast<int>(wish.in.size()) - 1;
       if (robot.lockstep->SamePeer(robot.command)) wish.answer = 0;
     }
-    for (Peer& peer : peers_) peer.connection = peer.address.protocol->open(peer.wish);
+    Open();
   }
 
   bool Send(const Address& address, const WireMessage& message) override {
@@ -37,6 +45,10 @@ class AllPeers : public Peers {
     PeerWish wish;
     std::unique_ptr<PeerConnection> connection;
   };
+
+  void Open() {
+    for (Peer& peer : peers_) peer.connection = peer.address.protocol->open(peer.wish);
+  }
 
   PeerWish& Read(const Address& address) {
     PeerWish& wish = Of(address).wish;
@@ -61,6 +73,11 @@ class AllPeers : public Peers {
 };
 
 }  // namespace
+
+std::unique_ptr<Peers> OpenPeersAt(const std::vector<Address>& in, const std::vector<Address>& out,
+                                   const PeerHandlers& handlers) {
+  return std::make_unique<AllPeers>(in, out, handlers);
+}
 
 std::unique_ptr<Peers> OpenPeersOf(const Session& session, const PeerHandlers& handlers) {
   return std::make_unique<AllPeers>(session, handlers);

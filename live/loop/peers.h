@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "live/session/session.h"
 #include "live/wire.h"
@@ -30,6 +31,11 @@ struct PeerHandlers {
 
 using OpenPeers =
     std::function<std::unique_ptr<Peers>(const Session& session, const PeerHandlers& handlers)>;
+
+/// Connects to the peers of these addresses, once each. Throws WorkError where this build lacks the
+/// protocol.
+std::unique_ptr<Peers> OpenPeersAt(const std::vector<Address>& in, const std::vector<Address>& out,
+                                   const PeerHandlers& handlers);
 
 /// Connects to every peer that the session names, once each. Throws WorkError where this build
 /// lacks the protocol.

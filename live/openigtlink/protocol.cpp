@@ -28,7 +28,7 @@ extern const Protocol kOpenIgtLinkProtocol{
           constexpr std::size_t kLongestName = 20;  // bytes, in the header of a message
           ReadHostPortDevice(section, kLongestName, address);
         },
-    .carries = [](Content) { return true; },
+    .carries = [](Content content) { return content != Content::kJoints; },
     .takes_commands = true,
     .open = [](const PeerWish& wish) -> std::unique_ptr<PeerConnection> {
       return std::make_unique<OpenIgtLinkPeer>(wish);

@@ -15,8 +15,18 @@ namespace flextip::live {
 
 struct Protocol;
 
-/// What the messages of an address carry.
-enum class Content : std::uint8_t { kPose, kTip, kMoments, kForce, kPicture, kState, kText };
+/// What the messages of an address carry. kJoints: numbers, a joint each, and after them the
+/// efforts of as many where they are there.
+enum class Content : std::uint8_t {
+  kPose,
+  kTip,
+  kMoments,
+  kForce,
+  kPicture,
+  kState,
+  kText,
+  kJoints
+};
 
 /// Where messages come from or go to. What host and port are is the protocol's: with UDP the
 /// address that is listened on, with ROS 2 the network interface and the domain.

@@ -129,18 +129,36 @@ void AddErrorTable(Report& report, const DiagnosedResult& result) {
 void AddClosedLoop(Report& report, const DiagnosedResult& result) {
   if (!result.closed_loop) return;
   const auto& loop = *result.closed_loop;
+  const bool of_arm = !loop.joints.empty() || !loop.notes.empty();
+  std::string notes;
+  for (const std::string& note : loop.notes) notes += " " + note + ".";
   Table table{.title = "Closed loop: deviation from the desired path",
-              .caption = "The controller " + loop.controller +
-                         " on a simulated plant with what was found, with the base model and with "
-                         "the extended one.",
-              .header = {"", "base model", "extended model"}};
-  const auto add = [&](const char* name, const auto& before, const auto& after) {
+              .caption = of_arm
+                             ? "A simulated arm with what was found, commanded as desired and by "
+                               "the feed-forward of its joints: true joints less desired." +
+                                   notes
+                             : "The controller " + loop.controller +
+                                   " on a simulated plant with what was found, with the base model "
+                                   "and with the extended one.",
+              .header = {"", of_arm ? "as desired" : "base model",
+                         of_arm ? "feed-forward" : "extended model"}};
+  const auto add = [&](const std::string& name, const auto& before, const auto& after,
+                       const std::string& unit) {
     if (before && after) {
-      table.rows.push_back({name, Brief(1e3 * *before) + " mm", Brief(1e3 * *after) + " mm"});
+      table.rows.push_back(
+          {name, Brief(1e3 * *before) + " " + unit, Brief(1e3 * *after) + " " + unit});
     }
   };
-  add("largest", loop.max_before_m, loop.max_after_m);
-  add("root mean square", loop.rms_before_m, loop.rms_after_m);
+  const std::string of = of_arm ? "tip, " : "";
+  add(of + "largest", loop.max_before_m, loop.max_after_m, "mm");
+  add(of + "root mean square", loop.rms_before_m, loop.rms_after_m, "mm");
+  for (const DiagnosedLoopJoint& joint : loop.joints) {
+    const std::string name = joint.component.substr(0, joint.component.find('_')),
+                      unit = joint.component.ends_with("_rad") ? "mrad" : "mm";
+    add(name + ", largest", joint.max_before, joint.max_after, unit);
+    add(name + ", root mean square", joint.rms_before, joint.rms_after, unit);
+  }
+  if (table.rows.empty() && of_arm) table.rows.push_back({"not measured", "–", "–"});
   if (!table.rows.empty()) report.AddTable(table);
 }
 

@@ -139,7 +139,16 @@ void ReadGain(const Json& json, DiagnosedResult& result) {
                                      .max_before_m = NumberIn(before, "max_deviation_m"),
                                      .max_after_m = NumberIn(after, "max_deviation_m"),
                                      .rms_before_m = NumberIn(before, "rms_deviation_m"),
-                                     .rms_after_m = NumberIn(after, "rms_deviation_m")};
+                                     .rms_after_m = NumberIn(after, "rms_deviation_m"),
+                                     .joints = {},
+                                     .notes = TextsIn(loop, "notes")};
+  for (const Json& joint : Member(loop, "joints")) {
+    result.closed_loop->joints.push_back({.component = TextIn(joint, "component"),
+                                          .rms_before = NumberIn(joint, "rms_before"),
+                                          .rms_after = NumberIn(joint, "rms_after"),
+                                          .max_before = NumberIn(joint, "max_before"),
+                                          .max_after = NumberIn(joint, "max_after")});
+  }
 }
 
 void ReadVerdict(const Json& json, DiagnosedResult& result) {

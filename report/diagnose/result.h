@@ -48,10 +48,18 @@ struct DiagnosedTerm {
   std::vector<DiagnosedTermName> could_be;
 };
 
+/// A joint of an arm in closed loop: "q1_rad" or "q3_m".
+struct DiagnosedLoopJoint {
+  std::string component;
+  std::optional<double> rms_before, rms_after, max_before, max_after;
+};
+
 /// `closed_loop` of the file: how far one controller strays from its path with either model.
 struct DiagnosedLoop {
   std::string controller;
   std::optional<double> max_before_m, max_after_m, rms_before_m, rms_after_m;
+  std::vector<DiagnosedLoopJoint> joints;  ///< of an arm
+  std::vector<std::string> notes;          ///< what the simulated arm does not have, and why
 };
 
 /// Effects as one hypothesis: sorted, with "+" between.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <functional>
 #include <vector>
 
 #include "simulation/joints/chain_of_links.h"
@@ -33,6 +34,27 @@ struct ArmPlantSettings {
 struct ArmPlantState {
   double t_s = 0.0;
   Eigen::VectorXd motor, motor_speed, link, link_speed, effort;
+};
+
+/// The command that was given at a time.
+using CommandAtTime = std::function<Eigen::VectorXd(double t_s)>;
+
+/// One arm that moves on, for a loop that looks at it in between.
+class ArmPlant {
+ public:
+  /// In balance at `command`, at rest.
+  ArmPlant(const ArmPlantSettings& settings, const Eigen::VectorXd& command, double t_s = 0.0);
+  /// Moves on; asks for commands of times up to then, less the delay. Throws WorkError where steps
+  /// are too long for the cables.
+  void AdvanceTo(double t_s, const CommandAtTime& command_at);
+  const ArmPlantState& State() const { return state_; }
+
+ private:
+  void StepOfLinks(double dt, const CommandAtTime& command_at);
+
+  ArmPlantSettings settings_;
+  ChainOfLinks chain_;
+  ArmPlantState state_;
 };
 
 /// Runs the plant along commands (rows at `t_s`, evenly), starting in balance at the first, and

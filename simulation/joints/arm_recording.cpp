@@ -41,7 +41,41 @@ Eigen::VectorXd Or(const Eigen::VectorXd& list, double fallback, int size) {
   return list.size() > 0 ? list : Eigen::VectorXd(Eigen::VectorXd::Constant(size, fallback));
 }
 
-ArmPlantSettings SettingsOf(const Arm& arm, const ArmFaults& faults) {
+class Recorder {
+ public:
+  Recorder(const Arm& arm, const ArmMotion& motion)
+      : arm_(arm), motion_(motion), rng_(motion.seed + 77) {}
+
+  JointStream Joints(double noise_rad, double noise_m) const {
+    JointStream stream;
+    stream.rate_hz = motion_.rate_hz;
+    for (const ArmJoint& joint : arm_.joints) {
+      stream.types.push_back(joint.type);
+      stream.noise.push_back(joint.type == JointType::kRevolute ? noise_rad : noise_m);
+    }
+    return stream;
+  }
+
+  Eigen::VectorXd Noisy(Eigen::VectorXd values, const std::vector<double>& noise) {
+    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] += noise[i] * normal_(rng_);
+    return values;
+  }
+  Eigen::Vector3d Noise(double sd) {
+    return {sd * normal_(rng_), sd * normal_(rng_), sd * normal_(rng_)};
+  }
+
+ private:
+  const Arm& arm_;
+  const ArmMotion& motion_;
+  std::mt19937_64 rng_;
+  std::normal_distribution<double> normal_;
+};
+
+TimeNs StampOf(double t_s) { return kStart_ns + TimeNs(std::llround(1e9 * t_s)); }
+
+}  // namespace
+
+ArmPlantSettings PlantOf(const Arm& arm, const ArmFaults& faults) {
   ArmPlantSettings settings{.arm = arm, .drives = {}, .masses = {}, .routing = faults.routing};
   const int n = arm.Size();
   for (int i = 0; i < n && faults.a_change_m.size() > 0; ++i) {
@@ -78,40 +112,6 @@ ArmPlantSettings SettingsOf(const Arm& arm, const ArmFaults& faults) {
   return settings;
 }
 
-class Recorder {
- public:
-  Recorder(const Arm& arm, const ArmMotion& motion)
-      : arm_(arm), motion_(motion), rng_(motion.seed + 77) {}
-
-  JointStream Joints(double noise_rad, double noise_m) const {
-    JointStream stream;
-    stream.rate_hz = motion_.rate_hz;
-    for (const ArmJoint& joint : arm_.joints) {
-      stream.types.push_back(joint.type);
-      stream.noise.push_back(joint.type == JointType::kRevolute ? noise_rad : noise_m);
-    }
-    return stream;
-  }
-
-  Eigen::VectorXd Noisy(Eigen::VectorXd values, const std::vector<double>& noise) {
-    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] += noise[i] * normal_(rng_);
-    return values;
-  }
-  Eigen::Vector3d Noise(double sd) {
-    return {sd * normal_(rng_), sd * normal_(rng_), sd * normal_(rng_)};
-  }
-
- private:
-  const Arm& arm_;
-  const ArmMotion& motion_;
-  std::mt19937_64 rng_;
-  std::normal_distribution<double> normal_;
-};
-
-TimeNs StampOf(double t_s) { return kStart_ns + TimeNs(std::llround(1e9 * t_s)); }
-
-}  // namespace
-
 Arm SmallArm() {
   constexpr double right = std::numbers::pi / 2;
   Arm arm;
@@ -141,7 +141,7 @@ Recording RecordArm(const Arm& arm, const ArmFaults& faults, const ArmSensors& s
   const Eigen::VectorXd t_s =
       Eigen::VectorXd::LinSpaced(rows, 0.0, double(rows - 1) / motion.rate_hz);
   const Eigen::MatrixXd commands = MotionOf(arm, motion, t_s);
-  const ArmPlantSettings settings = SettingsOf(arm, faults);
+  const ArmPlantSettings settings = PlantOf(arm, faults);
   const int n = arm.Size();
   const Eigen::VectorXd offset = Or(faults.encoder_offset, 0.0, n),
                         scale = Or(faults.encoder_scale, 0.0, n);

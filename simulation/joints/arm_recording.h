@@ -40,6 +40,10 @@ struct ArmMotion {
 /// Three joints with masses stated in their file: shoulder, elbow, slide.
 Arm SmallArm();
 
+/// The plant of `arm` with its faults, but for what its encoders read. Where there is play there is
+/// no gravity, and the links have friction: else they would hang on one side of it.
+ArmPlantSettings PlantOf(const Arm& arm, const ArmFaults& faults);
+
 /// Moves the plant of `arm` with its faults along a smooth motion, and records it by its file.
 Recording RecordArm(const Arm& arm, const ArmFaults& faults, const ArmSensors& sensors,
                     const ArmMotion& motion);

@@ -29,6 +29,7 @@ const dds_topic_descriptor_t& DescriptorOf(Ros2Type type) {
       &crtk_msgs_msg_dds__OperatingState__desc,
       &crtk_msgs_msg_dds__StringStamped__desc,
       &std_msgs_msg_dds__String__desc,
+      &sensor_msgs_msg_dds__JointState__desc,
   };
   return *all[static_cast<std::size_t>(type)];
 }

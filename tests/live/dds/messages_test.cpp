@@ -147,6 +147,8 @@ TEST(Ros2Messages, NumbersStatesTextsAndPicturesComeBack) {
   const WireMessage moments =
       Again(Ros2Type::kJointState, {"strain0", kTime_ns, WireNumbers{{1, 2, 3, 4}}});
   EXPECT_EQ(std::get<WireNumbers>(moments.body).values, (std::vector<double>{1, 2, 3, 4}));
+  const WireMessage at = Again(Ros2Type::kJoints, {"js", kTime_ns, WireNumbers{{0.1, -0.2}}});
+  EXPECT_EQ(std::get<WireNumbers>(at.body).values, (std::vector<double>{0.1, -0.2}));
   const WireMessage force =
       Again(Ros2Type::kWrenchStamped, {"load0", kTime_ns, WireNumbers{{1, 2, 3}}});
   EXPECT_EQ(std::get<WireNumbers>(force.body).values, (std::vector<double>{1, 2, 3}));
@@ -204,6 +206,27 @@ TEST(Ros2Messages, StampsThatAreNoneAreRefused) {
   EXPECT_THAT(WhyNot(Ros2Type::kPoseStamped, pose), HasSubstr("-5 s 0 ns"));
   pose.header.stamp = {5, 1'000'000'000};
   EXPECT_THAT(WhyNot(Ros2Type::kPoseStamped, pose), HasSubstr("1000000000 ns"));
+}
+
+TEST(Ros2Messages, EffortsOfJointsComeAfterTheirPositions) {
+  std::vector<double> position{0.1, -0.2}, effort{3.0, 4.0, 5.0};
+  sensor_msgs_msg_dds__JointState_ joints{};
+  joints.header.stamp = {1'700'000'000, 0};
+  EXPECT_THAT(WhyNot(Ros2Type::kJoints, joints), HasSubstr("0 numbers of position"));
+  joints.position._length = 2;
+  joints.position._buffer = position.data();
+  joints.effort._length = 2;
+  joints.effort._buffer = effort.data();
+  const auto numbers = [&] {
+    return std::get<WireNumbers>(DecodeRos2(Ros2Type::kJoints, &joints, "js", 7).message->body)
+        .values;
+  };
+  EXPECT_EQ(numbers(), (std::vector<double>{0.1, -0.2, 3.0, 4.0}));
+  joints.effort._length = 3;  // of other joints
+  EXPECT_EQ(numbers(), (std::vector<double>{0.1, -0.2}));
+  joints.effort._length = 2;
+  effort[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(WhyNot(Ros2Type::kJoints, joints), HasSubstr("effort nan"));
 }
 
 TEST(Ros2Messages, SequencesOfAWrongSizeAreRefused) {
