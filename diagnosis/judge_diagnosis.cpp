@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/search/ambiguity.h"
+
 namespace flextip::diagnosis {
 namespace {
 
@@ -48,6 +50,11 @@ bool IsGain(const DiagnosisResult& result) {
          (!result.gain.measured || result.gain.heldout_error_ratio < 0.98);
 }
 
+bool HasAlternatives(const DiagnosisResult& result) {
+  return std::ranges::any_of(result.indistinguishable,
+                             [](const auto& group) { return group.size() > 1; });
+}
+
 void SayNext(const DiagnosisResult& result, Judgement& judged) {
   if (result.verdict == Verdict{"unknown"} && result.discovered.empty()) {
     judged.next =
@@ -63,9 +70,13 @@ void SayNext(const DiagnosisResult& result, Judgement& judged) {
   if (result.plan && !result.plan->places_m.empty()) {
     judged.next = fmt::format("run the planned motion, motion.yaml in the result; until then {}",
                               judged.next);
-  } else if (!result.separating_motion.empty()) {
+  } else if (!result.separating_motion.empty() && result.separating_motion_score >= kInseparable) {
     judged.next = fmt::format("to tell the alternatives apart, record {}; until then {}",
                               result.separating_motion, judged.next);
+  } else if (HasAlternatives(result)) {
+    judged.next = fmt::format(
+        "no simple motion tells the alternatives apart, a further sensor may; until then {}",
+        judged.next);
   }
 }
 

@@ -13,6 +13,8 @@ void WriteReport(const std::filesystem::path& folder);
 // FOLDER/report.html. What is absent is left out. They throw InputError where a file that is there
 // cannot be read and WorkError where the page cannot be written.
 
+/// The streams of a simulated arm with joints over time.
+void WriteArmMotionReport(const std::filesystem::path& folder);
 /// Per controller: deviation over time and the tip's path against the desired one, from
 /// FOLDER/deviation.csv (one run) or FOLDER/CONTROLLER/deviation.csv (several); frames of cam0.
 void WriteSimulateReport(const std::filesystem::path& folder);

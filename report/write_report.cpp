@@ -16,10 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A robot that moved until it knew has the page of what it found.
+/// An arm with joints has no path of a tip.
+bool IsOfArm(const fs::path& folder) { return fs::exists(folder / "arm.yaml"); }
+
+/// A robot that moved until it knew has the page of what it found, an arm that of its streams.
 void WritePageOfSimulate(const fs::path& folder) {
-  const bool diagnosed = fs::exists(folder / "diagnosis.json");
-  diagnosed ? WriteDiagnoseReport(folder) : WriteSimulateReport(folder);
+  if (fs::exists(folder / "diagnosis.json")) return WriteDiagnoseReport(folder);
+  IsOfArm(folder) ? WriteArmMotionReport(folder) : WriteSimulateReport(folder);
 }
 
 struct CommandPage {
@@ -83,7 +86,8 @@ void WriteReport(const fs::path& folder) {
   for (const char* file : page->needs) {
     if (!fs::exists(folder / file)) refuse(fmt::format("no {}, the page needs it", file));
   }
-  if (first_word == "simulate" && !HasDeviations(folder) && !WasServed(folder)) {
+  if (first_word == "simulate" && !HasDeviations(folder) && !WasServed(folder) &&
+      !IsOfArm(folder)) {
     refuse("no deviation.csv, the page needs it");
   }
   try {

@@ -16,6 +16,7 @@
 #include "apps/common/next_step.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
+#include "apps/simulate/arm.h"
 #include "apps/simulate/deviation.h"
 #include "apps/simulate/diagnose.h"
 #include "apps/simulate/frame_files.h"
@@ -33,6 +34,7 @@
 #include "simulation/closed_loop/given_streams.h"
 #include "simulation/closed_loop/loop_table.h"
 #include "simulation/closed_loop/scenario_run.h"
+#include "simulation/joints/arm_scenario.h"
 
 namespace flextip {
 namespace {
@@ -175,7 +177,23 @@ bool Diagnoses(const SimulateOptions& options, bool quiet) {
   return true;
 }
 
+/// Runs a scenario of an arm with joints, which has no controllers.
+bool SimulatesArm(const SimulateOptions& options, bool quiet) {
+  if (!simulation::IsArmScenario(options.scenario)) return false;
+  const bool of_a_shaft = options.render || options.serve.port || options.diagnosing.asked ||
+                          !options.model.empty() || !options.frames_of.empty();
+  if (of_a_shaft) {
+    throw InputError::At(options.scenario.string(), 0,
+                         "is of an arm with joints, which --render, --frames-of, --serve, "
+                         "--diagnose and --model do not take");
+  }
+  if (options.out.empty()) throw InputError("--output is required");
+  SimulateArm({options.scenario, options.out, options.force}, quiet);
+  return true;
+}
+
 void RunSimulate(const SimulateOptions& options, bool quiet) {
+  if (SimulatesArm(options, quiet)) return;
   if (Serves(options, quiet) || Diagnoses(options, quiet)) return;
   simulation::Scenario scenario = simulation::ReadScenario(options.scenario);
   simulation::RequireRunnable(scenario, options.scenario, options.render);
@@ -280,6 +298,8 @@ void AddSimulate(CLI::App& app, AppContext& context) {
       "  flextip simulate testdata/scenarios/press.yaml --render --frames-of rod-track -o press\n"
       "a robot that is not there, for flextip control and other clients\n"
       "  flextip simulate testdata/scenarios/press.yaml --serve 18944\n"
+      "an arm with joints\n"
+      "  flextip simulate testdata/scenarios/arm.yaml -o arm\n"
       "a robot that moves until it knows what is wrong with its instrument\n"
       "  flextip simulate testdata/scenarios/tag_or_camera.yaml --diagnose -o found\n");
   OnRun(*command, context, [options, &context] { RunSimulate(*options, context.quiet); });

@@ -140,7 +140,8 @@ TrialRecord RunTrial(const std::filesystem::path& file, std::uint64_t seed) {
         {.without = {}, .discover = false, .measure_gain = false, .plan = limits});
     const diagnosis::NextMotion& plan = *told.plan;
     if (!plan.needed || plan.places_m.size() < 2) {
-      record.why = !plan.needed ? "told by the first motion" : "no plan";
+      record.why = fmt::format("{}: {}", !plan.needed ? "told by the first motion" : "no plan",
+                               diagnosis::Joined(told.verdict));
       return record;
     }
     record.qualifies = true;

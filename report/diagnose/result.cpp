@@ -165,6 +165,9 @@ void ReadVerdict(const Json& json, DiagnosedResult& result) {
     result.indistinguishable.push_back(group.get<std::vector<std::string>>());
   }
   result.separating_motion = TextIn(json, "separating_motion");
+  if (const auto score = json.find("separating_motion_score");
+      score != json.end() && score->is_number())
+    result.separating_score = score->get<double>();
   if (const auto plan = json.find("planned_motion"); plan != json.end())
     result.planned_motion = TextIn(*plan, "text");
 }

@@ -72,7 +72,8 @@ struct DiagnosedResult {
   std::vector<std::string> credible_set;                      ///< names as in probabilities
   std::vector<std::vector<std::string>> indistinguishable;    ///< one group for each verdict
   std::string separating_motion;
-  std::string planned_motion;  ///< a sentence; empty: none was asked for
+  std::optional<double> separating_score;  ///< twice the log odds by that motion
+  std::string planned_motion;              ///< a sentence; empty: none was asked for
   std::vector<DiagnosedParameter> parameters, within_tolerance;
   std::vector<DiagnosedTerm> discovered;
   DiagnosedScore base, extended;

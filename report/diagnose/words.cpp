@@ -222,7 +222,9 @@ std::string Advice(const DiagnosedResult& result) {
   bool alike = false;
   for (std::size_t i = 0; i < result.verdicts.size(); ++i) alike |= HasAlternatives(result, i);
   std::string advice;
-  if (!result.separating_motion.empty()) {
+  constexpr double kToldApart = 9.0;
+  const bool told = result.separating_score.value_or(kToldApart) >= kToldApart;
+  if (!result.separating_motion.empty() && (told || !alike)) {
     advice = "To tell them apart: " + result.separating_motion;
     if (advice.back() != '.') advice += '.';
   } else if (alike) {

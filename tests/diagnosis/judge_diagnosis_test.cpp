@@ -24,9 +24,12 @@ TEST(JudgeDiagnosis, SaysTheAnswerAndItsAlternatives) {
   EXPECT_EQ(JudgeDiagnosis(result).grade, Grade::kGood);
   result.indistinguishable = {{"length", "tag_offset"}};
   result.separating_motion = "a full turn about the shaft";
+  result.separating_motion_score = 30.0;
   const Judgement judged = JudgeDiagnosis(result);
   EXPECT_EQ(judged.says, "length (72 %); length could as well be tag_offset.");
   EXPECT_THAT(judged.next, HasSubstr("record a full turn about the shaft"));
+  result.separating_motion_score = 3.0;  // not enough
+  EXPECT_THAT(JudgeDiagnosis(result).next, HasSubstr("a further sensor may"));
   EXPECT_THAT(judged.reasons, IsEmpty());
 }
 
