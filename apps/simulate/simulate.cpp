@@ -179,7 +179,7 @@ bool Diagnoses(const SimulateOptions& options, bool quiet) {
 
 /// Runs a scenario of an arm with joints, which has no controllers.
 bool SimulatesArm(const SimulateOptions& options, bool quiet) {
-  if (!simulation::IsArmScenario(options.scenario)) return false;
+  if (!fs::exists(options.scenario) || !simulation::IsArmScenario(options.scenario)) return false;
   const bool of_a_shaft = options.render || options.serve.port || options.diagnosing.asked ||
                           !options.model.empty() || !options.frames_of.empty();
   if (of_a_shaft) {
