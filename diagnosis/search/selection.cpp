@@ -111,7 +111,9 @@ class Search {
       replay_.SetAlongPrior(1.0);
       may_miss_ = MayMiss(base_size, options_.discrepancy, options_);
     }
-    const std::vector<HypothesisFit> near = tried_.Near(kNearLeader);
+    // Where none leads, what comes near it is none with something that does not show.
+    const double reach = tried_.Best().hypothesis.effects.empty() ? 0.0 : kNearLeader;
+    const std::vector<HypothesisFit> near = tried_.Near(reach);
     GoTo(replay_, layout_, tried_.Best().place);
     LeaveOutFarSamples();
     replay_.SetNoiseScale(NoiseScale(replay_));
