@@ -60,12 +60,13 @@ TEST(DiagnosingLoop, MovesUntilATagIsToldFromACamera) {
 }
 
 TEST(DiagnosingLoop, StaysWithinTheLimitsAndHangsNoWeightWhereNoneIsAllowed) {
-  const Scenario scenario = With("{port_compliance: {compliance_m_N: 0.0008}}");
+  const Scenario scenario = With("{tag_offset: {offset_m: [0.001, -0.0008, 0.0005]}}");
   DiagnosingOptions options{.most_rounds = 2};
   options.limits = {
       .seconds = 6.0, .wrist_speed_m_s = 0.05, .angle_rad = 0.2, .may_hang_weight = false};
   const DiagnosingResult result = DiagnoseInLoop(scenario, options);
   const LoopSetup& loop = scenario.loop;
+  ASSERT_EQ(result.rounds.size(), 2u);  // or nothing below is looked at
   for (std::size_t i = 1; i < result.rounds.size(); ++i) {
     EXPECT_EQ(result.rounds[i].hung_N, 0.0);
     const auto samples =
