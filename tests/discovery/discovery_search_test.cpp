@@ -7,6 +7,7 @@
 
 #include "diagnosis/discovery/certify.h"
 #include "diagnosis/discovery/discover.h"
+#include "diagnosis/discovery/library.h"
 #include "tests/diagnosis/small_recording.h"
 
 namespace flextip::diagnosis {
@@ -108,6 +109,24 @@ TEST(DiscoverySearch, StudentsTail) {
   EXPECT_NEAR(StudentTail(4.297, 9.0), 0.001, 1e-4);
   EXPECT_NEAR(StudentTail(6.869, 5.0), 0.0005, 1e-4);
   EXPECT_DOUBLE_EQ(StudentTail(-1.0, 5.0), 0.5);
+}
+
+/// A force that is found from the sample's own sensors shares their noise.
+TEST(Library, HasForcesAsVariablesOnlyWhereTheLoadIsMeasured) {
+  for (const bool measured : {true, false}) {
+    SampleSet set;
+    set.has_load = measured;
+    std::vector<TermState> states(40);
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      states[k].t_s = 0.02 * double(k);
+      states[k].scalar.fill(double(k));
+    }
+    int of_forces = 0;
+    for (const Term& term : Library(TermTarget::kShaftLoad, states, set))
+      of_forces +=
+          term.variable == TermVariable::kLoad || term.variable == TermVariable::kPortForce;
+    EXPECT_EQ(of_forces > 0, measured);
+  }
 }
 
 }  // namespace
