@@ -89,10 +89,22 @@ Eigen::Vector3d SolveDamped(const Eigen::Vector3d& dx, const ControllerOptions& 
   return svd.V * inverse.cwiseProduct(svd.U.transpose() * dx);
 }
 
+/// The command goes on from the last one: with the goal's motion at once, and to the command that
+/// corrects the tip wholly, `p_whole`, by a part. What noise does to that one from cycle to cycle
+/// is left out by that part. The loop's gain falls by it, no lag behind the goal comes in.
+Eigen::Vector3d GoOn(const SentCommand& last, const ControlInput& input,
+                     const ControllerOptions& options, const Eigen::Vector3d& p_whole,
+                     ControlOutput& output) {
+  const Eigen::Vector3d way = input.p_RE_desired - last.p_RE_desired;
+  const Eigen::Vector3d p_on = last.p_RW + SolveDamped(way, options, output);
+  return p_on + CorrectionPart(options) * (p_whole - p_on);
+}
+
 bool IsPlausible(const ControllerOptions& o) {
   return std::isfinite(o.gain) && o.max_step_m >= 0.0 && o.max_step_m <= kFarthestPlace_m &&
          o.max_tissue_gain >= 1.0 && std::isfinite(o.max_tissue_gain) &&
-         o.min_singular_value > 0.0 && o.min_singular_value <= kMostSingular;
+         o.min_singular_value > 0.0 && o.min_singular_value <= kMostSingular &&
+         std::isfinite(o.correction_s) && std::isfinite(o.rate_hz);
 }
 
 bool UsesRod(ControllerKind kind) {
@@ -151,6 +163,11 @@ const char* Name(ControlStatus status) {
   return "";
 }
 
+double CorrectionPart(const ControllerOptions& options) {
+  const double cycles = options.correction_s * options.rate_hz;
+  return cycles > 1.0 ? 1.0 / cycles : 1.0;
+}
+
 ControlOutput TipController::Step(const ControlInput& input) {
   ControlOutput hold;
   hold.p_RW_command = wrist_.Hold(input.p_RW);
@@ -176,6 +193,14 @@ ControlOutput TipController::Step(const ControlInput& input) {
   if (UsesRod(options_.kind) && input.model.wrist_play_m > 0.0)
     step = LeadByPlay(step, input.model);
   if (!step.allFinite()) return hold;
+  const bool goes_on = input.last && CorrectionPart(options_) < 1.0 && IsPlace(input.last->p_RW) &&
+                       IsPlace(input.last->p_RE_desired);
+  if (goes_on) {
+    const Eigen::Vector3d p_whole =
+        input.p_RW + BoundStep(step, input.p_RW, input.model, options_.max_step_m).step_m;
+    step = GoOn(*input.last, input, options_, p_whole, output) - input.p_RW;
+    if (!step.allFinite()) return hold;
+  }
   const BoundedStep bounded = BoundStep(step, input.p_RW, input.model, options_.max_step_m);
   output.step_limited = bounded.limited;
   output.p_RW_command += bounded.step_m;

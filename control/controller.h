@@ -29,10 +29,26 @@ bool UsesTipMeasurement(ControllerKind kind);
 struct ControllerOptions {
   ControllerKind kind = ControllerKind::kRodTrack;
   BeamLoadLaw beam_load_law = BeamLoadLaw::kTipForce;
-  double gain = 1.0;                 ///< k of (2.1)
-  double max_step_m = 0.01;          ///< bound on the wrist's motion in one step
-  double max_tissue_gain = 1.7;      ///< of the loop, should tissue that was felt let go (below 2)
+  double gain = 1.0;             ///< k of (2.1)
+  double max_step_m = 0.01;      ///< bound on the wrist's motion in one step
+  double max_tissue_gain = 1.7;  ///< of the loop, should tissue that was felt let go (below 2)
+  /// In which a correction is made where steps come faster: a video picture's time. 0: at once.
+  double correction_s = 1.0 / 30.0;
+  double rate_hz = 0.0;  ///< of the steps; 0: seldom, so that each makes its whole correction
   double min_singular_value = 0.05;  ///< of J_tip_wrist; below it the inverse is damped
+};
+
+/// Returns the part of a correction that one step makes, in (0, 1].
+double CorrectionPart(const ControllerOptions& options);
+
+/// What was sent to the robot in the last cycle, and the goal of then. In R.
+struct SentCommand {
+  Eigen::Vector3d p_RW = Eigen::Vector3d::Zero(), p_RE_desired = Eigen::Vector3d::Zero();
+
+  void VisitState(StateText& state) {
+    state(p_RW);
+    state(p_RE_desired);
+  }
 };
 
 /// One cycle's input. Everything in R.
@@ -42,6 +58,9 @@ struct ControlInput {
   Eigen::Vector3d p_RE_measured = Eigen::Vector3d::Zero();
   bool tip_measured = false;  ///< p_RE_measured is valid in this cycle
   ShaftModel model;
+  /// Where there, and steps are fast, the command goes on from it: with the goal's motion at once,
+  /// with the correction by CorrectionPart. Without, the step makes its whole correction.
+  std::optional<SentCommand> last;
 };
 
 enum class ControlStatus {

@@ -29,17 +29,25 @@ ShaftModel UnloadedShaft(const EstimatorOptions& options) {
   return model;
 }
 
-/// Returns the gain that the doubt in the tip's latency leaves.
-double GainOf(double gain, const InstrumentControllerOptions& options) {
+/// Returns the gain that the doubt in the tip's latency leaves, where a step makes `part` of its
+/// correction: the loop's is their product.
+double GainOf(double gain, double part, const InstrumentControllerOptions& options) {
   if (!UsesTipMeasurement(options.control.kind)) return gain;
   const LateSampleOptions& late = options.late;
   const double sd_s = options.em_is_tip ? late.em0_time_sd_s : late.tip_time_sd_s;
-  return GainUnderDelay(gain, {options.rate_hz, sd_s});
+  return GainUnderDelay(part * gain, {options.rate_hz, sd_s}) / part;
+}
+
+double PlaceGain(const InstrumentControllerOptions& options) {
+  ControllerOptions place = options.control;
+  place.rate_hz = options.rate_hz;
+  return GainOf(place.gain, CorrectionPart(place), options);
 }
 
 ControllerOptions PlaceOptions(const InstrumentControllerOptions& options) {
   ControllerOptions place = options.control;
-  place.gain = GainOf(place.gain, options);
+  place.rate_hz = options.rate_hz;
+  place.gain = PlaceGain(options);
   return place;
 }
 
@@ -83,7 +91,7 @@ InstrumentController::InstrumentController(const InstrumentControllerOptions& op
                      Name(options.control.kind));
   }
   DirectionOptions direction = *options.direction;
-  direction.gain = GainOf(direction.gain, options);
+  direction.gain = GainOf(direction.gain, 1.0, options);
   direction_.emplace(direction);
 }
 
@@ -91,8 +99,8 @@ void InstrumentController::SetTimeDeviations(double tip_sd_s, double em0_sd_s) {
   options_.late.tip_time_sd_s = tip_sd_s;
   options_.late.em0_time_sd_s = em0_sd_s;
   late_.SetTimeDeviations(tip_sd_s, em0_sd_s);
-  place_.SetGain(GainOf(options_.control.gain, options_));
-  if (direction_) direction_->SetGain(GainOf(options_.direction->gain, options_));
+  place_.SetGain(PlaceGain(options_));
+  if (direction_) direction_->SetGain(GainOf(options_.direction->gain, 1.0, options_));
 }
 
 void InstrumentController::VisitState(StateText& state) {
@@ -110,6 +118,7 @@ void InstrumentController::VisitState(StateText& state) {
   state(by_all_);
   state(p_RW_watched_);
   state(p_goal_last_);
+  state(sent_);
   state(about_command_);
   state(corrections_);
   state(excess_m_);
@@ -145,7 +154,19 @@ ControllerCommand InstrumentController::Step(const ControllerInputs& inputs) {
   Watch(inputs, command);
   guard_.Believe(late_, seen, command.supervision);
   Supervise(inputs, command);
+  KeepSent(command);
   return command;
+}
+
+/// Keeps what the next command goes on from. Where nothing is wanted of the tip, somebody else may
+/// lead the wrist.
+void InstrumentController::KeepSent(const ControllerCommand& command) {
+  const bool led = command.status == ControlStatus::kNoGoal;
+  if (led || command.status == ControlStatus::kNoWrist || !command.p_RW_command.allFinite()) {
+    sent_.reset();
+  } else {
+    sent_ = {command.p_RW_command, command.goal.p_RE_desired};
+  }
 }
 
 /// Track. The pictures are seen with the sensors as they are: an effect of the camera is corrected
@@ -288,6 +309,7 @@ void InstrumentController::ControlPlace(ControllerCommand& command) {
   input.p_RE_measured = command.p_RE_measured.value_or(Eigen::Vector3d::Zero());
   input.tip_measured = command.p_RE_measured.has_value();
   input.model = command.estimate.model;
+  input.last = sent_;
   const ControlOutput output = place_.Step(input);
   command.status = output.status;
   command.p_RW_command = output.p_RW_command;

@@ -38,8 +38,10 @@ struct InstrumentControllerOptions {
   bool em_is_tip = false;  ///< without vision, em0 carried to the tip is the tip's measurement
   /// The straight kinds pivot at the port as registered, not as estimated.
   bool straight_at_registered_port = false;
-  LateSampleOptions late;         ///< how late samples are carried on to the cycle's wrist
-  double rate_hz = 0.0;           ///< of the cycles, for GainUnderDelay; 0: the gain stays as it is
+  LateSampleOptions late;  ///< how late samples are carried on to the cycle's wrist
+  /// Of the cycles, for GainUnderDelay and the part of a correction that each makes; 0: the gain
+  /// stays as it is, and each corrects wholly.
+  double rate_hz = 0.0;
   SupervisorOptions supervision;  ///< none unless its `kind` says so
 };
 
@@ -90,7 +92,10 @@ class InstrumentController {
   void SetTimeDeviations(double tip_sd_s, double em0_sd_s);
 
   /// Takes the command that really went out in the last cycle, where the caller limited it further.
-  void NoteSent(const Eigen::Vector3d& p_RW) { supervisor_.NoteSent(p_RW); }
+  void NoteSent(const Eigen::Vector3d& p_RW) {
+    supervisor_.NoteSent(p_RW);
+    if (sent_) sent_->p_RW = p_RW;
+  }
 
   /// Visits what the next step starts from, bit for bit: a controller of the same options goes on
   /// where the other was. Not for one with a tracker.
@@ -122,6 +127,7 @@ class InstrumentController {
   bool LosesItsLoad(const ControllerCommand& command) const;
   Eigen::Vector3d WayOfTip(const Eigen::Vector3d& p_RW);
   void Supervise(const ControllerInputs& inputs, ControllerCommand& command);
+  void KeepSent(const ControllerCommand& command);
   void LookFor(TimeNs t_ns, const SensorReadings& readings, const Measurements& z);
   void Watch(const ControllerInputs& inputs, ControllerCommand& command);
 
@@ -141,6 +147,7 @@ class InstrumentController {
   PathWatch path_watch_;
   std::optional<VotedShaft> by_all_;  // of this cycle
   std::optional<Eigen::Vector3d> p_RW_watched_, p_goal_last_;
+  std::optional<SentCommand> sent_;  // in the last cycle, if it acted
   CorrectionLimit about_command_;
   int corrections_ = 0;                                 // limited ones in a row, in one direction
   Eigen::Vector3d excess_m_ = Eigen::Vector3d::Zero();  // of the last one

@@ -10,6 +10,7 @@ namespace flextip {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kLongestCorrection_s = 1.0;
 constexpr double kMostFalseAlarms = 0.01;
 constexpr double kMostDoubts = 0.1;
 constexpr double kMostFalseAlarmsPerHour = 100.0;
@@ -97,6 +98,11 @@ void TaskReader::ReadControl(const YamlMap& map) {
   options.gain = map.PositiveOr("gain", options.gain);
   options.max_step_m = map.PositiveOr("max_step_m", options.max_step_m);
   options.min_singular_value = map.PositiveOr("min_singular_value", options.min_singular_value);
+  options.correction_s = map.NonNegativeOr("correction_s", options.correction_s);
+  if (options.correction_s > kLongestCorrection_s) {
+    throw map.Error("correction_s", fmt::format("found {:g}, expected at most {:g}",
+                                                options.correction_s, kLongestCorrection_s));
+  }
   options.beam_load_law = ReadChoice(map, "beam_load_law", {"tip_force", "port_force"}) == 1
                               ? BeamLoadLaw::kPortForce
                               : BeamLoadLaw::kTipForce;

@@ -133,11 +133,8 @@ class Loop {
   }
 
   void Sense() {
-    const auto& readings = result_.recording.wrist0;
-    const std::size_t before = readings ? readings->samples.size() : 0;
     sensors_.Sample(shape_, t_ns_, result_.recording);
     if (camera_ != nullptr) curves_.Add(t_ns_, shape_.Curve());
-    if (readings && readings->samples.size() > before) p_RW_at_reading_ = servo_.p_RW();
     result_.truth.push_back(
         {t_ns_, {shape_.T_RE().p, shape_.T_RE().Quaternion(), servo_.p_RW() + wrist_shift_}});
   }
@@ -163,7 +160,6 @@ class Loop {
     ControllerInputs inputs;
     inputs.t_ns = inputs.pictures_t_ns = t_ns_;
     inputs.sensors = NewestReadings(result_.recording);
-    const std::optional<Sample<WristMeasurement>> wrist = inputs.sensors.wrist;
     sensor_faults_.Disturb(t_ns_, inputs.sensors);
     TakeOffLatencies(setup_, inputs);
     if (!supervision_.waits) p_RE_goal_ = path_->Advance(p_RE_known_);
@@ -177,7 +173,7 @@ class Loop {
     const ControllerCommand command = controller_.Step(inputs);
     if (frame) NoteTip(*controller_.Track());
     if (command.status != ControlStatus::kNoTip) p_RE_known_ = command.p_RE_used;
-    Command(command, wrist, inputs.sensors.wrist);
+    Command(command);
     Note(command, inputs.resume);
     if (setup_.note_cycle) setup_.note_cycle(CycleOf(inputs, command));
   }
@@ -207,20 +203,13 @@ class Loop {
     return true;
   }
 
-  /// The arm is commanded in its encoders' figures, whose error is that of the newest reading; of
-  /// `wrist`, where the controller was `given` another one. It refuses what is not finite.
-  void Command(const ControllerCommand& command,
-               const std::optional<Sample<WristMeasurement>>& wrist,
-               const std::optional<Sample<WristMeasurement>>& given) {
+  /// The arm is commanded in its encoders' figures. It refuses what is not finite.
+  void Command(const ControllerCommand& command) {
     const bool unknown = command.status == ControlStatus::kNoWrist;
     if (unknown && command.supervision.reaction < Reaction::kHold) return;
     p_RW_sent_ = command.p_RW_command;
     if (robot_faults_.LosesCommand(Seconds(t_ns_))) return;
-    const bool faulted = wrist && given && wrist->value.p_RW != given->value.p_RW;
-    const Eigen::Vector3d& read =
-        wrist && (faulted || unknown) ? wrist->value.p_RW : command.measurements.p_RW;
-    const Eigen::Vector3d p_RW = command.p_RW_command + (p_RW_at_reading_ - read);
-    if (p_RW.allFinite()) servo_.MoveTo(p_RW);
+    if (command.p_RW_command.allFinite()) servo_.MoveTo(command.p_RW_command);
   }
 
   void Note(const ControllerCommand& command, bool resumed) {
@@ -295,7 +284,6 @@ class Loop {
   Eigen::Vector3d p_RE_goal_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d wrist_shift_ = Eigen::Vector3d::Zero();  // of the true wrist from the encoders
   Eigen::Vector3d p_RE_known_ = Eigen::Vector3d::Zero();   // by the controller
-  Eigen::Vector3d p_RW_at_reading_ = Eigen::Vector3d::Zero();
   TimeNs t_ns_ = kSimulationStart_ns, next_picture_ns_ = kSimulationStart_ns;
   double squared_direction_noise_ = 0.0, squared_deviation_ = 0.0;
   int directions_ = 0, scored_ = 0;

@@ -77,6 +77,61 @@ TEST(Controller, RodTrackReachesTheGoalOnTheRodInTwoSteps) {
   EXPECT_LT((input.p_RE_measured - input.p_RE_desired).norm(), 1e-6);
 }
 
+/// At 120 Hz a correction takes four steps' time: each makes a quarter of the rest of it.
+TEST(Controller, AFastStepMakesAPartOfACorrection) {
+  for (const ControllerKind kind : AllKinds()) {
+    ControlInput input = Chapter4Input();
+    const Eigen::Vector3d p_whole = TipController(Options(kind)).Step(input).p_RW_command;
+    ControllerOptions options = Options(kind);
+    options.rate_hz = 120.0;
+    input.last = {input.p_RW, input.p_RE_desired};
+    const Eigen::Vector3d p = TipController(options).Step(input).p_RW_command;
+    EXPECT_LT((p - (input.p_RW + 0.25 * (p_whole - input.p_RW))).norm(), 1e-15) << Name(kind);
+    // Where steps are seldom, and where the first one is made, all of it.
+    options.rate_hz = 30.0;
+    EXPECT_EQ(TipController(options).Step(input).p_RW_command, p_whole) << Name(kind);
+    options.rate_hz = 120.0;
+    input.last.reset();
+    EXPECT_EQ(TipController(options).Step(input).p_RW_command, p_whole) << Name(kind);
+  }
+}
+
+/// The goal's own motion is followed at once: no correction is needed where the tip is at its goal.
+TEST(Controller, AFastStepFollowsTheGoalAtOnce) {
+  for (const ControllerKind kind : AllKinds()) {
+    ControllerOptions options = Options(kind);
+    ControlInput input = Chapter4Input();
+    const ControlOutput whole = TipController(options).Step(input);
+    if (whole.damped) continue;
+    options.rate_hz = 1000.0;
+    input.last = {input.p_RW, whole.p_RE_used};  // the tip was at its goal
+    const Eigen::Vector3d p = TipController(options).Step(input).p_RW_command;
+    EXPECT_LT((p - whole.p_RW_command).norm(), 1e-12) << Name(kind);
+  }
+}
+
+/// The reading's noise goes into every command; a fast loop takes its mean.
+TEST(Controller, AFastLoopDoesNotPassOnTheWristsNoise) {
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> noise(0.0, 50e-6);
+  ControllerOptions options = Options(ControllerKind::kRodTrack);
+  options.rate_hz = 1000.0;
+  TipController controller(options);
+  ControlInput input = Chapter4Input();
+  input.p_RE_desired = input.p_RE_measured;
+  input.last = {input.p_RW, input.p_RE_desired};
+  double square_m2 = 0.0;
+  constexpr int kSteps = 3000;
+  for (int k = 0; k < kSteps; ++k) {
+    input.p_RW = DrawVector<3>(noise, random);
+    input.last->p_RW = controller.Step(input).p_RW_command;
+    square_m2 += input.last->p_RW.squaredNorm() / 3.0;
+  }
+  // A part g of white noise each time leaves g / (2 - g) of its variance.
+  const double g = 30.0 / 1000.0;
+  EXPECT_NEAR(std::sqrt(square_m2 / kSteps), 50e-6 * std::sqrt(g / (2.0 - g)), 1e-6);
+}
+
 /// Chapter 4's with all that may act on the shaft.
 ControlInput InputWithEffects() {
   ControlInput input = Chapter4Input();

@@ -220,7 +220,7 @@ TEST(ClosedLoop, ThroughTheLaparoscope) {
 TEST(ClosedLoop, ThroughALateLaparoscope) {
   Scenario scenario = ReadScenario(kScenarios + "press.yaml");
   scenario.loop.controller.kind = ControllerKind::kStraightTrack;
-  scenario.loop.path.waypoints_m = {{0.0, 0.0, -0.004}};
+  scenario.loop.path.waypoints_m.pop_back();  // long enough for the untold loop to swing
   const auto run = [&](double latency_s, double told_s) {
     scenario.loop.sensor_effects.camera_latency_s = latency_s;
     scenario.loop.tip_latency = {told_s, 0.0};
@@ -248,6 +248,33 @@ TEST(ClosedLoop, ThroughALateLaparoscope) {
   };
   EXPECT_LT(off_m(told, 62'000'000), 0.05e-3);
   EXPECT_GT(off_m(told, 0), 0.3e-3);
+}
+
+/// Between pictures, and between two readings, the set-points of a fast loop go on smoothly. It
+/// still keeps nearer to its path than a loop at the rate of the pictures.
+TEST(ClosedLoop, SetPointsOfAFastLoopAreSmooth) {
+  Scenario scenario = ReadScenario(kScenarios + "press.yaml");
+  scenario.loop.seed = 78;
+  scenario.loop.sensors.tip->rate_hz = 30.0;
+  const auto run = [&](double rate_hz, double correction_s) {
+    scenario.loop.update_rate_hz = rate_hz;
+    scenario.loop.controller.correction_s = correction_s;
+    return RunLoop(scenario, ControllerKind::kRodTrack);
+  };
+  const auto change_m = [](const LoopResult& result) {
+    const auto& sent = result.recording.command0->p_RW;
+    std::vector<double> changes_m;
+    for (std::size_t i = 2; i < sent.size(); ++i)
+      changes_m.push_back((sent[i].value - 2.0 * sent[i - 1].value + sent[i - 2].value).norm());
+    const auto middle = changes_m.begin() + std::ptrdiff_t(changes_m.size() / 2);
+    std::nth_element(changes_m.begin(), middle, changes_m.end());
+    return *middle;
+  };
+  const LoopResult slow = run(30.0, 1.0 / 30.0), smooth = run(120.0, 1.0 / 30.0),
+                   at_once = run(120.0, 0.0);
+  EXPECT_LT(change_m(smooth), 0.35 * change_m(at_once));
+  EXPECT_LT(smooth.rms_deviation_m, slow.rms_deviation_m);
+  EXPECT_LT(at_once.rms_deviation_m, smooth.rms_deviation_m);  // what smoothness costs
 }
 
 TEST(ClosedLoop, AToldLatencyCostsLittle) {
