@@ -300,7 +300,8 @@ void ShaftEstimator::FillModel(const RodFit& fit, const RodParameters& x, const 
   last_.wrist_m = x.head<3>() - fit.PriorMean().head<3>();
   last_.port_m = x.segment<3>(3) - fit.PriorMean().segment<3>(3);
   last_.force_N = model.f_tip_N;
-  model.beam = ChooseBeamFit(z, model.instrument, model, options_.use_positions);
+  if (options_.fit_beam)
+    model.beam = ChooseBeamFit(z, model.instrument, model, options_.use_positions);
   if (options_.estimate_tissue) {
     // A fit that misses by more than its noise knows its force by so much less.
     const double misfit = std::max(1.0, estimate.chi2 / std::max(1, estimate.measurements));

@@ -28,6 +28,7 @@ struct EstimatorOptions {
   bool use_positions = true;
   bool estimate_tissue = true;   ///< df_tip/dp_tip from how the load changed with the tip
   bool compare_sensors = false;  ///< hold each sensor against all others
+  bool fit_beam = true;          ///< the thesis's beam, too, for the controllers that use it
 };
 
 /// Returns the options of an instrument whose port was registered at `p_RP`; all in R. Everything

@@ -16,6 +16,9 @@ constexpr TimeNs kAhead_ns = 1'000'000'000;  // a stamp so far ahead is of anoth
 bool IsStraight(ControllerKind kind) {
   return kind == ControllerKind::kStraightCalculate || kind == ControllerKind::kStraightTrack;
 }
+bool UsesBeam(ControllerKind kind) {
+  return kind == ControllerKind::kFlexCalculate || kind == ControllerKind::kFlexTrack;
+}
 bool IsRod(ControllerKind kind) {
   return kind == ControllerKind::kRodCalculate || kind == ControllerKind::kRodTrack;
 }
@@ -53,6 +56,7 @@ ControllerOptions PlaceOptions(const InstrumentControllerOptions& options) {
 
 EstimatorOptions OptionsFor(EstimatorOptions options, ControllerKind kind) {
   options.use_positions = UsesTipMeasurement(kind);
+  options.fit_beam = UsesBeam(kind);
   return options;
 }
 

@@ -49,7 +49,7 @@ void MotionGuard::LookAt(const ShaftEstimate& estimate, const Eigen::Vector3d& p
   ShaftModel model = estimate.model;
   model.p_RP += shift.segment<3>(3);
   model.f_tip_N += shift.tail<3>();
-  const ShaftRodState rod = rod_.Solve(RodOf(model, p_RW + shift.head<3>()));
+  const ShaftRodState rod = end.rod.Solve(RodOf(model, p_RW + shift.head<3>()));
   end.state = rod.IsUsable() ? End::State::kFound : End::State::kBuckled;
   if (!rod.IsUsable()) return;
   const Eigen::Matrix3d C = rod.dp_RE.rightCols<3>();
@@ -61,7 +61,7 @@ void MotionGuard::Update(const ShaftEstimate& estimate, const Eigen::Vector3d& p
   const bool fitted =
       estimate.status == EstimateStatus::kOk || estimate.status == EstimateStatus::kUnobservable;
   if (!fitted || !estimate.covariance.allFinite()) {
-    ends_.fill({});
+    for (End& end : ends_) end.state = End::State::kUnknown;
     return;
   }
   const auto [mean, covariance] = WithPlausibleForce(estimate);

@@ -37,20 +37,21 @@ class MotionGuard {
   double StepAngle(const Eigen::Vector3d& dp_RE_wanted, const Eigen::Vector3d& dp_RW) const;
 
   void VisitState(StateText& state) {
-    state(rod_);
     state(ends_);
     state(axis_);
   }
 
  private:
   static constexpr int kAxes = 9;
-  /// The exact Jacobian at one end of an axis.
+  /// The exact Jacobian at one end of an axis, and the rod there, from which the next one starts.
   struct End {
     enum class State : std::uint8_t { kUnknown, kBuckled, kFound } state = State::kUnknown;
     Eigen::Matrix3d J = Eigen::Matrix3d::Zero();
+    ShaftRod rod;
     void VisitState(StateText& s) {
       s(state);
       s(J);
+      s(rod);
     }
   };
   void LookAt(const ShaftEstimate& estimate, const Eigen::Vector3d& p_RW,
@@ -58,7 +59,6 @@ class MotionGuard {
 
   double deviations_, max_tissue_gain_;
   int axes_a_cycle_;
-  ShaftRod rod_;
   std::array<End, 2 * kAxes> ends_;
   int axis_ = 0;
 };

@@ -19,6 +19,7 @@ EstimatorOptions OptionsOf(EstimatorOptions options, double port_prior_m) {
   options.use_positions = true;
   options.estimate_tissue = false;
   options.compare_sensors = true;
+  options.fit_beam = false;
   options.port_prior_m = port_prior_m;
   return options;
 }
