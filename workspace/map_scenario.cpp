@@ -41,7 +41,8 @@ class Reader {
     ReadGrid();
     if (top_.Has("tolerance")) ReadTolerance();
     if (top_.Has("plan")) ReadPlan();
-    RejectUnknownKeys();
+    top_.RefuseUnknown();
+    for (const YamlMap& section : sections_) section.RefuseUnknown();
     return std::move(scenario_);
   }
 
@@ -217,15 +218,6 @@ class Reader {
     task.follow.move_m = map.PositiveOr("move_m", task.follow.move_m);
     task.follow.gain = map.PositiveOr("gain", task.follow.gain);
     scenario_.plan = task;
-  }
-
-  void RejectUnknownKeys() const {
-    ReadLog log;
-    top_.WarnUnknown(log);
-    for (const YamlMap& section : sections_) section.WarnUnknown(log);
-    if (log.warnings.empty()) return;
-    const std::string& first = log.warnings.front();
-    throw InputError(first.substr(0, first.rfind(" ignored")));
   }
 
   YamlMap top_;

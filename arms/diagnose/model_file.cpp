@@ -109,12 +109,7 @@ ArmModel ReadArmModel(const std::filesystem::path& file) {
                  ReadSection(top, "nuisances", true), ReadSection(top, "base_nuisances", true)};
   const std::vector<EffectFit> sd = ReadSection(top, "sd", false);
   for (auto* section : {&model.effects, &model.within_tolerance}) TakeDeviations(sd, *section);
-  ReadLog log;
-  top.WarnUnknown(log);
-  if (!log.warnings.empty()) {
-    const std::string& first = log.warnings.front();
-    throw InputError(first.substr(0, first.rfind(" ignored")));
-  }
+  top.RefuseUnknown();
   return model;
 }
 

@@ -59,14 +59,6 @@ std::vector<EffectFit> SensorsOf(const ExtendedModel& model) {
   return sensors;
 }
 
-void RejectUnknownKeys(const YamlMap& map) {
-  ReadLog log;
-  map.WarnUnknown(log);
-  if (log.warnings.empty()) return;
-  const std::string& first = log.warnings.front();
-  throw InputError(first.substr(0, first.rfind(" ignored")));
-}
-
 std::vector<double> ReadValues(const YamlMap& map, const std::string& key, std::size_t count) {
   if (count == 1 && !map.IsList(key)) return {map.Number(key)};
   return map.Numbers(key, count);
@@ -85,7 +77,7 @@ EffectFit ReadEffect(const YamlMap& section, const std::string& name, const Effe
     }
     values.push_back(parameter.value);
   }
-  RejectUnknownKeys(map);
+  map.RefuseUnknown();
   const std::string wrong = effect->WhatIsWrong(values);
   if (!wrong.empty()) throw section.Error(name, wrong);
   return fit;
@@ -113,9 +105,9 @@ void ReadDeviations(const YamlMap& section, std::vector<EffectFit>& effects) {
         if (sd < 0) throw map.Error(parameter.name, fmt::format("found {}, expected >= 0", sd));
       }
     }
-    RejectUnknownKeys(map);
+    map.RefuseUnknown();
   }
-  RejectUnknownKeys(section);
+  section.RefuseUnknown();
 }
 
 /// Whether the covariance of `effects` may have rows of these names: all, or all but those of
@@ -141,7 +133,7 @@ Eigen::MatrixXd ReadCovariance(const YamlMap& map, const std::vector<EffectFit>&
   }
   const std::size_t n = found.size();
   const std::vector<double> data = map.Numbers("data");
-  RejectUnknownKeys(map);
+  map.RefuseUnknown();
   if (data.empty()) return {};
   if (data.size() != n * n) {
     throw map.Error("data",
@@ -257,7 +249,7 @@ ExtendedModel ReadModel(const std::filesystem::path& file, const EffectMakers& o
     model.sensor_tolerance.effects = EffectsNamed(section.Texts("parameters"));
     model.sensor_tolerance.covariance = ReadCovariance(section, SensorsOf(model));
   }
-  RejectUnknownKeys(top);
+  top.RefuseUnknown();
   return model;
 }
 

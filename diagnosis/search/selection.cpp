@@ -25,7 +25,6 @@ constexpr int kFitsAnEffect = 4;        // beyond the first one of the best
 constexpr int kFreshFits = 6;           // from the base, where nothing explains the recording
 constexpr double kRival = 2.0;          // log odds below the best that are worth a fit
 constexpr double kNearRest = 3.0;       // distance, in standard deviations
-constexpr int kMostRests = 3;           // fits of the best one, to come nearer
 constexpr double kFarMisfit = 6.0;      // of a sample's rows, in standard deviations
 constexpr double kTemperedAlong = 0.3;  // of a force along the shaft, in units of EI / L^2
 constexpr double kUnexplained = 10.0;   // log odds of something unknown
@@ -54,7 +53,6 @@ class Search {
     FixMeasure(base_size);
     FitRivals();
     FitPartsOfBest();
-    ComeToRest();
     if (Unexplained()) {
       int fresh = 0;
       for (const auto& s : first.scored)
@@ -201,14 +199,6 @@ class Search {
       FitFromHere(s.weighed.hypothesis, kFirstRounds);
     }
     FitRivals();
-  }
-
-  /// A best one that is still on its way falls short of what something unknown explains.
-  void ComeToRest() {
-    for (int i = 0; i < kMostRests && tried_.Best().distance >= kNearRest; ++i) {
-      GoTo(replay_, layout_, tried_.Best().place);
-      FitFromHere(tried_.Best().hypothesis, kFirstRounds);
-    }
   }
 
   /// Where something unknown would explain much more, the best may be a wrong turn.

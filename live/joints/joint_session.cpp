@@ -55,14 +55,9 @@ JointSession ReadJointSession(const std::filesystem::path& file) {
   session.approach_rate = LimitsIn(map, "approach_rate");
   session.max_rate = LimitsIn(map, "max_rate");
   session.max_correction = LimitsIn(map, "max_correction");
-  ReadLog log;
   (void)top.Has("comment");
-  top.WarnUnknown(log);
-  for (const YamlMap& section : sections) section.WarnUnknown(log);
-  if (!log.warnings.empty()) {
-    const std::string& first = log.warnings.front();
-    throw InputError(first.substr(0, first.rfind(" ignored")));
-  }
+  top.RefuseUnknown();
+  for (const YamlMap& section : sections) section.RefuseUnknown();
   return session;
 }
 

@@ -31,7 +31,7 @@ class SessionReader {
     ReadPath();
     ReadCalibrations();
     ReadModel();
-    RejectUnknownKeys();
+    RefuseUnknownKeys();
     if (file_.session.DelayIsUnknown()) {
       file_.session.warnings.emplace_back(
           file_.top.Map("sources")
@@ -230,14 +230,10 @@ class SessionReader {
       file_.session.model = diagnosis::ReadModel(file_.Beside(file_.top.Text("model")));
   }
 
-  void RejectUnknownKeys() const {
-    ReadLog log;
+  void RefuseUnknownKeys() const {
     (void)file_.top.Has("comment");
-    file_.top.WarnUnknown(log);
-    for (const YamlMap& section : file_.sections) section.WarnUnknown(log);
-    if (log.warnings.empty()) return;
-    const std::string& first = log.warnings.front();
-    throw InputError(first.substr(0, first.rfind(" ignored")));
+    file_.top.RefuseUnknown();
+    for (const YamlMap& section : file_.sections) section.RefuseUnknown();
   }
 
   SessionFile file_;

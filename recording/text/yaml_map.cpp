@@ -39,6 +39,9 @@ struct YamlMap::Impl {
   InputError Error(const std::string& key, const std::string& what) const {
     return InputError::At(file, LineOf(key), fmt::format("{}{}: {}", prefix, key, what));
   }
+  InputError Unknown(const std::string& key) const {
+    return InputError::At(file, LineOf(key), fmt::format("unknown key \"{}{}\"", prefix, key));
+  }
   /// "found X, expected Y" at the key's line.
   InputError Unexpected(const std::string& key, const YAML::Node& found,
                         const std::string& expected) const {
@@ -278,13 +281,12 @@ InputError YamlMap::Error(const std::string& key, const std::string& what) const
 }
 
 void YamlMap::WarnUnknown(ReadLog& log) const {
-  for (const auto& key : Unasked()) {
-    const long line = impl_->LineOf(key);
-    log.warnings.emplace_back(
-        InputError::At(impl_->file, line,
-                       fmt::format("unknown key \"{}{}\" ignored", impl_->prefix, key))
-            .what());
-  }
+  for (const auto& key : Unasked())
+    log.warnings.push_back(impl_->Unknown(key).what() + std::string(" ignored"));
+}
+
+void YamlMap::RefuseUnknown() const {
+  if (const auto unasked = Unasked(); !unasked.empty()) throw impl_->Unknown(unasked.front());
 }
 
 std::string YamlText(const std::string& text) {

@@ -60,6 +60,8 @@ class YamlMap {
 
   /// Warns of every key that nothing above has asked for.
   void WarnUnknown(ReadLog& log) const;
+  /// Throws InputError with file and line for the first such key: a misspelt one must not pass.
+  void RefuseUnknown() const;
 
  private:
   struct Impl;  // keeps yaml-cpp out of this header

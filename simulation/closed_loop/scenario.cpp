@@ -40,7 +40,8 @@ class ScenarioReader {
     ReadTask();
     ReadFaults();
     scenario_.loop.seed = static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
-    RejectUnknownKeys();
+    top_.RefuseUnknown();
+    for (const YamlMap& section : sections_) section.RefuseUnknown();
     return std::move(scenario_);
   }
 
@@ -353,16 +354,6 @@ class ScenarioReader {
         "start_m",
         fmt::format("the port is {:.6g} m from the wrist, out of reach of a shaft of {} m",
                     distance, length));
-  }
-
-  /// A misspelt key must not pass unseen.
-  void RejectUnknownKeys() const {
-    ReadLog log;
-    top_.WarnUnknown(log);
-    for (const YamlMap& section : sections_) section.WarnUnknown(log);
-    if (log.warnings.empty()) return;
-    const std::string& first = log.warnings.front();
-    throw InputError(first.substr(0, first.rfind(" ignored")));
   }
 
   std::filesystem::path file_;

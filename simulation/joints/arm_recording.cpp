@@ -75,6 +75,19 @@ TimeNs StampOf(double t_s) { return kStart_ns + TimeNs(std::llround(1e9 * t_s));
 
 }  // namespace
 
+JointDrive StiffDrive(bool turns) {
+  const double unit = turns ? 1.0 : 100.0;
+  JointDrive drive;
+  drive.servo_stiffness = 1e4 * unit;
+  drive.cable_stiffness = 4e4 * unit;
+  if (!turns) drive.motor_inertia *= 50.0;
+  return drive;
+}
+
+double StiffnessOf(double compliance, double own) {
+  return compliance > 1.0 / own ? 1.0 / compliance : own;
+}
+
 ArmPlantSettings PlantOf(const Arm& arm, const ArmFaults& faults) {
   ArmPlantSettings settings{.arm = arm, .drives = {}, .masses = {}, .routing = faults.routing};
   const int n = arm.Size();
@@ -82,20 +95,14 @@ ArmPlantSettings PlantOf(const Arm& arm, const ArmFaults& faults) {
     settings.arm.joints[i].a_m += faults.a_change_m[i];
     PlaceJoint(arm.convention, settings.arm.joints[i]);
   }
-  const JointDrive usual;
   const Eigen::VectorXd play = Or(faults.play, 0.0, n), coulomb = Or(faults.motor_coulomb, 0.0, n),
                         viscous = Or(faults.motor_viscous, 0.0, n);
   for (int i = 0; i < n; ++i) {
-    JointDrive drive;
-    // Stiff where it is not said otherwise, and as stiff for a slide.
-    const double unit = Turns(arm, i) ? 1.0 : 100.0;
-    drive.motor_inertia = usual.motor_inertia * (Turns(arm, i) ? 1.0 : 50.0);
-    drive.servo_stiffness =
-        faults.servo_stiffness.size() > 0 ? faults.servo_stiffness[i] : 1e4 * unit;
+    JointDrive drive = StiffDrive(Turns(arm, i));
+    if (faults.servo_stiffness.size() > 0) drive.servo_stiffness = faults.servo_stiffness[i];
     drive.servo_damping =
         faults.servo_damping.size() > 0 ? faults.servo_damping[i] : 1e-3 * drive.servo_stiffness;
-    drive.cable_stiffness =
-        faults.cable_stiffness.size() > 0 ? faults.cable_stiffness[i] : 4e4 * unit;
+    if (faults.cable_stiffness.size() > 0) drive.cable_stiffness = faults.cable_stiffness[i];
     drive.cable_damping = 2e-4 * drive.cable_stiffness;
     drive.play = play[i];
     drive.motor_coulomb = coulomb[i];

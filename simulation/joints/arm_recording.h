@@ -37,6 +37,13 @@ struct ArmMotion {
   std::uint64_t seed = 1;
 };
 
+/// Returns the drive that a joint has where no fault says otherwise: so stiff that nothing of it
+/// shows. As stiff for a slide, in its units.
+JointDrive StiffDrive(bool turns);
+
+/// Returns 1 over a compliance, `own` (> 0) at most.
+double StiffnessOf(double compliance, double own);
+
 /// Three joints with masses stated in their file: shoulder, elbow, slide.
 Arm SmallArm();
 

@@ -12,7 +12,6 @@ namespace flextip::simulation {
 namespace {
 
 constexpr double kMostRows = 1e6;
-constexpr double kStiffServo = 1e4, kStiffCable = 4e4, kSlide = 100.0;  // as the plant's own drives
 constexpr double kUsualLag_s = 1e-3, kLongest_s = 1.0;
 
 class Reader {
@@ -25,7 +24,8 @@ class Reader {
     ReadMotion();
     ReadSensors();
     ReadEffects();
-    RejectUnknownKeys();
+    top_.RefuseUnknown();
+    for (const YamlMap& section : sections_) section.RefuseUnknown();
     return std::move(scenario_);
   }
 
@@ -97,13 +97,12 @@ class Reader {
     return list;
   }
 
-  /// 1 over a compliance; 0 is as stiff as the plant's own.
-  Eigen::VectorXd StiffnessOf(const Eigen::VectorXd& compliance, double stiff) const {
+  /// 1 over a compliance; 0 is as stiff as the plant's own `drive` says.
+  Eigen::VectorXd StiffnessBy(const Eigen::VectorXd& compliance, double JointDrive::*drive) const {
     Eigen::VectorXd stiffness(Joints());
     for (int i = 0; i < Joints(); ++i) {
       const bool turns = scenario_.arm.joints[std::size_t(i)].type == JointType::kRevolute;
-      const double own = stiff * (turns ? 1.0 : kSlide);
-      stiffness[i] = compliance[i] > 1.0 / own ? 1.0 / compliance[i] : own;
+      stiffness[i] = StiffnessOf(compliance[i], StiffDrive(turns).*drive);
     }
     return stiffness;
   }
@@ -125,7 +124,8 @@ class Reader {
       } else if (name == "joint_backlash") {
         faults.play = NonNegativeList(map, "width");
       } else if (name == "joint_compliance") {
-        faults.cable_stiffness = StiffnessOf(NonNegativeList(map, "compliance"), kStiffCable);
+        faults.cable_stiffness =
+            StiffnessBy(NonNegativeList(map, "compliance"), &JointDrive::cable_stiffness);
       } else if (name == "command_latency") {
         faults.command_delay_s = AtMost(map, "delay_s", kLongest_s);
       } else if (name == "servo_lag") {
@@ -149,7 +149,7 @@ class Reader {
       }
     }
     if (lag_s.isZero(0.0) && droop.isZero(0.0)) return;
-    faults.servo_stiffness = StiffnessOf(droop, kStiffServo);
+    faults.servo_stiffness = StiffnessBy(droop, &JointDrive::servo_stiffness);
     faults.servo_damping = faults.servo_stiffness.cwiseProduct(lag_s.cwiseMax(kUsualLag_s));
   }
 
@@ -188,16 +188,6 @@ class Reader {
       throw map.Error("link", fmt::format("found {}, expected 1 to {}", link, Joints()));
     return {static_cast<int>(link) - 1, mass_kg,
             map.Has("p_m") ? map.Vector3("p_m") : Eigen::Vector3d(Eigen::Vector3d::Zero())};
-  }
-
-  /// A misspelt key must not pass unseen.
-  void RejectUnknownKeys() const {
-    ReadLog log;
-    top_.WarnUnknown(log);
-    for (const YamlMap& section : sections_) section.WarnUnknown(log);
-    if (log.warnings.empty()) return;
-    const std::string& first = log.warnings.front();
-    throw InputError(first.substr(0, first.rfind(" ignored")));
   }
 
   std::filesystem::path file_;

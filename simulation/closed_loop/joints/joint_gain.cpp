@@ -17,7 +17,6 @@ using diagnosis::EffectFit;
 
 constexpr double kStandIn_kg = 0.3, kStandIn_m = 0.05;
 constexpr double kLeast_rad = 0.05, kMost_rad = 0.4, kLeast_m = 0.005, kMost_m = 0.04;
-constexpr double kStiff = 1e4, kStiffCable = 4e4, kSlide = 100.0;  // as arm_recording's drives
 constexpr double kUsualLag_s = 1e-3;
 
 bool Has(const std::vector<EffectFit>& fits, const std::string& effect) {
@@ -39,13 +38,13 @@ Eigen::VectorXd VectorOf(const std::vector<double>& values) {
       .cwiseMax(0.0);
 }
 
-/// 1 over a compliance, at most as stiff as the plant's own.
-Eigen::VectorXd StiffnessOf(const JointVector& compliance, const JointModel& joints,
-                            double stiffest) {
+/// 1 over a compliance, at most as stiff as the plant's own `drive` says.
+Eigen::VectorXd StiffnessBy(const JointVector& compliance, const JointModel& joints,
+                            double JointDrive::*drive) {
   Eigen::VectorXd stiffness(joints.size);
   for (int i = 0; i < joints.size; ++i) {
-    const double own = stiffest * (joints.turns[std::size_t(i)] ? 1.0 : kSlide);
-    stiffness[i] = compliance[i] > 1.0 / own ? 1.0 / compliance[i] : own;
+    const bool turns = joints.turns[std::size_t(i)];
+    stiffness[i] = StiffnessOf(compliance[i], StiffDrive(turns).*drive);
   }
   return stiffness;
 }
@@ -70,11 +69,11 @@ ArmFaults FaultsOf(const arms::ArmData& data, const ArmModel& model, const Joint
           "feed-forward is not asked for it");
   }
   faults.command_delay_s = joints.delay_s;
-  faults.servo_stiffness = StiffnessOf(joints.droop, joints, kStiff);
+  faults.servo_stiffness = StiffnessBy(joints.droop, joints, &JointDrive::servo_stiffness);
   faults.servo_damping =
       faults.servo_stiffness.cwiseProduct(Eigen::VectorXd(joints.lag_s.cwiseMax(kUsualLag_s)));
   faults.servo_holds_gravity = !Has(model.effects, "servo_droop");
-  faults.cable_stiffness = StiffnessOf(joints.compliance, joints, kStiffCable);
+  faults.cable_stiffness = StiffnessBy(joints.compliance, joints, &JointDrive::cable_stiffness);
   if (Has(model.effects, "joint_friction")) {
     faults.motor_coulomb = VectorOf(ListIn(model, "joint_friction", "coulomb"));
     faults.motor_viscous = VectorOf(ListIn(model, "joint_friction", "viscous"));
