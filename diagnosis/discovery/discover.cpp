@@ -62,8 +62,8 @@ std::vector<Candidate> RivalsOf(const std::vector<Candidate>& candidates, double
   return rivals;
 }
 
-/// Half of the range of the term's part that varies, in the target's tolerances; of a constant, its
-/// size.
+/// Half of the range of the term's part that varies, but for the hundredth of the samples at either
+/// end, in the target's tolerances; of a constant, its size.
 double HalfRange(const Term& term, const std::vector<TermState>& states) {
   const double tolerance = InfoOf(term.target).tolerance;
   if (term.shape == TermShape::kConstant) return term.offset.norm() / tolerance;
@@ -74,7 +74,9 @@ double HalfRange(const Term& term, const std::vector<TermState>& states) {
     Eigen::VectorXd by = Eigen::VectorXd::Zero(series.rows());
     for (Eigen::Index j = 0; j < term.Columns(); ++j)
       by += term.amplitude(i, j) * series.col(term.IsByInput() ? j * n + i : j);
-    half[i] = 0.5 * (by.maxCoeff() - by.minCoeff());
+    std::sort(by.begin(), by.end());
+    const auto last = double(by.size() - 1);
+    half[i] = 0.5 * (by[Eigen::Index(0.99 * last)] - by[Eigen::Index(0.01 * last)]);
   }
   return half.norm() / tolerance;
 }
@@ -115,7 +117,8 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     const std::vector<Candidate> candidates = FindCandidates(all, states, options.waves_only);
     if (candidates.empty()) break;
     Candidate best = candidates.front();
-    if (best.criterion < options.worth || best.gain < options.least_part * base) break;
+    const double least = std::max(options.least_part * base, options.least_left * all.cost);
+    if (best.criterion < options.worth || best.gain < least) break;
     const double variance = VarianceLeft(all, best.gain);
     if (HalfRange(best.term, states.at(best.term.target)) < options.least_tolerances) {
       if (++quiet > kMostQuiet) break;

@@ -15,6 +15,8 @@ struct DiscoverOptions {
   double worth = 12.0;        ///< twice the log odds of the best form against no term
   /// Of what the base within its tolerances leaves, squared: less does not matter.
   double least_part = 0.01;
+  /// Of what the model leaves, noise included, squared: two hundredths of the error.
+  double least_left = 0.04;
   double least_tolerances = 3.0;  ///< half of a term's range, in the target's tolerances
   bool waves_only = false;        ///< periodic terms alone
   double alike = 9.0;             ///< twice the log odds within which forms cannot be told apart

@@ -11,6 +11,7 @@ using V = TermVariable;
 using S = TermShape;
 
 constexpr int kThresholds = 24;
+constexpr double kForceDeviations = 20.0;
 constexpr double kFastest_hz = 25.0, kShortest_m = 0.006;
 constexpr std::size_t kMostWaves = 2500;
 
@@ -114,9 +115,16 @@ class Grid {
     return true;
   }
 
+  /// A force that hardly stands out of the load cell's noise is made of that noise, which is in
+  /// the load, too.
+  bool IsNoise(V variable, const Spread& spread) const {
+    if (variable != V::kPortForce && variable != V::kLoad) return false;
+    return spread.Range() < kForceDeviations * set_.noise.force_N;
+  }
+
   void AddScalar(V variable) {
     const Spread spread = SpreadOf(states_, variable);
-    if (!spread.Varies()) return;
+    if (!spread.Varies() || IsNoise(variable, spread)) return;
     const double middle = 0.5 * (spread.Low() + spread.High()), range = spread.Range();
     Add(S::kLinear, variable, {middle});
     Add(S::kQuadratic, variable, {middle});
