@@ -160,9 +160,9 @@ class InstrumentController {
   InstrumentEstimator between_;
   ShaftEstimator without_tip_;
   LateSamples late_;
-  bool carries_ = false;                        // once a tip was carried on
-  bool tip_is_carried_ = false;                 // in this cycle
-  ShaftModel shaft_;                            // as estimator_ said last
+  bool carries_ = false;                               // once a tip was carried on
+  bool tip_is_carried_ = false;                        // in this cycle
+  ShaftModel shaft_;                                   // as estimator_ said last
   Eigen::Vector3d f_tip_N_ = Eigen::Vector3d::Zero();  // as estimated last
 };
 
