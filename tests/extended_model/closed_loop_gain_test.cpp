@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cmath>
 
 #include "diagnosis/model/extended_instrument.h"
 #include "simulation/closed_loop/scenario.h"
@@ -27,16 +26,16 @@ hidden::HiddenRecording Hidden(const std::string& effect) {
 struct Case {
   const char* effect;
   ControllerKind kind;
-  double ratio;  ///< of the RMS deviation from the path, with the model over without: at most this
 };
 
 class KnownEffectInLoop : public testing::TestWithParam<Case> {};
 
 /// The arm goes where it is told, so that the noise of the reading that a command starts from moves
-/// the tip. That part, which the same loop without the effect has too, no model can take away.
-TEST_P(KnownEffectInLoop, DeviationFalls) {
-  const Case& c = GetParam();
-  const hidden::HiddenRecording hidden = Hidden(c.effect);
+/// the tip. That part, which the same loop without the effect has too, no model can take away. All
+/// else the right model takes away.
+TEST_P(KnownEffectInLoop, IsAsIfItWereNotThere) {
+  const auto& [effect, kind] = GetParam();
+  const hidden::HiddenRecording hidden = Hidden(effect);
   const simulation::ClosedLoopGain gain =
       simulation::MeasureClosedLoopGain(hidden.recording, ModelOfLabel(hidden));
   const simulation::ClosedLoopGain noise =
@@ -48,29 +47,23 @@ TEST_P(KnownEffectInLoop, DeviationFalls) {
     ASSERT_TRUE(controller.ran);
     // What is left is the sensors' noise.
     EXPECT_LT(controller.extended.rms_m, 0.25e-3) << Name(controller.kind);
-    if (controller.kind != c.kind) continue;
-    const auto beyond_noise = [&](double rms_m) {
-      return rms_m * rms_m - std::pow(noise.controllers[i].base.rms_m, 2);
-    };
-    EXPECT_LT(beyond_noise(controller.extended.rms_m),
-              c.ratio * c.ratio * beyond_noise(controller.base.rms_m))
-        << controller.extended.rms_m << " " << controller.base.rms_m << " "
-        << noise.controllers[i].base.rms_m;
+    if (controller.kind != kind) continue;
+    const double noise_m = noise.controllers[i].base.rms_m;
+    EXPECT_GT(controller.base.rms_m, 1.15 * noise_m);  // else nothing is shown
+    EXPECT_LT(controller.extended.rms_m, 1.05 * noise_m);
     EXPECT_LT(controller.extended.max_m, controller.base.max_m);
   }
 }
 constexpr auto kCalculate = ControllerKind::kRodCalculate, kTrack = ControllerKind::kRodTrack;
 INSTANTIATE_TEST_SUITE_P(
     , KnownEffectInLoop,
-    testing::Values(Case{"stiffness", kTrack, 0.6}, Case{"length", kTrack, 0.1},
-                    Case{"self_weight", kCalculate, 0.4}, Case{"precurvature", kCalculate, 0.6},
-                    Case{"port_offset", kCalculate, 0.6}, Case{"port_moment", kCalculate, 0.35},
-                    Case{"shaft_load", kCalculate, 0.6}, Case{"backlash", kTrack, 0.6},
-                    Case{"em_distortion", kTrack, 0.7}, Case{"hand_eye", kTrack, 0.2},
-                    Case{"focal_length", kTrack, 0.4}, Case{"tag_offset", kTrack, 0.3},
-
-                    Case{"encoder_eccentricity", kCalculate, 0.95},
-                    Case{"em_interference", kTrack, 0.95}),
+    testing::Values(Case{"stiffness", kTrack}, Case{"length", kTrack},
+                    Case{"self_weight", kCalculate}, Case{"precurvature", kCalculate},
+                    Case{"port_offset", kCalculate}, Case{"port_moment", kCalculate},
+                    Case{"shaft_load", kCalculate}, Case{"backlash", kTrack},
+                    Case{"em_distortion", kTrack}, Case{"hand_eye", kTrack},
+                    Case{"focal_length", kTrack}, Case{"tag_offset", kTrack},
+                    Case{"encoder_eccentricity", kCalculate}, Case{"em_interference", kTrack}),
     [](const auto& tested) { return std::string(tested.param.effect); });
 
 /// Sensors without noise leave the first fit, which has no past, a narrow valley to go along.
