@@ -198,7 +198,9 @@ TEST(Sight, ATearAgainstAnOlderFrameIsNotBelieved) {
   Track("torn, the lower half 1 frame old", Mixed(torn, [](int i) { return i - 1; }));
   const Score old =
       Track("torn, the lower half 10 frames old", Mixed(torn, [](int i) { return i - 10; }));
-  EXPECT_LE(old.wrong, 3);
+  // How many of them are less off than the camera's pose leaves open depends on how the arm goes;
+  // no tip that is believed is off by more. Without the wrist 5.1 mm are.
+  EXPECT_LT(old.worst_m, 0.0045);
 }
 
 /// A tag 3 mm off beside others, and a size of 4 for 5 mm: as without the wrist, no tip holds.
