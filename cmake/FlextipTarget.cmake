@@ -82,9 +82,10 @@ endfunction()
 
 # flextip_tests(NAME SOURCES ... LIBS ...): one test program a folder, every case a ctest entry, or,
 # with FLEXTIP_TESTS_BY_FOLDER, the whole program one entry: cases that share a simulation or a
-# diagnosis then share it, which is most of the time under sanitizers.
+# diagnosis then share it, which is most of the time under sanitizers. SHARDS n makes n entries of it,
+# each with its part of the cases, so that a long program is not left alone at the end.
 function(flextip_tests name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "" "SHARDS" "SOURCES;LIBS" ${ARGN})
   set(target ${name}_tests)
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE ${ARG_LIBS} GTest::gmock GTest::gtest_main)
@@ -93,8 +94,16 @@ function(flextip_tests name)
     FLEXTIP_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
   flextip_options(${target} COLD PCH test)
   if(FLEXTIP_TESTS_BY_FOLDER)
-    add_test(NAME ${name}.all COMMAND ${target})
-    set_tests_properties(${name}.all PROPERTIES TIMEOUT ${FLEXTIP_TEST_TIMEOUT_S})
+    if(NOT ARG_SHARDS)
+      set(ARG_SHARDS 1)
+    endif()
+    foreach(shard RANGE 1 ${ARG_SHARDS})
+      math(EXPR index "${shard} - 1")
+      set(test ${name}.all_${shard}_of_${ARG_SHARDS})
+      add_test(NAME ${test} COMMAND ${target})
+      set_tests_properties(${test} PROPERTIES TIMEOUT ${FLEXTIP_TEST_TIMEOUT_S}
+        ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
+    endforeach()
   else()
     gtest_discover_tests(${target} TEST_PREFIX "${name}."
       PROPERTIES TIMEOUT ${FLEXTIP_TEST_TIMEOUT_S} DISCOVERY_TIMEOUT 60)

@@ -56,6 +56,7 @@ std::vector<double> ToleranceOf(const ArmData& data, const std::string& key, dou
 std::vector<FitParameter> PerJoint(const ArmData& data, const std::string& key,
                                    const JointSizes& sizes) {
   std::vector<FitParameter> parameters;
+  parameters.reserve(std::size_t(data.Size()));
   const bool own = data.tolerances.contains(key);
   const auto stated = ToleranceOf(data, key, 0.0, data.Size());
   for (int i = 0; i < data.Size(); ++i) {

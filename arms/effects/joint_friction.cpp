@@ -25,8 +25,9 @@ class JointFriction : public PlainEffect {
   void ActOnEffort(const ArmData& data, EffortStage& stage) const override {
     const auto& torque = data.torque;
     const Eigen::Index rows = torque.track.Rows(), joints = torque.track.values.cols();
+    const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(rows, joints);
     for (int i = 0; i < int(joints); ++i) {
-      Eigen::MatrixXd coulomb = Eigen::MatrixXd::Zero(rows, joints), viscous = coulomb;
+      Eigen::MatrixXd coulomb = none, viscous = none;
       const double still = data.TypicalOf(i, kStill_rad_s, kStill_m_s);
       for (Eigen::Index k = 0; k < rows; ++k) {
         const double speed = At(data.rate, torque.where[k])[i];

@@ -84,7 +84,8 @@ class Masses : public PlainEffect {
   }
 
   /// What a bar has that no mass on its link has: its place out of the swing's centre.
-  static Eigen::VectorXd BarEffort(const ArmData& data, PayloadPlace place, const Motion& motion) {
+  static Eigen::VectorXd BarEffort(const ArmData& data, const PayloadPlace& place,
+                                   const Motion& motion) {
     const Eigen::VectorXd hung = PayloadEffort(data.nominal, place, motion, data.gravity_m_s2);
     const int kept = place.keeps_orientation_of;
     Arm moved = data.arm;
@@ -94,9 +95,9 @@ class Masses : public PlainEffect {
 
   static void AddPerJoint(const ArmData& data, EffortStage& stage, int first, Eigen::Index joints) {
     const auto& torque = data.torque;
+    const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(torque.track.Rows(), joints);
     for (int i = 0; i < int(joints); ++i) {
-      Eigen::MatrixXd motor = Eigen::MatrixXd::Zero(torque.track.Rows(), joints), spring = motor,
-                      zero = motor;
+      Eigen::MatrixXd motor = none, spring = none, zero = none;
       for (Eigen::Index k = 0; k < motor.rows(); ++k) {
         motor(k, i) = At(data.acceleration, torque.where[k])[i];
         spring(k, i) = At(data.smooth, torque.where[k])[i];

@@ -95,7 +95,8 @@ void AddPayloads(const Arm& arm, const Fits& fits, std::vector<EffortJoint>& joi
     } else if (place < arm.payload_places.size()) {
       const PayloadPlace& named = arm.payload_places[place];
       if (named.keeps_orientation_of > 0) {
-        not_corrected.push_back("payload: on a bar of a parallelogram its effort is not expected");
+        not_corrected.emplace_back(
+            "payload: on a bar of a parallelogram its effort is not expected");
         continue;
       }
       link = named.link;

@@ -13,6 +13,7 @@ Layout::Layout(const std::vector<ArmData>& recordings, const std::vector<std::st
   const std::size_t count = recordings.size();
   const auto applies = [&](const ArmEffect& effect) {
     std::vector<bool> in;
+    in.reserve(count);
     for (const ArmData& data : recordings) in.push_back(effect.Applies(data));
     return in;
   };

@@ -17,6 +17,7 @@ constexpr double kCommandStep = 1e-4;  // of a command effect's number, in s or 
 
 std::vector<std::string> JointNames(const ArmData& data, Eigen::Index count) {
   std::vector<std::string> names;
+  names.reserve(std::size_t(count));
   for (int i = 0; i < int(count); ++i)
     names.push_back(fmt::format("q{}_{}", i + 1, UnitOf(data.arm.joints[i].type)));
   return names;
@@ -24,6 +25,7 @@ std::vector<std::string> JointNames(const ArmData& data, Eigen::Index count) {
 
 std::vector<std::string> EffortNames(const ArmData& data, Eigen::Index count) {
   std::vector<std::string> names;
+  names.reserve(std::size_t(count));
   for (int i = 0; i < int(count); ++i)
     names.push_back(fmt::format("tau{}_{}", i + 1, EffortUnitOf(data.arm.joints[i].type)));
   return names;
@@ -142,7 +144,8 @@ std::vector<Eigen::MatrixXd> Replay::CommandDerivatives(int r, std::vector<int>&
       Eigen::VectorXd up = theta_, down = theta_;
       up[j] += kCommandStep;
       down[j] -= kCommandStep;
-      derivatives.push_back((CommandOutput(r, up) - CommandOutput(r, down)) / (2 * kCommandStep));
+      derivatives.emplace_back((CommandOutput(r, up) - CommandOutput(r, down)) /
+                               (2 * kCommandStep));
       parameters.push_back(j);
     }
   });

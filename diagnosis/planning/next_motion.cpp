@@ -127,7 +127,7 @@ class Planner {
     const LinearProblem problem = MakeLinearProblem(imagined, {}, kBlocks);
     std::vector<Eigen::MatrixXd> H;  // up to each block's end
     for (const NormalSums& block : problem.blocks) {
-      H.push_back(weight_ * block.H);
+      H.emplace_back(weight_ * block.H);
       if (H.size() > 1) H.back() += H[H.size() - 2];
     }
     const double seconds = double(samples.samples.size()) * samples.period_s;

@@ -174,6 +174,7 @@ std::vector<Signature> Strongest(const std::vector<DiagnosisResult>& own) {
       score = std::max(score, s.score);
     }
   std::vector<Signature> all;
+  all.reserve(scores.size());
   for (const auto& [key, score] : scores) all.push_back({key.first, key.second, score});
   std::ranges::stable_sort(
       all, [](const Signature& a, const Signature& b) { return a.score > b.score; });
@@ -266,6 +267,7 @@ SeveralResult DiagnoseSeveral(const std::vector<NamedRecording>& recordings,
   const JointProbabilities probabilities =
       MakeJointProbabilities(fleet, sums, selection, selection_options);
   std::vector<NormalSums> narrow;
+  narrow.reserve(sums.size());
   for (const MemberSums& member : sums) narrow.push_back(member.narrow);
   const JointEvidence evidence(fleet, std::move(narrow));
   const Known known{selection, probabilities, evidence, selection_options, fleet.Size()};

@@ -58,13 +58,13 @@ ArmFaults FaultsOf(const arms::ArmData& data, const ArmModel& model, const Joint
   faults.routing = Eigen::MatrixXd::Identity(n, n) + Eigen::MatrixXd(joints.coupling);
   if (Has(model.effects, "joint_backlash")) {
     faults.play = joints.play.diagonal().cwiseAbs();
-    notes.push_back(
+    notes.emplace_back(
         "joint_backlash: the simulated arm has it without gravity and with friction of "
         "the links, or it would hang on one side of its play");
     JointMatrix drag = joints.play;
     drag.diagonal().setZero();
     if (drag.cwiseAbs().maxCoeff() > 0.1 * joints.play.diagonal().cwiseAbs().maxCoeff())
-      notes.push_back(
+      notes.emplace_back(
           "joint_backlash.drag: the simulated arm does not have it, and the "
           "feed-forward is not asked for it");
   }
@@ -85,7 +85,8 @@ ArmFaults FaultsOf(const arms::ArmData& data, const ArmModel& model, const Joint
     if (place >= data.arm.payload_places.size()) continue;
     const PayloadPlace& named = data.arm.payload_places[place];
     if (named.keeps_orientation_of > 0) {
-      notes.push_back("payload: on a bar of a parallelogram, which the simulated arm has none of");
+      notes.emplace_back(
+          "payload: on a bar of a parallelogram, which the simulated arm has none of");
       continue;
     }
     faults.payload.push_back({named.link - 1, ListIn(one, "payload", "mass_kg").at(0), named.p_m});
@@ -121,7 +122,7 @@ bool CanCorrect(const ArmModel& model, const std::vector<std::string>& not_corre
 JointGain MeasureJointGain(const arms::ArmData& data, const ArmModel& model) {
   JointGain gain;
   if (data.arm.convention == ArmConvention::kUrdf) {
-    gain.notes.push_back(
+    gain.notes.emplace_back(
         "the simulated arm is made of Denavit and Hartenberg's numbers: none for "
         "an arm from a URDF");
     return gain;
@@ -166,7 +167,7 @@ JointGain MeasureJointGain(const arms::ArmData& data, const ArmModel& model) {
   tbb::parallel_invoke([&] { run(setup, gain.base, base_ran); },
                        [&] { run(with, gain.extended, extended_ran); });
   gain.ran = base_ran && extended_ran;
-  if (!gain.ran) gain.notes.push_back("the simulated arm did not stay finite");
+  if (!gain.ran) gain.notes.emplace_back("the simulated arm did not stay finite");
   return gain;
 }
 
