@@ -22,10 +22,17 @@ using simulation::LoopResult;
 using simulation::Scenario;
 
 constexpr double kSeconds = 20.0, kNever = 40.0;
+constexpr double kChecks_s[] = {1.5, 3.0, 6.0, 12.0, kSeconds};
+constexpr double kPortForce = 4.0;  // of EI / L^2: the library's largest weight and bends
 constexpr double kCertain = 0.95, kNotThere = 0.5;
 
 double Uniform(std::mt19937_64& rng, double from, double to) {
   return std::uniform_real_distribution<double>(from, to)(rng);
+}
+
+/// The scenarios have the tip by its figures.
+bool NeedsCamera(const std::string& effect) {
+  return effect == "focal_length" || effect == "lens_radial";
 }
 
 /// An effect that the scenario's sensors could show.
@@ -34,7 +41,7 @@ std::string DrawEffect(const Scenario& scenario, std::mt19937_64& rng) {
   for (const std::string& effect : simulation::CatalogueEffects()) {
     const std::string sensor = hidden::SensorOf(effect);
     if (sensor == "strain0" && !scenario.loop.sensors.strain) continue;
-    if (effect == "focal_length" || effect == "lens_radial") continue;  // need pictures
+    if (NeedsCamera(effect)) continue;
     effects.push_back(effect);
   }
   return effects[std::uniform_int_distribution<std::size_t>(0, effects.size() - 1)(rng)];
@@ -43,8 +50,8 @@ std::string DrawEffect(const Scenario& scenario, std::mt19937_64& rng) {
 void Hide(const std::string& effect, std::mt19937_64& rng, Scenario& scenario) {
   simulation::LoopSetup& loop = scenario.loop;
   const Eigen::Vector3d axis = (loop.base.p_RP - loop.p_RW_start).normalized();
-  const hidden::HiddenLabel label =
-      hidden::DrawEffects({.present = {effect}, .mean_axis = axis}, rng);
+  hidden::HiddenLabel label = hidden::DrawEffects({.present = {effect}, .mean_axis = axis}, rng);
+  std::erase_if(label.parameters, [](const auto& one) { return NeedsCamera(one.first); });
   const auto effects = simulation::EffectsOfWholeMass(label.parameters, loop.base.instrument);
   loop.plant.effects = effects.plant;
   loop.plant.effects.wrist_reading.about_m = loop.p_RW_start;
@@ -102,23 +109,50 @@ struct Begun {
   LoopResult first;
 };
 
-/// Whether both motions together, the second one for `seconds`, make certain of what is hidden.
-bool IsCertain(const Begun& begun, const diagnosis::NextMotion& motion, double seconds) {
-  Scenario next =
-      simulation::NextScenario(begun.scenario, motion, begun.first.updates.back().p_RW, 1);
+LoopResult Moved(const Begun& begun, const diagnosis::NextMotion& motion,
+                 const Eigen::Vector3d& p_RW, int round, double seconds) {
+  Scenario next = simulation::NextScenario(begun.scenario, motion, p_RW, round);
   next.loop.max_s = seconds;
-  const LoopResult run = simulation::RunController(next, next.controllers.front(), nullptr);
-  const auto several =
-      diagnosis::DiagnoseSeveral({{"first", begun.first.recording}, {"second", run.recording}},
-                                 {.without = {}, .discover = false, .measure_gain = false});
-  for (const auto& [name, presence] : several.common.presence)
-    if (name == begun.effect ? presence < kCertain : presence > kNotThere) return false;
-  return several.common.presence.contains(begun.effect);
+  return simulation::RunController(next, next.controllers.front(), nullptr);
 }
 
-double SecondsUntilCertain(const Begun& begun, const diagnosis::NextMotion& motion) {
-  for (const double seconds : {2.5, 5.0, 10.0, kSeconds})
-    if (IsCertain(begun, motion, seconds)) return seconds;
+/// Whether the answer to all motions together is certain, and right.
+bool IsCertain(const Begun& begun, const diagnosis::DiagnosisResult& answer) {
+  for (const auto& [name, presence] : answer.presence)
+    if (name == begun.effect ? presence < kCertain : presence > kNotThere) return false;
+  return answer.presence.contains(begun.effect);
+}
+
+/// By one motion, as long as need be.
+double SecondsByOne(const Begun& begun, const diagnosis::NextMotion& motion) {
+  for (const double seconds : kChecks_s) {
+    const LoopResult run = Moved(begun, motion, begun.first.updates.back().p_RW, 1, seconds);
+    const auto several =
+        diagnosis::DiagnoseSeveral({{"first", begun.first.recording}, {"second", run.recording}},
+                                   {.without = {}, .discover = false, .measure_gain = false});
+    if (IsCertain(begun, several.common)) return seconds;
+  }
+  return kNever;
+}
+
+/// By a plan, and by a new one wherever a check leaves a doubt, as `simulate --diagnose`.
+double SecondsByPlans(const Begun& begun, diagnosis::NextMotion plan,
+                      const diagnosis::MotionLimits& limits) {
+  std::vector<diagnosis::NamedRecording> recordings{{"first", begun.first.recording}};
+  Eigen::Vector3d p_RW = begun.first.updates.back().p_RW;
+  double before_s = 0.0;
+  for (const double seconds : kChecks_s) {
+    const int round = int(recordings.size());
+    const LoopResult run = Moved(begun, plan, p_RW, round, seconds - before_s);
+    before_s = seconds;
+    p_RW = run.updates.back().p_RW;
+    recordings.push_back({fmt::format("round_{}", round), run.recording});
+    const auto several = diagnosis::DiagnoseSeveral(
+        recordings, {.without = {}, .discover = false, .measure_gain = false, .plan = limits});
+    if (IsCertain(begun, several.common)) return seconds;
+    const auto& next = several.common.plan;
+    if (next && next->places_m.size() > 1) plan = *next;
+  }
   return kNever;
 }
 
@@ -134,7 +168,10 @@ TrialRecord RunTrial(const std::filesystem::path& file, std::uint64_t seed) {
     Hide(begun.effect, rng, begun.scenario);
     begun.first =
         simulation::RunController(begun.scenario, begun.scenario.controllers.front(), nullptr);
-    const auto limits = simulation::LimitsOf(begun.scenario, {.seconds = kSeconds});
+    const Instrument& instrument = begun.scenario.loop.base.instrument;
+    const double unit_N = instrument.bending_stiffness_Nm2 / std::pow(instrument.length_m, 2);
+    const auto limits = simulation::LimitsOf(
+        begun.scenario, {.seconds = kSeconds, .port_force_N = kPortForce * unit_N});
     const auto told = diagnosis::Diagnose(
         begun.first.recording, "first",
         {.without = {}, .discover = false, .measure_gain = false, .plan = limits});
@@ -154,7 +191,8 @@ TrialRecord RunTrial(const std::filesystem::path& file, std::uint64_t seed) {
         {"random", RandomMotion(recorded, limits, rng)}};
     for (const auto& [name, motion] : ways) {
       record.load_N[name] = motion.load_N;
-      record.seconds[name] = SecondsUntilCertain(begun, motion);
+      record.seconds[name] =
+          name == "planned" ? SecondsByPlans(begun, motion, limits) : SecondsByOne(begun, motion);
     }
   } catch (const InputError& error) {
     record.qualifies = false;

@@ -1,7 +1,11 @@
 #include "diagnosis/planning/rivals.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
 
 #include "core/linear_algebra.h"
 #include "diagnosis/planning/plan.h"
@@ -10,7 +14,7 @@ namespace flextip::diagnosis {
 namespace {
 
 constexpr double kRival = 0.2;  // times as likely as the best
-constexpr std::size_t kMostRivals = 6, kContenders = 30;
+constexpr std::size_t kMostRivals = 6, kContenders = 30, kTruths = 16;
 
 /// The sums in the layout's parameters alone: the generic terms are integrated out with their
 /// prior.
@@ -83,6 +87,31 @@ Rivals::Rivals(const Selection& selection, const ParameterLayout& layout,
     const WeighedHypothesis weighed = evidence.Weigh(contenders_[i]);
     rivals_.push_back({contenders_[i], evidence.Mode(weighed, evidence.Covariance(weighed))});
   }
+  DrawTruths();
+}
+
+/// Each contender in proportion to its probability, by equal steps through their sum.
+void Rivals::DrawTruths() {
+  std::mt19937_64 rng(1);
+  std::normal_distribution<double> normal;
+  const Evidence evidence(known_, layout_, {}, {.unknown_sd = {}});
+  const std::vector<double> logs = LogPosteriors(known_);
+  const double all = LogSumExp(logs);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < contenders_.size(); ++i) {
+    sum += double(kTruths) * std::exp(logs[i] - all);
+    if (double(truths_.size()) + 0.5 >= sum) continue;
+    const WeighedHypothesis weighed = evidence.Weigh(contenders_[i]);
+    const Eigen::MatrixXd covariance = evidence.Covariance(weighed);
+    const Eigen::VectorXd mode = evidence.Mode(weighed, covariance);
+    const SymmetricEigen axes(covariance);
+    while (double(truths_.size()) + 0.5 < sum) {
+      Eigen::VectorXd way(mode.size());
+      for (double& x : way) x = normal(rng);
+      way = way.cwiseProduct(axes.values.cwiseMax(0.0).cwiseSqrt());
+      truths_.push_back({i, mode + axes.vectors * way});
+    }
+  }
 }
 
 std::vector<double> Rivals::LogPosteriors(const NormalSums& sums) const {
@@ -102,6 +131,21 @@ bool Rivals::IsRight(std::size_t rival, std::size_t contender) const {
   return contender >= rivals_.size() &&
          std::ranges::includes(contenders_[contender].effects, contenders_[rival].effects) &&
          !contenders_[rival].effects.empty();
+}
+
+double Rivals::ExpectedProbability(const Eigen::MatrixXd& H) const {
+  std::vector<double> right(truths_.size(), 0.0);
+  tbb::parallel_for(std::size_t{0}, truths_.size(), [&](std::size_t t) {
+    NormalSums sums = known_;
+    sums.H += H;
+    sums.g += H * truths_[t].theta;
+    const std::vector<double> logs = LogPosteriors(sums);
+    const double all = LogSumExp(logs);
+    for (std::size_t j = 0; j < logs.size(); ++j)
+      if (IsRight(truths_[t].contender, j)) right[t] += std::exp(logs[j] - all);
+  });
+  return std::accumulate(right.begin(), right.end(), 0.0) /
+         double(std::max<std::size_t>(1, right.size()));
 }
 
 Rivals::LeastSure Rivals::LeastSureWith(const Eigen::MatrixXd& H) const {

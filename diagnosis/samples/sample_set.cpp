@@ -18,6 +18,10 @@ constexpr double kMaxRate_hz = 60.0;
 constexpr double kMinResolvedRate_hz = 5.0;
 constexpr double kLongestDelay_s = 0.25;
 constexpr double kStart_s = 0.3;
+// Samples around one, whose load is not to share its noise; and noises by which a load at rest
+// moves.
+constexpr std::size_t kNear = 9, kFar = 18, kEach = 4;
+constexpr double kRests = 3.0;
 constexpr const char* kMoments[] = {"m1_y", "m1_z", "m2_y", "m2_z"};
 
 class Builder {
@@ -265,14 +269,14 @@ class Builder {
     return moves ? sample.f_tip_N : around_N;
   }
 
-  /// From near and far neighbours on both sides, so that the load's curvature cancels; itself at
-  /// the ends and where samples are apart in time.
+  /// From near and far neighbours on both sides, so that the load's curvature cancels. Near the
+  /// ends the load where it rests; itself where it does not, and where samples are apart in time.
   Eigen::Vector3d LoadOfNeighbours(std::size_t k) const {
-    constexpr std::size_t kNear = 9, kFar = 18, kEach = 4;  // samples; nearer ones share its noise
     const auto& samples = set_.samples;
     const std::size_t reach = kFar + kEach - 1;
-    if (!set_.resolved_in_time || k < reach || k + reach >= samples.size())
-      return samples[k].f_tip_N;
+    if (!set_.resolved_in_time) return samples[k].f_tip_N;
+    if (k < reach || k + reach >= samples.size())
+      return RestingLoad(k, reach).value_or(samples[k].f_tip_N);
     Eigen::Vector3d mean[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     double squares[2] = {0.0, 0.0};
     for (std::size_t i = 0; i < kEach; ++i) {
@@ -284,6 +288,23 @@ class Builder {
     }
     const double ratio = squares[1] / squares[0];
     return (ratio * mean[0] - mean[1]) / (ratio - 1.0);
+  }
+
+  /// The mean of the samples around `k` that do not share its noise, where they agree within
+  /// theirs.
+  std::optional<Eigen::Vector3d> RestingLoad(std::size_t k, std::size_t reach) const {
+    const auto& samples = set_.samples;
+    std::vector<Eigen::Vector3d> around_N;
+    for (std::size_t by = kNear; by <= reach; ++by) {
+      if (k >= by) around_N.push_back(samples[k - by].f_tip_N);
+      if (k + by < samples.size()) around_N.push_back(samples[k + by].f_tip_N);
+    }
+    if (around_N.size() < 2 * kEach) return {};
+    Eigen::Vector3d mean_N = Eigen::Vector3d::Zero();
+    for (const auto& f_N : around_N) mean_N += f_N / double(around_N.size());
+    for (const auto& f_N : around_N)
+      if ((f_N - mean_N).norm() > kRests * samples[k].force_noise_N) return {};
+    return mean_N;
   }
 
   /// Play and friction remember what came before the recording, and what late sensors say of its
