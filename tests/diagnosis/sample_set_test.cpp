@@ -161,8 +161,10 @@ TEST_F(SampleSetTest, NearTheEndsALoadAtRestIsThatOfSamplesWithOtherNoise) {
   std::mt19937_64 rng(4);
   std::normal_distribution<double> normal(0.0, kNoise_N);
   recording_.load0->force_noise_N = kNoise_N;
-  for (auto& f_N : recording_.load0->f_tip_N)
-    f_N.value = rest_N + Eigen::Vector3d(normal(rng), normal(rng), normal(rng));
+  for (auto& f_N : recording_.load0->f_tip_N) {
+    f_N.value = rest_N;
+    for (double& part_N : f_N.value) part_N += normal(rng);
+  }
   const SampleSet set = MakeSampleSet(recording_, "folder");
   double own2 = 0.0, around2 = 0.0, together = 0.0;
   const std::size_t n = set.samples.size();
