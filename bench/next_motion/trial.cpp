@@ -54,7 +54,6 @@ void Hide(const std::string& effect, std::mt19937_64& rng, Scenario& scenario) {
   std::erase_if(label.parameters, [](const auto& one) { return NeedsCamera(one.first); });
   const auto effects = simulation::EffectsOfWholeMass(label.parameters, loop.base.instrument);
   loop.plant.effects = effects.plant;
-  loop.plant.effects.wrist_reading.about_m = loop.p_RW_start;
   const Eigen::Vector3d centre_m = loop.sensor_effects.em_centre_m;
   loop.sensor_effects = effects.sensors;
   loop.sensor_effects.em_centre_m = centre_m;
