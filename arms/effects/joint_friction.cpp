@@ -16,6 +16,7 @@ class JointFriction : public PlainEffect {
     const auto coulomb = ToleranceOf(data, "joint_friction.coulomb", 0.02, n);
     const auto viscous = ToleranceOf(data, "joint_friction.viscous", 0.02, n);
     std::vector<FitParameter> parameters;
+    parameters.reserve(2 * std::size_t(data.Size()));
     for (int i = 0; i < n; ++i)
       parameters.push_back({coulomb[i], data.TypicalOf(i, 0.1, 1.0), true});
     for (int i = 0; i < n; ++i)
