@@ -133,32 +133,31 @@ bool Rivals::IsRight(std::size_t rival, std::size_t contender) const {
          !contenders_[rival].effects.empty();
 }
 
+double Rivals::LogOddsOfRight(std::size_t contender, const Eigen::VectorXd& theta,
+                              const Eigen::MatrixXd& H) const {
+  NormalSums sums = known_;
+  sums.H += H;
+  sums.g += H * theta;
+  const std::vector<double> logs = LogPosteriors(sums);
+  std::vector<double> right, others;
+  for (std::size_t j = 0; j < logs.size(); ++j)
+    (IsRight(contender, j) ? right : others).push_back(logs[j]);
+  return others.empty() ? 1e300 : LogSumExp(right) - LogSumExp(others);
+}
+
 double Rivals::ExpectedProbability(const Eigen::MatrixXd& H) const {
-  std::vector<double> right(truths_.size(), 0.0);
+  std::vector<double> probability(truths_.size());
   tbb::parallel_for(std::size_t{0}, truths_.size(), [&](std::size_t t) {
-    NormalSums sums = known_;
-    sums.H += H;
-    sums.g += H * truths_[t].theta;
-    const std::vector<double> logs = LogPosteriors(sums);
-    const double all = LogSumExp(logs);
-    for (std::size_t j = 0; j < logs.size(); ++j)
-      if (IsRight(truths_[t].contender, j)) right[t] += std::exp(logs[j] - all);
+    probability[t] =
+        1.0 / (1.0 + std::exp(-LogOddsOfRight(truths_[t].contender, truths_[t].theta, H)));
   });
-  return std::accumulate(right.begin(), right.end(), 0.0) /
-         double(std::max<std::size_t>(1, right.size()));
+  return std::accumulate(probability.begin(), probability.end(), 0.0) / double(truths_.size());
 }
 
 Rivals::LeastSure Rivals::LeastSureWith(const Eigen::MatrixXd& H) const {
   LeastSure least;
   for (std::size_t i = 0; i < rivals_.size(); ++i) {
-    NormalSums sums = known_;
-    sums.H += H;
-    sums.g += H * rivals_[i].theta;
-    const std::vector<double> logs = LogPosteriors(sums);
-    std::vector<double> right, others;
-    for (std::size_t j = 0; j < logs.size(); ++j)
-      (IsRight(i, j) ? right : others).push_back(logs[j]);
-    const double log_odds = others.empty() ? 1e300 : LogSumExp(right) - LogSumExp(others);
+    const double log_odds = LogOddsOfRight(i, rivals_[i].theta, H);
     if (log_odds < least.log_odds) least = {log_odds, i};
   }
   return least;

@@ -49,6 +49,10 @@ class Rivals {
   void DrawTruths();
   bool IsRight(std::size_t rival, std::size_t contender) const;
   std::vector<double> LogPosteriors(const NormalSums& sums) const;
+  /// Of the hypothesis `contender` with the parameters `theta` against those that are not right
+  /// then.
+  double LogOddsOfRight(std::size_t contender, const Eigen::VectorXd& theta,
+                        const Eigen::MatrixXd& H) const;
 
   const Selection& selection_;
   const ParameterLayout& layout_;

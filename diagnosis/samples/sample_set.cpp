@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/median.h"
 #include "core/rotation.h"
+#include "diagnosis/samples/load_smoothing.h"
 #include "diagnosis/samples/outliers.h"
 #include "diagnosis/samples/smoothing.h"
 #include "diagnosis/samples/streams.h"
@@ -18,10 +19,6 @@ constexpr double kMaxRate_hz = 60.0;
 constexpr double kMinResolvedRate_hz = 5.0;
 constexpr double kLongestDelay_s = 0.25;
 constexpr double kStart_s = 0.3;
-// Samples around one, whose load is not to share its noise; and noises by which a load at rest
-// moves.
-constexpr std::size_t kNear = 9, kFar = 18, kEach = 4;
-constexpr double kRests = 3.0;
 constexpr const char* kMoments[] = {"m1_y", "m1_z", "m2_y", "m2_z"};
 
 class Builder {
@@ -235,76 +232,10 @@ class Builder {
     // Samples outside the load's time would need a load of their own: leave them out.
     set_.has_load = known > int(times_.size()) / 2;
     if (!set_.has_load) return Warn("load0 covers less than half of the recording: left out");
-    SmoothLoad();
+    SmoothLoad(set_);
     if (known == int(times_.size())) return;
     for (std::size_t k = 0; k < times_.size(); ++k)
       if (!ValueAt(load.f_tip_N, times_[k])) set_.samples[k].present.reset();
-  }
-
-  /// Sensors that speak late look back at other samples' loads: noise must not differ from one to
-  /// the next.
-  void SmoothLoad() {
-    std::vector<double> t_s;
-    std::vector<Eigen::Vector3d> f_N;
-    for (const auto& sample : set_.samples) {
-      t_s.push_back(sample.t_s);
-      f_N.push_back(sample.f_tip_N);
-    }
-    Smoothed smoothed{f_N, std::vector<double>(f_N.size(), set_.noise.force_N)};
-    if (set_.resolved_in_time) smoothed = Smooth(t_s, f_N, set_.noise.force_N);
-    for (std::size_t k = 0; k < set_.samples.size(); ++k) {
-      set_.samples[k].f_tip_N = smoothed.value[k];
-      set_.samples[k].force_noise_N = set_.noise.force_N;
-    }
-    for (std::size_t k = 0; k < set_.samples.size(); ++k)
-      set_.samples[k].f_around_N = LoadAround(k);
-  }
-
-  /// As the neighbours say; as read where that differs by more than noise: the load itself moves.
-  Eigen::Vector3d LoadAround(std::size_t k) const {
-    constexpr double kNoNoise = 4.0;  // standard deviations
-    const DiagnosisSample& sample = set_.samples[k];
-    const Eigen::Vector3d around_N = LoadOfNeighbours(k);
-    const bool moves = (around_N - sample.f_tip_N).norm() > kNoNoise * sample.force_noise_N;
-    return moves ? sample.f_tip_N : around_N;
-  }
-
-  /// From near and far neighbours on both sides, so that the load's curvature cancels. Near the
-  /// ends the load where it rests; itself where it does not, and where samples are apart in time.
-  Eigen::Vector3d LoadOfNeighbours(std::size_t k) const {
-    const auto& samples = set_.samples;
-    const std::size_t reach = kFar + kEach - 1;
-    if (!set_.resolved_in_time) return samples[k].f_tip_N;
-    if (k < reach || k + reach >= samples.size())
-      return RestingLoad(k, reach).value_or(samples[k].f_tip_N);
-    Eigen::Vector3d mean[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-    double squares[2] = {0.0, 0.0};
-    for (std::size_t i = 0; i < kEach; ++i) {
-      for (const int which : {0, 1}) {
-        const std::size_t by = (which == 0 ? kNear : kFar) + i;
-        mean[which] += (samples[k - by].f_tip_N + samples[k + by].f_tip_N) / (2.0 * kEach);
-        squares[which] += static_cast<double>(by * by);
-      }
-    }
-    const double ratio = squares[1] / squares[0];
-    return (ratio * mean[0] - mean[1]) / (ratio - 1.0);
-  }
-
-  /// The mean of the samples around `k` that do not share its noise, where they agree within
-  /// theirs.
-  std::optional<Eigen::Vector3d> RestingLoad(std::size_t k, std::size_t reach) const {
-    const auto& samples = set_.samples;
-    std::vector<Eigen::Vector3d> around_N;
-    for (std::size_t by = kNear; by <= reach; ++by) {
-      if (k >= by) around_N.push_back(samples[k - by].f_tip_N);
-      if (k + by < samples.size()) around_N.push_back(samples[k + by].f_tip_N);
-    }
-    if (around_N.size() < 2 * kEach) return {};
-    Eigen::Vector3d mean_N = Eigen::Vector3d::Zero();
-    for (const auto& f_N : around_N) mean_N += f_N / double(around_N.size());
-    for (const auto& f_N : around_N)
-      if ((f_N - mean_N).norm() > kRests * samples[k].force_noise_N) return {};
-    return mean_N;
   }
 
   /// Play and friction remember what came before the recording, and what late sensors say of its

@@ -156,6 +156,21 @@ INSTANTIATE_TEST_SUITE_P(
         HiddenCase{"strain_clip", {"strain_clip"}, kPlain, true, 112, {"unknown"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
+// Near a recording's ends nothing told the load cell's noise from a load, and the shaft looked
+// stiffer, as a stiff shaft bends less by noise. In a short recording that is most of it.
+TEST(ShortRecordings, WithoutALoadTellNoStiffness) {
+  for (const std::uint64_t seed : {11U, 12U, 13U}) {
+    hidden::HiddenOptions options{.exact = true};
+    options.scene.duration_s = 1.6;
+    options.scene.load = hidden::LoadKind::kNone;
+    Recording recording = hidden::MakeHidden(options, seed).recording;
+    recording.strain0.reset();
+    const DiagnosisResult result =
+        Diagnose(recording, "short", {.without = {}, .discover = false, .measure_gain = false});
+    EXPECT_LT(result.presence.at("stiffness"), 0.3) << seed << ": " << Answers(result);
+  }
+}
+
 /// Of a form that the catalogue lacks one draw says little: two of these seven are called something
 /// else (111 em_distortion+shaft_load, 602 em_distortion).
 TEST(HiddenForms, MostTapersAreUnknown) {
