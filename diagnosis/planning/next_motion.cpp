@@ -25,8 +25,7 @@ constexpr int kRandom = 40, kImprovements = 60;
 // The model in which a motion is imagined is not quite the instrument: so much more is asked for.
 constexpr double kMargin = 2.0;  // in log odds
 const double kCertainLogOdds = std::log(kCertain / (1.0 - kCertain));
-constexpr double kWeightCosts = 0.02;                     // in doubt: a person has to hang it
-constexpr double kParts[] = {0.1, 0.2, 0.4, 0.7, 1.0};    // of a motion, where the doubt counts
+constexpr double kWeightCosts = 1.3;                      // in time: a person has to hang it
 constexpr double kSmallWeight = 0.4, kLargeWeight = 1.2;  // of EI / L^2
 constexpr double kMostWeight_N = 6.0;
 // A force across the shaft that any port bears: an unloaded recording must not forbid all weights.
@@ -38,18 +37,17 @@ double Uniform(Rng& rng, double from, double to) {
 
 /// What a course tells.
 struct Told {
-  double doubt = 1e300;  ///< left, expected, in the mean over its time; small is good
-  double seconds = 0.0;
-  std::vector<Eigen::MatrixXd> H;  ///< normal matrix up to each block's end
-
-  bool IsPossible() const { return !H.empty(); }
-};
-
-/// How sure the rivals will be.
-struct Sureness {
+  bool possible = false;
   std::optional<double> certain_s;
   double log_odds = -1e300;  ///< of the least sure rival, at the end
   std::size_t least_sure = 0;
+
+  /// The earlier certain the better, then the surer at the end.
+  bool BetterThan(const Told& other) const {
+    if (possible != other.possible) return possible;
+    if (certain_s.has_value() != other.certain_s.has_value()) return certain_s.has_value();
+    return certain_s ? *certain_s < *other.certain_s : log_odds > other.log_odds;
+  }
 };
 
 double Probability(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
@@ -106,13 +104,13 @@ class Planner {
     Course best;
     Told told;
     const auto keep = [&](const Course& course) {
-      Told now = Tell(course);
-      if (now.doubt >= told.doubt) return;
+      const Told now = Tell(course);
+      if (!now.BetterThan(told)) return;
       best = course;
-      told = std::move(now);
+      told = now;
     };
     for (int i = 0; i < kRandom; ++i) keep(RandomCourse(rng, weights_N_[i % weights_N_.size()]));
-    for (int i = 0; i < kImprovements && told.IsPossible(); ++i) keep(Changed(best, rng));
+    for (int i = 0; i < kImprovements && told.possible; ++i) keep(Changed(best, rng));
     return {best, told};
   }
 
@@ -125,37 +123,26 @@ class Planner {
     if (!imagined.Evaluate(replay_.Theta()) || imagined.FailedSamples() > 0) return told;
     for (const ReplayedSample& sample : imagined.Samples())
       if (sample.solved.lateral_force_N > most_force_N) return told;
+    told.possible = true;
     const LinearProblem problem = MakeLinearProblem(imagined, {}, kBlocks);
+    std::vector<Eigen::MatrixXd> H;  // up to each block's end
     for (const NormalSums& block : problem.blocks) {
-      told.H.emplace_back(weight_ * block.H);
-      if (told.H.size() > 1) told.H.back() += told.H[told.H.size() - 2];
+      H.emplace_back(weight_ * block.H);
+      if (H.size() > 1) H.back() += H[H.size() - 2];
     }
-    told.seconds = double(samples.samples.size()) * samples.period_s;
-    told.doubt = 0.0;
-    for (const double part : kParts) {
-      const auto block = std::size_t(std::lround(part * double(told.H.size()))) - 1;
-      told.doubt += (1.0 - rivals_.ExpectedProbability(told.H[block])) / double(std::size(kParts));
-    }
-    return told;
-  }
-
-  /// When all rivals will be certain, and which is the last.
-  Sureness SurenessBy(const Told& told) const {
-    Sureness sure;
-    if (!told.IsPossible()) return sure;
-    const auto least = rivals_.LeastSureWith(told.H.back());
-    sure.log_odds = least.log_odds;
-    sure.least_sure = least.rival;
-    if (sure.log_odds < kCertainLogOdds + kMargin) return sure;
-    std::size_t low = 0, high = told.H.size() - 1;
+    const double seconds = double(samples.samples.size()) * samples.period_s;
+    const auto least = rivals_.LeastSureWith(H.back());
+    told.log_odds = least.log_odds;
+    told.least_sure = least.rival;
+    if (told.log_odds < kCertainLogOdds + kMargin) return told;
+    std::size_t low = 0, high = H.size() - 1;
     while (low < high) {
       const std::size_t middle = (low + high) / 2;
-      const bool enough =
-          rivals_.LeastSureWith(told.H[middle]).log_odds >= kCertainLogOdds + kMargin;
+      const bool enough = rivals_.LeastSureWith(H[middle]).log_odds >= kCertainLogOdds + kMargin;
       (enough ? high : low) = enough ? middle : middle + 1;
     }
-    sure.certain_s = told.seconds * double(high + 1) / double(told.H.size());
-    return sure;
+    told.certain_s = seconds * double(high + 1) / double(H.size());
+    return told;
   }
 
   TipCourse CourseOf(const Course& course) const {
@@ -216,7 +203,7 @@ class Planner {
                                   return ImaginedInstant{tip.Wrist(t_s), 0.0};
                                 }};
     Told told = Tell(ImagineSamples(set_, motion), most_force_N_);
-    if (course.load_N > 0.0) told.doubt += kWeightCosts;
+    if (told.certain_s && course.load_N > 0.0) *told.certain_s *= kWeightCosts;
     return told;
   }
 
@@ -234,14 +221,13 @@ class Planner {
 void CompareLibrary(const Planner& planner, const SampleSet& recorded, NextMotion& plan) {
   Told best;
   for (const LibraryMotion& motion : MotionLibrary(recorded)) {
-    Told told = planner.Tell(motion.samples, 1e300);
-    if (told.doubt >= best.doubt) continue;
-    best = std::move(told);
+    const Told told = planner.Tell(motion.samples, 1e300);
+    if (!told.BetterThan(best)) continue;
+    best = told;
     plan.library_motion = motion.text;
   }
-  const Sureness sure = planner.SurenessBy(best);
-  plan.library_seconds_to_certain = sure.certain_s;
-  plan.library_probability = best.IsPossible() ? Probability(sure.log_odds) : 0.0;
+  plan.library_seconds_to_certain = best.certain_s;
+  plan.library_probability = best.possible ? Probability(best.log_odds) : 0.0;
 }
 
 }  // namespace
@@ -285,14 +271,14 @@ NextMotion PlanNextMotion(const Replay& replay, const Selection& selection,
   if (!plan.needed) return plan;
   Planner planner(replay, layout, selection, rivals, limits);
   const auto [course, told] = planner.Search();
-  if (told.IsPossible()) {
-    const Sureness sure = planner.SurenessBy(told);
+  if (told.possible) {
     const TipCourse tip = planner.CourseOf(course);
     plan.load_N = course.load_N;
     plan.speed_m_s = tip.Speed();
-    plan.probability = Probability(sure.log_odds);
-    plan.least_sure = plan.rivals[sure.least_sure];
-    plan.seconds_to_certain = sure.certain_s;
+    plan.probability = Probability(told.log_odds);
+    plan.least_sure = plan.rivals[told.least_sure];
+    plan.seconds_to_certain = told.certain_s;
+    if (told.certain_s && course.load_N > 0.0) *plan.seconds_to_certain /= kWeightCosts;
     plan.seconds = std::min(limits.seconds, plan.seconds_to_certain.value_or(limits.seconds));
     plan.places_m = tip.PlacesUntil(plan.seconds);
   }

@@ -1,11 +1,7 @@
 #include "diagnosis/planning/rivals.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <random>
 
 #include "core/linear_algebra.h"
 #include "diagnosis/planning/plan.h"
@@ -14,7 +10,7 @@ namespace flextip::diagnosis {
 namespace {
 
 constexpr double kRival = 0.2;  // times as likely as the best
-constexpr std::size_t kMostRivals = 6, kContenders = 30, kTruths = 16;
+constexpr std::size_t kMostRivals = 6, kContenders = 30;
 
 /// The sums in the layout's parameters alone: the generic terms are integrated out with their
 /// prior.
@@ -87,31 +83,6 @@ Rivals::Rivals(const Selection& selection, const ParameterLayout& layout,
     const WeighedHypothesis weighed = evidence.Weigh(contenders_[i]);
     rivals_.push_back({contenders_[i], evidence.Mode(weighed, evidence.Covariance(weighed))});
   }
-  DrawTruths();
-}
-
-/// Each contender in proportion to its probability, by equal steps through their sum.
-void Rivals::DrawTruths() {
-  std::mt19937_64 rng(1);
-  std::normal_distribution<double> normal;
-  const Evidence evidence(known_, layout_, {}, {.unknown_sd = {}});
-  const std::vector<double> logs = LogPosteriors(known_);
-  const double all = LogSumExp(logs);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < contenders_.size(); ++i) {
-    sum += double(kTruths) * std::exp(logs[i] - all);
-    if (double(truths_.size()) + 0.5 >= sum) continue;
-    const WeighedHypothesis weighed = evidence.Weigh(contenders_[i]);
-    const Eigen::MatrixXd covariance = evidence.Covariance(weighed);
-    const Eigen::VectorXd mode = evidence.Mode(weighed, covariance);
-    const SymmetricEigen axes(covariance);
-    while (double(truths_.size()) + 0.5 < sum) {
-      Eigen::VectorXd way(mode.size());
-      for (double& x : way) x = normal(rng);
-      way = way.cwiseProduct(axes.values.cwiseMax(0.0).cwiseSqrt());
-      truths_.push_back({i, mode + axes.vectors * way});
-    }
-  }
 }
 
 std::vector<double> Rivals::LogPosteriors(const NormalSums& sums) const {
@@ -133,31 +104,17 @@ bool Rivals::IsRight(std::size_t rival, std::size_t contender) const {
          !contenders_[rival].effects.empty();
 }
 
-double Rivals::LogOddsOfRight(std::size_t contender, const Eigen::VectorXd& theta,
-                              const Eigen::MatrixXd& H) const {
-  NormalSums sums = known_;
-  sums.H += H;
-  sums.g += H * theta;
-  const std::vector<double> logs = LogPosteriors(sums);
-  std::vector<double> right, others;
-  for (std::size_t j = 0; j < logs.size(); ++j)
-    (IsRight(contender, j) ? right : others).push_back(logs[j]);
-  return others.empty() ? 1e300 : LogSumExp(right) - LogSumExp(others);
-}
-
-double Rivals::ExpectedProbability(const Eigen::MatrixXd& H) const {
-  std::vector<double> probability(truths_.size());
-  tbb::parallel_for(std::size_t{0}, truths_.size(), [&](std::size_t t) {
-    probability[t] =
-        1.0 / (1.0 + std::exp(-LogOddsOfRight(truths_[t].contender, truths_[t].theta, H)));
-  });
-  return std::accumulate(probability.begin(), probability.end(), 0.0) / double(truths_.size());
-}
-
 Rivals::LeastSure Rivals::LeastSureWith(const Eigen::MatrixXd& H) const {
   LeastSure least;
   for (std::size_t i = 0; i < rivals_.size(); ++i) {
-    const double log_odds = LogOddsOfRight(i, rivals_[i].theta, H);
+    NormalSums sums = known_;
+    sums.H += H;
+    sums.g += H * rivals_[i].theta;
+    const std::vector<double> logs = LogPosteriors(sums);
+    std::vector<double> right, others;
+    for (std::size_t j = 0; j < logs.size(); ++j)
+      (IsRight(i, j) ? right : others).push_back(logs[j]);
+    const double log_odds = others.empty() ? 1e300 : LogSumExp(right) - LogSumExp(others);
     if (log_odds < least.log_odds) least = {log_odds, i};
   }
   return least;

@@ -36,30 +36,15 @@ class Rivals {
   /// with data of normal matrix `H` (the layout's parameters, noise of unit covariance).
   LeastSure LeastSureWith(const Eigen::MatrixXd& H) const;
 
-  /// Returns the probability that the right answer then has, in the mean over truths drawn once:
-  /// hypotheses as likely as they are now, with parameters as likely as they are under each. `H` as
-  /// above.
-  double ExpectedProbability(const Eigen::MatrixXd& H) const;
-
  private:
-  struct Truth {
-    std::size_t contender = 0;
-    Eigen::VectorXd theta;
-  };
-  void DrawTruths();
   bool IsRight(std::size_t rival, std::size_t contender) const;
   std::vector<double> LogPosteriors(const NormalSums& sums) const;
-  /// Of the hypothesis `contender` with the parameters `theta` against those that are not right
-  /// then.
-  double LogOddsOfRight(std::size_t contender, const Eigen::VectorXd& theta,
-                        const Eigen::MatrixXd& H) const;
 
   const Selection& selection_;
   const ParameterLayout& layout_;
   NormalSums known_;  // of the recording, with the generic terms integrated out
   std::vector<Hypothesis> contenders_;
   std::vector<Rival> rivals_;  // the first contenders
-  std::vector<Truth> truths_;
 };
 
 }  // namespace flextip::diagnosis
