@@ -78,7 +78,9 @@ BlurredPattern::BlurredPattern(const TagCells& tag)
       const float *before = Column(k - 1) + l - 1, *after = Column(k) + l - 1;
       codes_[static_cast<std::size_t>(k + kPad) * stride_ + l] =
           static_cast<std::uint8_t>(before[0] + 2 * before[1] + 4 * after[0] + 8 * after[1]);
-      edges_ += (before[1] != after[1]) + (after[0] != after[1]);
+      const auto u = static_cast<float>(k), v = static_cast<float>(l - kPad);
+      if (before[1] != after[1]) edge_list_.push_back({u, v, false});
+      if (after[0] != after[1]) edge_list_.push_back({u, v, true});
     }
   }
 }

@@ -44,8 +44,14 @@ class BlurredPattern {
   int Cells() const { return cells_; }
   /// Returns whether no cell within the pattern is unknown.
   bool AllKnown() const { return all_known_; }
+  /// A cell's side between black and white, from (u, v) on one cell along u or v.
+  struct Edge {
+    float u, v;
+    bool along_u;
+  };
+  const std::vector<Edge>& EdgeList() const { return edge_list_; }
   /// Returns the number of cells' sides between black and white.
-  int Edges() const { return edges_; }
+  int Edges() const { return static_cast<int>(edge_list_.size()); }
 
   /// Returns the blurred pattern at (u, v), in cells from the pattern's top left corner; `nearness`
   /// as in PatternBlur.
@@ -104,10 +110,11 @@ class BlurredPattern {
   void AddCrossings(const Lines& u, const Lines& v, const PatternBlur& blur,
                     PatternValue& value) const;
 
-  int cells_, stride_, edges_ = 0;
+  int cells_, stride_;
   float last_;                // three cells beyond the pattern
   std::vector<float> white_;  // columns, padded
   std::vector<std::uint8_t> codes_;
+  std::vector<Edge> edge_list_;
   std::vector<bool> known_;  // columns, padded
   bool all_known_;           // within the pattern
   const NormalTable* normal_ = &NormalTable::Get();

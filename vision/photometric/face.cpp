@@ -14,6 +14,8 @@ constexpr double kPixelVariance = 1.0 / 12;  // of a pixel's own square
 constexpr float kReachOfUnknown = 3.2f;      // sigmas kept from what is not known
 constexpr double kMaxBlur_cells = 1.6;
 constexpr int kFewestPixels = 30;
+constexpr float kSampledShare = 0.9f;     // of the pixels near edges: up to it they are drawn
+constexpr double kFlatPart = 0.4;         // of drawn pixels, flat ones to those near edges
 constexpr double kHiddenRim_cells = 0.5;  // of a tag's rim that a neighbour may hide
 
 }  // namespace
@@ -132,15 +134,17 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
   const double reach = 0.5 * cell_m_ * pattern_.Cells();
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
   TagRegion region;
-  int corner = 0;
-  for (const auto& [x, y] :
-       {std::pair{-1, -1}, std::pair{1, -1}, std::pair{1, 1}, std::pair{-1, 1}}) {
-    const auto px = camera.Project(T_CG * Eigen::Vector3d(x * reach, y * reach, 0));
-    if (!px) return;
-    region.outline_px[corner++] = *px;
-    low = low.cwiseMin(*px);
-    high = high.cwiseMax(*px);
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      const auto px = camera.Project(T_CG * Eigen::Vector3d((i - 1) * reach, (j - 1) * reach, 0));
+      if (!px) return;
+      region.places_px[j][i] = *px;
+      low = low.cwiseMin(*px);
+      high = high.cwiseMax(*px);
+    }
   }
+  const auto& p = region.places_px;
+  region.outline_px = {p[0][0], p[0][2], p[2][2], p[2][0]};
   region.x0 = std::max(0, static_cast<int>(low.x()));
   region.y0 = std::max(0, static_cast<int>(low.y()));
   region.x1 = std::min(lens.WidthPx() - 1, static_cast<int>(high.x()) + 1);
@@ -153,7 +157,17 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
   region.edge_u = std::min(choice.reach * g.blur.sigma_u, 0.99f);
   region.edge_v = std::min(choice.reach * g.blur.sigma_v, 0.99f);
   region.stride = choice.stride;
-  region.share = choice.share;
+  if (choice.share < kSampledShare) {
+    // Where cells are small the edges' bands overlap: at random places, taken together.
+    const auto& middle = p[1][1];
+    const Eigen::Vector2d across = 2 * (p[1][2] - middle), down = 2 * (p[2][1] - middle);
+    const double area_px = std::abs(across.x() * down.y() - across.y() * down.x());
+    const double bands_px = choice.reach * PixelsPerSigma(camera, T_CE, optics);
+    const double all = area_px * -std::expm1(-bands_px / area_px);
+    // Pixels that are drawn at random come twice: of n pixels n (1 - exp(-draws / n)) are seen.
+    region.samples = static_cast<int>(std::lround(-all * std::log1p(-choice.share)));
+    region.flat_samples = static_cast<int>(std::lround(kFlatPart * choice.share * all));
+  }
   ChoosePixels(region, pattern_, lens, image, pixels_);
 }
 

@@ -31,6 +31,12 @@ struct FacePixels {
     int patch;
   };
   std::vector<Found> found;  ///< before `Sort`
+  /// Of pixels that are drawn, before they are read; which of the picture are among them.
+  struct Place {
+    int x, y, patch;
+  };
+  std::vector<Place> places;
+  std::vector<std::uint8_t> taken;
 };
 
 /// A face under a pose, light, blur and film.

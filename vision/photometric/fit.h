@@ -23,7 +23,7 @@ enum class PhotometricStatus {
 
 struct PhotometricOptions {
   int coarse_pixels = 500;  ///< of all faces together, until the steps become small
-  int max_pixels = 6000;    ///< of all faces together, near their edges, in the last steps
+  int max_pixels = 5000;    ///< of all faces together, near their edges, in the last steps
   double coarse_extra_blur_px2 = 2.0;  ///< widens the reach of the first steps
   int max_coarse_iterations = 8, max_iterations = 6;
   double min_correlation = 0.96;  ///< of a face's measured and predicted grey values

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vision/grey.h"
+#include "vision/photometric/edge_samples.h"
 #include "vision/photometric/lanes.h"
 
 namespace flextip {
@@ -14,25 +15,12 @@ using lanes::F, lanes::I, lanes::kLanes;
 constexpr int kFlatEvery = 8;  // of flat pixels one of so many is taken
 constexpr double kRowMargin_px = 2.0;
 
-// A number from 0 to 1 that belongs to a place in the picture and looks random.
-float Lot(int x, int y) {
-  std::uint32_t h =
-      static_cast<std::uint32_t>(x) * 0x9e3779b1u ^ static_cast<std::uint32_t>(y) * 0x85ebca77u;
-  h = (h ^ h >> 15) * 0xc2b2ae3du;
-  return static_cast<float>((h ^ h >> 13) >> 8) * 0x1p-24f;
-}
-
 class Chooser {
  public:
   Chooser(const TagRegion& region, const BlurredPattern& pattern, const LensMap& lens,
           const Image& image, FacePixels& pixels)
       : r_(region), pattern_(pattern), lens_(lens), image_(image), pixels_(pixels) {
-    limits_ = r_.limits;
-    if (pattern.AllKnown()) {
-      const auto end = static_cast<float>(pattern.Cells());
-      limits_ = {std::max(limits_[0], r_.unknown_u), std::min(limits_[1], end - r_.unknown_u),
-                 std::max(limits_[2], r_.unknown_v), std::min(limits_[3], end - r_.unknown_v)};
-    }
+    limits_ = LimitsWithin(region, pattern);
     to_patch_ = static_cast<float>(2.0 / pattern.Cells());
   }
 
@@ -54,10 +42,7 @@ class Chooser {
     for (int y = r_.y0; y <= r_.y1; ++y) {
       int x0, x1;
       Span(y, x0, x1);
-      for (int x = x0 & ~(kLanes - 1); x <= x1; x += kLanes) {
-        if (r_.share < 1 && Lot(x, y) > r_.share) continue;
-        AddEight(x, y, x0, x1);
-      }
+      for (int x = x0 & ~(kLanes - 1); x <= x1; x += kLanes) AddEight(x, y, x0, x1);
     }
   }
 
@@ -151,10 +136,19 @@ void ChooseAll(Chooser& chooser) {
 
 }  // namespace
 
+Eigen::Vector4f LimitsWithin(const TagRegion& r, const BlurredPattern& pattern) {
+  if (!pattern.AllKnown()) return r.limits;
+  const auto end = static_cast<float>(pattern.Cells());
+  return {std::max(r.limits[0], r.unknown_u), std::min(r.limits[1], end - r.unknown_u),
+          std::max(r.limits[2], r.unknown_v), std::min(r.limits[3], end - r.unknown_v)};
+}
+
 void ChoosePixels(const TagRegion& region, const BlurredPattern& pattern, const LensMap& lens,
                   const Image& image, FacePixels& pixels) {
   Chooser chooser(region, pattern, lens, image, pixels);
-  if (region.stride > 1 || lens.WidthPx() < kLanes) {
+  if (region.samples > 0) {
+    SampleEdges(region, pattern, lens, image, pixels);
+  } else if (region.stride > 1 || lens.WidthPx() < kLanes) {
     chooser.Every(region.stride);
   } else {
     ChooseAll(chooser);

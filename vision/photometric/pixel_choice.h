@@ -16,13 +16,19 @@ namespace flextip {
 struct TagRegion {
   int x0, y0, x1, y1;                         ///< the pixels around the tag, ends included
   std::array<Eigen::Vector2d, 4> outline_px;  ///< of the tag with its surroundings
-  Eigen::Matrix3f to_tag;                     ///< of FaceModel
-  Eigen::Vector4f limits;                     ///< u low, u high, v low, v high
-  float unknown_u, unknown_v;                 ///< to keep from cells that are not known
-  float edge_u, edge_v;  ///< how far from an edge pixels say something, less than one
-  int stride = 1;        ///< every so many-th pixel in both directions
-  float share = 1.0f;    ///< of the pixels near edges, in runs scattered evenly
+  /// Places of the tag with its surroundings in the picture: rows by v, columns by u, at the
+  /// beginning, the middle and the end.
+  std::array<std::array<Eigen::Vector2d, 3>, 3> places_px;
+  Eigen::Matrix3f to_tag;             ///< of FaceModel
+  Eigen::Vector4f limits;             ///< u low, u high, v low, v high
+  float unknown_u, unknown_v;         ///< to keep from cells that are not known
+  float edge_u, edge_v;               ///< how far from an edge pixels say something, less than one
+  int stride = 1;                     ///< every so many-th pixel in both directions
+  int samples = 0, flat_samples = 0;  ///< drawn along edges and elsewhere; 0: all pixels
 };
+
+/// Returns the limits (as in TagRegion) without what is too near to cells that are not known.
+Eigen::Vector4f LimitsWithin(const TagRegion& region, const BlurredPattern& pattern);
 
 /// Takes the pixels near the edges between black and white, and every eighth of the others.
 void ChoosePixels(const TagRegion& region, const BlurredPattern& pattern, const LensMap& lens,

@@ -25,6 +25,7 @@ constexpr double kKnown = 1e-6, kKnown_m = 1e-10;  // standard deviations of wha
 // Pixels this many sigmas from an edge say something; within the lesser reach lie nine tenths of
 // what they say of the pose.
 constexpr double kReach = 2.9, kLeastReach = 1.4;
+constexpr double kDrawnShare = 0.8;  // of the pixels within that reach
 
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 
@@ -59,8 +60,8 @@ Optics PhotometricView::Widened() const {
   return wide;
 }
 
-// A few pixels lie evenly over all faces. With many, those that say least are left out first: far
-// from the edges.
+// A few pixels lie evenly over all faces. Of many those far from the edges say least: the reach
+// shrinks with the budget, then the share within it.
 PhotometricFace::Choice PhotometricView::ChoiceOf(const Pose& T_CE, int pixels, bool few,
                                                   double area_px2) const {
   PhotometricFace::Choice choice;
@@ -72,9 +73,10 @@ PhotometricFace::Choice PhotometricView::ChoiceOf(const Pose& T_CE, int pixels, 
   for (const SeenFace& s : seen_) {
     if (s.active) per_sigma += faces_[s.face].PixelsPerSigma(camera_, T_CE, Widened());
   }
-  const double reach = std::clamp(pixels / std::max(1.0, per_sigma), kLeastReach, kReach);
+  per_sigma = std::max(1.0, per_sigma);
+  const double reach = std::clamp(pixels / (kDrawnShare * per_sigma), kLeastReach, kReach);
   choice.reach = static_cast<float>(reach);
-  choice.share = static_cast<float>(std::min(1.0, pixels / std::max(1.0, reach * per_sigma)));
+  choice.share = static_cast<float>(std::min(1.0, pixels / (reach * per_sigma)));
   return choice;
 }
 
