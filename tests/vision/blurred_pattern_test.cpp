@@ -12,6 +12,7 @@
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
 #include "tests/vision/optics_reference.h"
+#include "vision/photometric/pattern_lanes.h"
 #include "vision/photometric/tag_blur.h"
 
 namespace flextip {
@@ -223,6 +224,38 @@ TEST(BlurredPattern, StaysWithinBoundsFarAway) {
         EXPECT_GE(p.c, -0.01f);
         EXPECT_LE(p.c, 1.01f);
       }
+    }
+  }
+}
+
+// By one line of each axis, by two, and by more.
+TEST(BlurredPattern, EightAtATimeIsTheSame) {
+  const BlurredPattern pattern(ReadTagCells("tag36h11", 3));
+  std::mt19937 random(17);
+  std::uniform_real_distribution<float> place(-3, 13), sigma(0.05f, 0.45f),
+      correlation(-0.5f, 0.5f);
+  for (int i = 0; i < 500; ++i) {
+    const float sigma_u = sigma(random), sigma_v = sigma(random), rho = correlation(random);
+    PatternBlur blur(sigma_u, sigma_v, rho);
+    blur.rate_u = 0.004f;
+    blur.rate_v = -0.003f;
+    blur.middle = 5;
+    lanes::F u, v, nearness;
+    for (int k = 0; k < lanes::kLanes; ++k) {
+      u[k] = place(random), v[k] = place(random),
+      nearness[k] = 1.0f + 0.01f * static_cast<float>(k);
+    }
+    lanes::Pattern p;
+    lanes::LookUp(u, v, nearness, blur, pattern, p);
+    for (int k = 0; k < lanes::kLanes; ++k) {
+      const PatternValue one = pattern.At(u[k], v[k], blur, nearness[k]);
+      const float su = blur.inverse_u, sv = blur.inverse_v;
+      EXPECT_NEAR(p.c[k], one.c, 1e-4);
+      EXPECT_NEAR(p.c_u[k], one.c_u, 5e-4 * su);
+      EXPECT_NEAR(p.c_v[k], one.c_v, 5e-4 * sv);
+      EXPECT_NEAR(p.c_uu[k], one.c_uu, 2e-3 * su * su);
+      EXPECT_NEAR(p.c_uv[k], one.c_uv, 2e-3 * su * sv);
+      EXPECT_NEAR(p.c_vv[k], one.c_vv, 2e-3 * sv * sv);
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "vision/photometric/face_rows.h"
 
 #include "vision/photometric/lanes.h"
+#include "vision/photometric/pattern_lanes.h"
 
 #if defined(__x86_64__)
 #define FLEXTIP_HAS_AVX2
@@ -66,81 +67,6 @@ FLEXTIP_LANES_INLINE void Empty(Products& products, FaceSums::Rows& rows) {
     }
   }
   products.blocks = 0;
-}
-
-// The blurred pattern, where at most one line each way is within reach: the nearest.
-struct Pattern {
-  F c, c_u, c_v, c_uu, c_uv, c_vv;
-};
-
-struct Axis {
-  I line;  // the nearest line between cells
-  F x, inverse;
-  I many;  // another line is within reach, too
-};
-
-FLEXTIP_LANES_INLINE void NearestLine(const F& at, const F& nearness, float sigma,
-                                      float inverse_sigma, float rate, float middle, int cells,
-                                      Axis& axis) {
-  constexpr int kBeyond = 4;
-  F clamped;
-  lanes::Select(at > -float(kBeyond), at, F{} - float(kBeyond), clamped);
-  const float last = static_cast<float>(cells + kBeyond);
-  lanes::Select(clamped < last, clamped, F{} + last, clamped);
-  lanes::ToInt(clamped + 16.5f, axis.line);
-  axis.line -= 16;
-  F line;
-  lanes::ToFloat(axis.line, line);
-  axis.inverse = inverse_sigma * nearness * (1.0f + rate * (line - middle));
-  axis.x = (line - at) * axis.inverse;
-  F away;
-  lanes::Select(line < at, at - line, line - at, away);
-  axis.many = 1.0f - away < NormalTable::kReach * sigma;
-}
-
-FLEXTIP_LANES_INLINE void LookUp(const F& u, const F& v, const F& nearness, const FaceModel& m,
-                                 const BlurredPattern& pattern, Pattern& value) {
-  const PatternBlur& blur = m.blur;
-  Axis au, av;
-  NearestLine(u, nearness, blur.sigma_u, blur.inverse_u, blur.rate_u, blur.middle, pattern.Cells(),
-              au);
-  NearestLine(v, nearness, blur.sigma_v, blur.inverse_v, blur.rate_v, blur.middle, pattern.Cells(),
-              av);
-  I code;
-  for (int k = 0; k < kLanes; ++k) code[k] = pattern.CornerCode(au.line[k], av.line[k]);
-  F c00, c01, c10, c11;  // before and after the lines: by u, then by v
-  lanes::ToFloat(code & 1, c00);
-  lanes::ToFloat((code >> 1) & 1, c01);
-  lanes::ToFloat((code >> 2) & 1, c10);
-  lanes::ToFloat((code >> 3) & 1, c11);
-  F nu, du, nv, dv;
-  lanes::CutNormal(au.x, nu, du);
-  lanes::CutNormal(av.x, nv, dv);
-  const F su = au.inverse, sv = av.inverse;
-  const F rise0 = c10 - c00, rise1 = c11 - c01, corner = rise1 - rise0;
-  const F rise = rise1 - nv * corner;
-  value.c = c01 + nv * (c00 - c01) + (1.0f - nu) * rise;
-  value.c_u = du * rise * su;
-  value.c_uu = au.x * value.c_u * su;
-  value.c_v = dv * sv * (c01 - c00 + (1.0f - nu) * corner);
-  value.c_vv = av.x * value.c_v * sv;
-  // The crossing, where the axes are correlated: BlurredPattern::AddCrossing.
-  const float rho = blur.rho, iu = blur.inverse_u, iv = blur.inverse_v;
-  const F x = au.x, y = av.x, density = corner * du * dv;
-  const F x2 = x * x - 1.0f, y2 = y * y - 1.0f, tilt = density * rho;
-  value.c += tilt * (1.0f + 0.5f * rho * (x * y + (rho / 3) * x2 * y2));
-  value.c_u += tilt * x * iu;
-  value.c_v += tilt * y * iv;
-  value.c_uu += tilt * x2 * (iu * iu);
-  value.c_vv += tilt * y2 * (iv * iv);
-  value.c_uv = density * (1.0f + rho * x * y) * (iu * iv);
-  const I many = au.many | av.many;
-  for (int k = 0; k < kLanes; ++k) {
-    if (many[k] == 0) continue;
-    const PatternValue p = pattern.At(u[k], v[k], blur, nearness[k]);
-    value.c[k] = p.c, value.c_u[k] = p.c_u, value.c_v[k] = p.c_v;
-    value.c_uu[k] = p.c_uu, value.c_uv[k] = p.c_uv, value.c_vv[k] = p.c_vv;
-  }
 }
 
 // The tone curve and its derivatives: ToneCurve::At.
@@ -217,8 +143,8 @@ FLEXTIP_LANES_INLINE void AddVector(const FacePixels& pixels, int at, const Face
   lanes::Select(near, w, F{} + 1 / m.depth, w);
   lanes::Select(near, part, F{}, part);
 
-  Pattern p;
-  LookUp(u, v, m.depth * w, m, pattern, p);
+  lanes::Pattern p;
+  lanes::LookUp(u, v, m.depth * w, m.blur, pattern, p);
 
   const auto& level = m.levels;
   const float inverse_half = 1 / m.half;
