@@ -14,14 +14,16 @@ void CutStream(std::optional<Stream>& stream, Series<T> Stream::*series, TimeNs 
   if (((*stream).*series).empty()) stream.reset();
 }
 
-void DropFrames(std::optional<CameraStream>& camera) {
-  if (!camera) return;
-  camera->video.clear();
-  camera->filenames.clear();
-  camera->frame_numbers.clear();
-}
-
 }  // namespace
+
+void DropFrames(Recording& recording) {
+  for (std::optional<CameraStream>* camera : {&recording.cam0, &recording.cam1}) {
+    if (!*camera) continue;
+    (*camera)->video.clear();
+    (*camera)->filenames.clear();
+    (*camera)->frame_numbers.clear();
+  }
+}
 
 Recording Cut(const Recording& recording, TimeNs from_ns, TimeNs to_ns) {
   Recording cut = recording;
@@ -37,8 +39,7 @@ Recording Cut(const Recording& recording, TimeNs from_ns, TimeNs to_ns) {
   CutStream(cut.joints_seen0, &JointStream::q, from_ns, to_ns);
   CutStream(cut.torque0, &TorqueStream::tau, from_ns, to_ns);
   CutStream(cut.pose0, &PoseStream::samples, from_ns, to_ns);
-  DropFrames(cut.cam0);
-  DropFrames(cut.cam1);
+  DropFrames(cut);
   return cut;
 }
 

@@ -9,4 +9,7 @@ namespace flextip {
 /// is left out; a camera keeps its calibration and loses the frames.
 Recording Cut(const Recording& recording, TimeNs from_ns, TimeNs to_ns);
 
+/// Leaves out the pictures; the cameras keep their calibrations.
+void DropFrames(Recording& recording);
+
 }  // namespace flextip

@@ -23,6 +23,7 @@
 #include "diagnosis/judge_diagnosis.h"
 #include "diagnosis/model/extended_model.h"
 #include "diagnosis/several/diagnose_several.h"
+#include "recording/join.h"
 #include "report/pages.h"
 #include "simulation/closed_loop/gain.h"
 
@@ -34,7 +35,7 @@ struct Options {
   std::vector<std::filesystem::path> others;  ///< recordings after the first
   std::vector<std::string> without;
   MotionOptions plan;
-  bool no_closed_loop = false, force = false;
+  bool one_session = false, no_closed_loop = false, force = false;
 };
 
 /// Runs the controllers with and without what was found, on a plant that has it; warns of those
@@ -172,7 +173,27 @@ void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, boo
   Finish(options, reads, judged, summary, output, quiet);
 }
 
+/// The stretches of one session as one recording, with the warnings of all.
+std::vector<NamedRead> Joined(std::vector<NamedRead> reads) {
+  std::vector<diagnosis::NamedRecording> named;
+  std::vector<const Recording*> stretches;
+  for (const NamedRead& one : reads) named.push_back({one.name, one.read.recording});
+  diagnosis::RequireOneSession(named);
+  for (const diagnosis::NamedRecording& one : named) stretches.push_back(&one.recording);
+  InputRead& first = reads.front().read;
+  first.recording = Join(stretches);
+  for (std::size_t i = 1; i < reads.size(); ++i) {
+    for (const std::string& warning : reads[i].read.warnings)
+      first.warnings.push_back(reads[i].name + ": " + warning);
+    first.findings.insert(first.findings.end(), reads[i].read.findings.begin(),
+                          reads[i].read.findings.end());
+  }
+  reads.resize(1);
+  return reads;
+}
+
 void RunArm(const Options& options, bool quiet) {
+  if (options.one_session) throw InputError("--one-session is of shafts, found an arm");
   ArmRun run{{options.input.recording}, options.input.out, options.without, options.force, quiet};
   run.closed_loop = !options.no_closed_loop;
   run.recordings.insert(run.recordings.end(), options.others.begin(), options.others.end());
@@ -181,7 +202,8 @@ void RunArm(const Options& options, bool quiet) {
 
 void Run(const Options& options, bool quiet) {
   if (IsArmRecording(options.input.recording)) return RunArm(options, quiet);
-  const std::vector<NamedRead> reads = ReadAll(options, quiet);
+  std::vector<NamedRead> reads = ReadAll(options, quiet);
+  if (options.one_session) reads = Joined(std::move(reads));
   reads.size() == 1 ? RunOne(options, reads, quiet) : RunSeveral(options, reads, quiet);
 }
 
@@ -203,12 +225,16 @@ void AddDiagnose(CLI::App& app, AppContext& context) {
   command->add_flag("--no-closed-loop", options->no_closed_loop,
                     "Do not run the controllers with and without the model on a simulated plant "
                     "that has what was found");
+  command->add_flag("--one-session", options->one_session,
+                    "The recordings were made one right after the other, with nothing taken apart "
+                    "or registered in between: diagnosed as one");
   AddMotionOptions(*command, options->plan);
   command->add_flag("--force", options->force, "Replace the folder of an earlier run");
   command->footer(
       "Example:\n  flextip diagnose recording -o diagnosis\n"
       "  flextip diagnose recording --plan-motion --plan-speed 0.05 -o diagnosis\n"
-      "  flextip diagnose monday tuesday friday -o week\n");
+      "  flextip diagnose monday tuesday friday -o week\n"
+      "  flextip diagnose first second --one-session -o session\n");
   OnRun(*command, context, [options, &context] { Run(*options, context.quiet); });
 }
 

@@ -71,13 +71,6 @@ void WriteRounds(const fs::path& folder, const DiagnosingResult& result) {
   }
 }
 
-void WriteDiagnosis(const fs::path& folder, const diagnosis::SeveralResult& several) {
-  WriteDiagnosisFiles(folder, DiagnosisJson(several), several.common);
-  for (std::size_t r = 0; r < several.own.size(); ++r)
-    WriteDiagnosisFiles(folder / "recordings" / several.names[r], DiagnosisJson(several.own[r]),
-                        several.own[r]);
-}
-
 void Print(const DiagnosingResult& result) {
   for (const DiagnosingRound& round : result.rounds) {
     fmt::print("{}, {:.1f} s{}: {} ({:.0f} %). {}\n", round.name, round.seconds,
@@ -118,16 +111,14 @@ void RunDiagnosing(const DiagnosingCommand& options, bool quiet) {
         scenario, {.limits = options.plan->Within(), .most_rounds = options.rounds},
         [&](const std::string&) { progress.Update(done++); });
   }
-  output.Warn(result.diagnosis.common.warnings);
+  output.Warn(result.diagnosis.warnings);
   WriteRounds(output.folder(), result);
-  WriteDiagnosis(output.folder(), result.diagnosis);
+  WriteDiagnosisFiles(output.folder(), DiagnosisJson(result.diagnosis), result.diagnosis);
   std::vector<nlohmann::ordered_json> rounds;
   for (const DiagnosingRound& round : result.rounds) rounds.push_back(RoundJson(round));
-  const Judgement judged = result.rounds.size() > 1
-                               ? diagnosis::JudgeSeveral(result.diagnosis)
-                               : diagnosis::JudgeDiagnosis(result.diagnosis.common);
+  const Judgement judged = diagnosis::JudgeDiagnosis(result.diagnosis);
   output.WriteSummary({{"scenario", options.scenario.filename().string()},
-                       {"verdicts", result.diagnosis.common.verdict},
+                       {"verdicts", result.diagnosis.verdict},
                        {"rounds", rounds},
                        {"seconds_of_motion", result.Seconds()},
                        {"separated", result.end == DiagnosingEnd::kSeparated},

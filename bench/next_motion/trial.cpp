@@ -11,6 +11,7 @@
 #include "diagnosis/planning/imagined_samples.h"
 #include "diagnosis/planning/tip_course.h"
 #include "diagnosis/search/motion_library.h"
+#include "recording/join.h"
 #include "simulation/closed_loop/diagnosing_loop.h"
 #include "simulation/closed_loop/scenario_run.h"
 #include "testdata/hidden/draw.h"
@@ -126,10 +127,10 @@ bool IsCertain(const Begun& begun, const diagnosis::DiagnosisResult& answer) {
 double SecondsByOne(const Begun& begun, const diagnosis::NextMotion& motion) {
   for (const double seconds : kChecks_s) {
     const LoopResult run = Moved(begun, motion, begun.first.updates.back().p_RW, 1, seconds);
-    const auto several =
-        diagnosis::DiagnoseSeveral({{"first", begun.first.recording}, {"second", run.recording}},
-                                   {.without = {}, .discover = false, .measure_gain = false});
-    if (IsCertain(begun, several.common)) return seconds;
+    const auto answer =
+        diagnosis::Diagnose(Join({&begun.first.recording, &run.recording}), "both",
+                            {.without = {}, .discover = false, .measure_gain = false});
+    if (IsCertain(begun, answer)) return seconds;
   }
   return kNever;
 }
@@ -137,19 +138,19 @@ double SecondsByOne(const Begun& begun, const diagnosis::NextMotion& motion) {
 /// By a plan, and by a new one wherever a check leaves a doubt, as `simulate --diagnose`.
 double SecondsByPlans(const Begun& begun, diagnosis::NextMotion plan,
                       const diagnosis::MotionLimits& limits) {
-  std::vector<diagnosis::NamedRecording> recordings{{"first", begun.first.recording}};
+  Recording all = begun.first.recording;
+  int round = 0;
   Eigen::Vector3d p_RW = begun.first.updates.back().p_RW;
   double before_s = 0.0;
   for (const double seconds : kChecks_s) {
-    const int round = int(recordings.size());
-    const LoopResult run = Moved(begun, plan, p_RW, round, seconds - before_s);
+    const LoopResult run = Moved(begun, plan, p_RW, ++round, seconds - before_s);
     before_s = seconds;
     p_RW = run.updates.back().p_RW;
-    recordings.push_back({fmt::format("round_{}", round), run.recording});
-    const auto several = diagnosis::DiagnoseSeveral(
-        recordings, {.without = {}, .discover = false, .measure_gain = false, .plan = limits});
-    if (IsCertain(begun, several.common)) return seconds;
-    const auto& next = several.common.plan;
+    all = Join({&all, &run.recording});
+    const auto answer = diagnosis::Diagnose(
+        all, "all", {.without = {}, .discover = false, .measure_gain = false, .plan = limits});
+    if (IsCertain(begun, answer)) return seconds;
+    const auto& next = answer.plan;
     if (next && next->places_m.size() > 1) plan = *next;
   }
   return kNever;

@@ -38,6 +38,10 @@ struct SeveralResult {
 SeveralResult DiagnoseSeveral(const std::vector<NamedRecording>& recordings,
                               const DiagnoseOptions& options = {});
 
+/// Throws InputError where the recordings cannot be stretches of one session (recording/join.h):
+/// another instrument, or a wrist that begins elsewhere than it had ended.
+void RequireOneSession(const std::vector<NamedRecording>& recordings);
+
 /// As JudgeDiagnosis does, with what began.
 Judgement JudgeSeveral(const SeveralResult& several);
 

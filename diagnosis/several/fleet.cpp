@@ -53,6 +53,23 @@ void RequireAlike(const NamedRecording& a, const NamedRecording& b) {
     RefuseTogether(a, b, "tolerances", Text(a.recording.tolerances), Text(b.recording.tolerances));
 }
 
+/// One goes on where the one before ended.
+void RequireGoesOn(const NamedRecording& before, const NamedRecording& after) {
+  constexpr double kNear_m = 0.005;
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(fmt::format("{} and {}: {}, expected stretches of one session", before.name,
+                                 after.name, why));
+  };
+  for (const NamedRecording* one : {&before, &after})
+    if (!one->recording.wrist0 || one->recording.wrist0->samples.size() < 2)
+      refuse(one->name + " has no wrist0 to speak of");
+  const double apart_m = (after.recording.wrist0->samples.front().value.p_RW -
+                          before.recording.wrist0->samples.back().value.p_RW)
+                             .norm();
+  if (apart_m > kNear_m)
+    refuse(fmt::format("the wrist begins {:.3g} m from where it had ended", apart_m));
+}
+
 Catalogue CatalogueOf(const std::vector<std::string>& effects, const EffectMakers& own) {
   Catalogue catalogue;
   for (const std::string& name : effects) catalogue.push_back(MakeEffect(name, own));
@@ -87,6 +104,13 @@ void ShareCentre(std::vector<SampleSet>& all) {
 }
 
 }  // namespace
+
+void RequireOneSession(const std::vector<NamedRecording>& recordings) {
+  for (std::size_t i = 1; i < recordings.size(); ++i) {
+    RequireAlike(recordings.front(), recordings[i]);
+    RequireGoesOn(recordings[i - 1], recordings[i]);
+  }
+}
 
 Member::Member(std::string its_name, SampleSet its_samples, const std::vector<std::string>& effects,
                const EffectMakers& own)

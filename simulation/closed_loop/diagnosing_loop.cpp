@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "recording/join.h"
 #include "simulation/closed_loop/scenario_run.h"
 
 namespace flextip::simulation {
@@ -16,24 +17,6 @@ constexpr double kTellsMore = 0.02;  // of probability
 
 double SecondsOf(const LoopResult& run) {
   return 1e-9 * static_cast<double>(run.updates.back().t_ns - run.updates.front().t_ns);
-}
-
-/// The diagnosis of one recording as that of several.
-diagnosis::SeveralResult AsSeveral(const std::string& name, diagnosis::DiagnosisResult result) {
-  diagnosis::SeveralResult several;
-  several.names = {name};
-  several.own = {result};
-  several.common = std::move(result);
-  return several;
-}
-
-diagnosis::SeveralResult Diagnosed(const std::vector<diagnosis::NamedRecording>& recordings,
-                                   const Scenario& scenario, const DiagnosingOptions& options) {
-  const diagnosis::DiagnoseOptions asked{.without = options.without,
-                                         .plan = LimitsOf(scenario, options.limits)};
-  if (recordings.size() > 1) return diagnosis::DiagnoseSeveral(recordings, asked);
-  const auto& [name, recording] = recordings.front();
-  return AsSeveral(name, diagnosis::Diagnose(recording, name, asked));
 }
 
 /// What the round knows after `diagnosed`; whether it is the last one.
@@ -89,7 +72,9 @@ DiagnosingResult DiagnoseInLoop(const Scenario& scenario, const DiagnosingOption
     if (progress) progress(what);
   };
   DiagnosingResult result;
-  std::vector<diagnosis::NamedRecording> recordings;
+  const diagnosis::DiagnoseOptions asked{.without = options.without,
+                                         .plan = LimitsOf(scenario, options.limits)};
+  Recording all;
   Scenario now = scenario;
   double hung_N = 0.0;
   for (int i = 1; i <= options.most_rounds; ++i) {
@@ -97,10 +82,11 @@ DiagnosingResult DiagnoseInLoop(const Scenario& scenario, const DiagnosingOption
     say(fmt::format("{}: moves", round.name));
     round.run = RunController(now, now.controllers.front(), nullptr);
     round.seconds = SecondsOf(round.run);
-    recordings.push_back({round.name, round.run.recording});
+    const Recording& made = round.run.recording;
+    all = i == 1 ? made : Join({&all, &made});
     say(fmt::format("{}: diagnoses", round.name));
-    result.diagnosis = Diagnosed(recordings, scenario, options);
-    const auto end = Conclude(result.diagnosis.common, round);
+    result.diagnosis = diagnosis::Diagnose(all, round.name, asked);
+    const auto end = Conclude(result.diagnosis, round);
     result.rounds.push_back(std::move(round));
     if (end) {
       result.end = *end;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/diagnose.h"
 #include "diagnosis/planning/plan.h"
-#include "diagnosis/several/diagnose_several.h"
 #include "simulation/closed_loop/scenario.h"
 
 namespace flextip::simulation {
@@ -37,7 +37,7 @@ enum class DiagnosingEnd : std::uint8_t {
 struct DiagnosingResult {
   std::vector<DiagnosingRound> rounds;  ///< at least one
   DiagnosingEnd end = DiagnosingEnd::kRoundsAreUp;
-  diagnosis::SeveralResult diagnosis;  ///< of all rounds together
+  diagnosis::DiagnosisResult diagnosis;  ///< of all rounds as one recording
 
   double Seconds() const;  ///< of motion
 };

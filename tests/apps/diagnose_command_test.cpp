@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "recording/cut.h"
+#include "recording/recording_writer.h"
 #include "testdata/hidden/recording.h"
 #include "tests/apps/run_program.h"
 
@@ -92,6 +94,29 @@ TEST_F(DiagnoseCommand, LeavesOutWhatItIsToldTo) {
   }
   EXPECT_THAT(diagnosis["catalogue"], Contains("stiffness"));
   EXPECT_THAT(diagnosis["catalogue"], Not(Contains("tag_offset")));
+}
+
+// The tags' offset is found in halves that together are as long as one recording.
+TEST_F(DiagnoseCommand, TakesTheStretchesOfOneSessionAsOne) {
+  const Recording whole = Hide(8.0).recording;
+  const auto& wrist = whole.wrist0->samples;
+  const TimeNs middle_ns = wrist[wrist.size() / 2].t_ns;
+  WriteRecording(folder_ / "rec", Cut(whole, wrist.front().t_ns, middle_ns));
+  WriteRecording(folder_ / "more", Cut(whole, middle_ns + 1, wrist.back().t_ns));
+  const std::string more = (folder_ / "more").string();
+  const ProgramResult result = Run({more, "--one-session", "--no-closed-loop"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto diagnosis = Json("diagnosis.json");
+  EXPECT_THAT(diagnosis["verdicts"], ElementsAre("tag_offset"));
+  EXPECT_GT(diagnosis["probabilities"]["tag_offset"], 0.9);
+  EXPECT_FALSE(diagnosis.contains("recordings"));
+}
+
+TEST_F(DiagnoseCommand, RefusesAsOneSessionWhatDoesNotGoOn) {
+  Write(8.0);
+  const ProgramResult result = Run({(folder_ / "rec").string(), "--one-session"});
+  EXPECT_TRUE(IsRefused(result, {"rec and rec_2", "the wrist begins", "from where it had ended"}));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
 TEST_F(DiagnoseCommand, RefusesARecordingWithoutAWrist) {

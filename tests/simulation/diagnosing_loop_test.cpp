@@ -53,7 +53,7 @@ TEST(DiagnosingLoop, MovesUntilATagIsToldFromACamera) {
   EXPECT_LT(result.rounds.front().probability, 0.8);
   EXPECT_THAT(result.rounds.back().answer, ElementsAre("tag_offset"));
   EXPECT_GT(result.rounds.back().probability, 0.8);
-  EXPECT_GT(result.diagnosis.common.presence.at("tag_offset"), 0.95);
+  EXPECT_GT(result.diagnosis.presence.at("tag_offset"), 0.95);
   double seconds = 0.0;
   for (const DiagnosingRound& round : result.rounds) seconds += round.seconds;
   EXPECT_DOUBLE_EQ(result.Seconds(), seconds);
