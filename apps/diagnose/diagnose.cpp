@@ -177,6 +177,8 @@ void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, boo
 std::vector<NamedRead> Joined(std::vector<NamedRead> reads) {
   std::vector<diagnosis::NamedRecording> named;
   std::vector<const Recording*> stretches;
+  named.reserve(reads.size());
+  stretches.reserve(reads.size());
   for (const NamedRead& one : reads) named.push_back({one.name, one.read.recording});
   diagnosis::RequireOneSession(named);
   for (const diagnosis::NamedRecording& one : named) stretches.push_back(&one.recording);

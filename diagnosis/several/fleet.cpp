@@ -28,6 +28,7 @@ std::string Text(const Eigen::Vector3d& v) {
 
 std::string Text(const std::map<std::string, std::vector<double>>& tolerances) {
   std::vector<std::string> all;
+  all.reserve(tolerances.size());
   for (const auto& [name, values] : tolerances)
     all.push_back(fmt::format("{}: [{}]", name, fmt::join(values, ", ")));
   return fmt::format("{{{}}}", fmt::join(all, ", "));
