@@ -34,29 +34,29 @@ TipCamera::~TipCamera() {
   looks_ = {};
 }
 
-void TipCamera::Take(TimeNs t_ns, const Image& image, TimeNs arrived_ns) {
-  const CameraCalibration& camera = session_.base.cam0->calibration;
-  const TimeNs taken_ns = session_.camera->TimeOf(t_ns);
+void TipCamera::Take(TimeNs t_ns, Image image, TimeNs arrived_ns) {
+  if (!Fits(image)) return;
+  Picture picture{session_.camera->TimeOf(t_ns), arrived_ns, std::move(image)};
+  if (session_.robot.lockstep) return Look(picture);
   {
     const std::lock_guard lock(mutex_);
-    ++counts_.pictures;
-    if (image.width_px != camera.width_px || image.height_px != camera.height_px) {
-      if (counts_.refused++ == 0) {
-        event_(fmt::format("cam0: a picture of {} x {}, expected {} x {}", image.width_px,
-                           image.height_px, camera.width_px, camera.height_px));
-      }
-      return;
-    }
-    if (!session_.robot.lockstep) {
-      counts_.left_out += newest_.has_value();
-      newest_ = Picture{taken_ns, arrived_ns, image};
-    }
+    counts_.left_out += newest_.has_value();
+    newest_ = std::move(picture);
   }
-  if (session_.robot.lockstep) {
-    Look({taken_ns, arrived_ns, image});
-  } else {
-    changed_.notify_one();
+  changed_.notify_one();
+}
+
+/// Counts the picture; says so where it is of another size than the camera's.
+bool TipCamera::Fits(const Image& image) {
+  const CameraCalibration& camera = session_.base.cam0->calibration;
+  const std::lock_guard lock(mutex_);
+  ++counts_.pictures;
+  if (image.width_px == camera.width_px && image.height_px == camera.height_px) return true;
+  if (counts_.refused++ == 0) {
+    event_(fmt::format("cam0: a picture of {} x {}, expected {} x {}", image.width_px,
+                       image.height_px, camera.width_px, camera.height_px));
   }
+  return false;
 }
 
 void TipCamera::Note(StreamName stream, const Arrived<AnySample>& sample) {
@@ -88,9 +88,9 @@ void TipCamera::RunVideo(const std::stop_token& stop) {
   try {
     const auto frames = OpenLiveFrames(session_.camera->video, session_.base.cam0->calibration);
     while (!stop.stop_requested()) {
-      const std::optional<Frame> frame = frames->Next();
+      std::optional<Frame> frame = frames->Next();
       if (!frame) break;
-      Take(frame->t_ns, frame->image, Now_ns());
+      Take(frame->t_ns, std::move(frame->image), Now_ns());
     }
     if (!stop.stop_requested()) event_("cam0: the video has ended");
   } catch (const std::exception& error) {
@@ -126,13 +126,12 @@ SensorReadings TipCamera::ReadingsAt(TimeNs t_ns) {
 void TipCamera::Look(const Picture& picture) {
   const Image* const pictures[] = {&picture.image};
   const TipTrack track = tracker_.Follow(pictures, picture.t_ns, ReadingsAt(picture.t_ns));
-  if (seen_) seen_(picture.t_ns, picture.image, track);
-  if (track.tip.status != TipStatus::kOk) return;  // without a tip that was seen, it becomes stale
-  {
+  if (track.tip.status == TipStatus::kOk) {  // without a tip that was seen, it becomes stale
+    tip_(picture.t_ns, {track.tip, track.direction_noise_rad}, picture.arrived_ns);
     const std::lock_guard lock(mutex_);
     ++counts_.seen;
   }
-  tip_(picture.t_ns, {track.tip, track.direction_noise_rad}, picture.arrived_ns);
+  if (seen_) seen_(picture.t_ns, picture.image, track);
 }
 
 }  // namespace flextip::live

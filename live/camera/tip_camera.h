@@ -42,7 +42,7 @@ class TipCamera {
   TipCamera& operator=(const TipCamera&) = delete;
 
   /// Takes a picture with the time its peer gave. Waits for nothing, but in lockstep.
-  void Take(TimeNs t_ns, const Image& image, TimeNs arrived_ns);
+  void Take(TimeNs t_ns, Image image, TimeNs arrived_ns);
   /// Notes a sample, by which the shaft's model says where to look.
   void Note(StreamName stream, const Arrived<AnySample>& sample);
 
@@ -53,6 +53,7 @@ class TipCamera {
     TimeNs t_ns = 0, arrived_ns = 0;
     Image image;
   };
+  bool Fits(const Image& image);
   void Run(const std::stop_token& stop);
   void RunVideo(const std::stop_token& stop);
   void Look(const Picture& picture);

@@ -41,7 +41,7 @@ class Loop {
   LoopReport Run(const OpenPeers& open) {
     PeerHandlers handlers;
     handlers.message = [this](const Address& peer, WireMessage&& message) {
-      Dispatch(peer, message);
+      Dispatch(peer, std::move(message));
     };
     handlers.event = [this](const Address& peer, WireEvent&& event) { Note(peer, event); };
     if (session_.publish) publisher_.emplace(session_);
@@ -80,7 +80,7 @@ class Loop {
 
   // From the peers' threads.
 
-  void Dispatch(const Address& peer, const WireMessage& message) {
+  void Dispatch(const Address& peer, WireMessage&& message) {
     const TimeNs now_ns = Now_ns();
     const auto is_of = [&](const Address& address) {
       return address.SamePeer(peer) && address.device == message.device;
@@ -92,10 +92,6 @@ class Loop {
       const std::string why = streams_.Take(static_cast<StreamName>(i), message, now_ns);
       if (!why.empty()) Refuse(peer, stream->address, why, reports_[at]);
     }
-    const auto* picture = std::get_if<WireImage>(&message.body);
-    const bool of_camera = session_.camera && session_.camera->address &&
-                           is_of(*session_.camera->address) && message.t_ns > 0;
-    if (of_camera && picture != nullptr) camera_->Take(message.t_ns, picture->image, now_ns);
     const RobotSetup& robot = session_.robot;
     const auto* text = std::get_if<WireText>(&message.body);
     if (robot.state && is_of(*robot.state) && text != nullptr)
@@ -105,6 +101,11 @@ class Loop {
       if (!why.empty()) Refuse(peer, *session_.goal, why, goal_reports_);
     }
     if (robot.lockstep && is_of(*robot.lockstep)) beats_.Give(message.t_ns, now_ns);
+    auto* picture = std::get_if<WireImage>(&message.body);
+    const bool of_camera = session_.camera && session_.camera->address &&
+                           is_of(*session_.camera->address) && message.t_ns > 0;
+    if (of_camera && picture != nullptr)
+      camera_->Take(message.t_ns, std::move(picture->image), now_ns);
   }
 
   void Refuse(const Address& peer, const Address& from, const std::string& why, Reports& reports) {
