@@ -36,6 +36,7 @@ Recording Join(const std::vector<const Recording*>& stretches, double settle_s) 
   for (std::size_t i = 1; i < stretches.size(); ++i) {
     const Recording& next = *stretches[i];
     FLEXTIP_CHECK(next.wrist0 && next.wrist0->samples.size() > 1, "stretches have a wrist0");
+    FLEXTIP_CHECK(!next.arm, "stretches are of a shaft");
     const Series<WristSample>& wrist = next.wrist0->samples;
     const TimeNs begin_ns = joined.wrist0->samples.back().t_ns + wrist[1].t_ns - wrist.front().t_ns;
     const Stretch at_once{begin_ns - wrist.front().t_ns, begin_ns};
@@ -47,11 +48,6 @@ Recording Join(const std::vector<const Recording*>& stretches, double settle_s) 
     Append(next.em1, settled, &EmStream::samples, joined.em1);
     Append(next.strain0, settled, &StrainStream::moments_Nm, joined.strain0);
     Append(next.vision0, settled, &VisionStream::tips, joined.vision0);
-    Append(next.joints0, at_once, &JointStream::q, joined.joints0);
-    Append(next.joints_command0, at_once, &JointStream::q, joined.joints_command0);
-    Append(next.joints_seen0, settled, &JointStream::q, joined.joints_seen0);
-    Append(next.torque0, at_once, &TorqueStream::tau, joined.torque0);
-    Append(next.pose0, settled, &PoseStream::samples, joined.pose0);
   }
   return joined;
 }

@@ -12,7 +12,7 @@ namespace flextip {
 /// between, so what sensors of the shaft say in the first `settle_s` of a later stretch is left
 /// out: it may be of the time before. What a sensor says of itself is taken from the first
 /// recording that has it; a camera keeps its calibration and loses the frames. At least one
-/// recording, each with a wrist0.
+/// recording of a shaft, each with a wrist0; joints are not taken.
 Recording Join(const std::vector<const Recording*>& stretches, double settle_s = 0.25);
 
 }  // namespace flextip

@@ -11,6 +11,11 @@ SQUARE = ("[{to_m: [0, 0, -0.002]}, {to_m: [0.004, 0, -0.003]}, {to_m: [0.004, 0
           "{to_m: [0, 0.003, -0.001]}, {to_m: [0, 0, 0]}]")
 
 
+def round_and_round(times):
+    """Returns the waypoints of so many times around the square."""
+    return "[" + ", ".join([SQUARE[1:-1]] * times) + "]"
+
+
 def session_text(port, camera=True, lockstep=False, rate_hz=120, speed_m_s=0.002,
                  waypoints=SQUARE, kind="rod-track", tip_by_em=False, camera_file=CAMERA):
     """Returns a session on the robot at `port`; the path starts where the tip is. `tip_by_em`: the

@@ -20,7 +20,7 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-from live_run import SQUARE, LiveRun  # noqa: E402
+from live_run import LiveRun, round_and_round  # noqa: E402
 
 SQUARE_S = 10.0  # once round at 2 mm/s
 PERIOD_S = 10.0  # of looking at the memory
@@ -63,7 +63,7 @@ def watch(run, seconds):
 
 def endure(options, folder):
     loops = int(options.seconds / SQUARE_S) + 2
-    waypoints = "[" + ", ".join([SQUARE[1:-1]] * loops) + "]"
+    waypoints = round_and_round(loops)
     print(f"load at the start: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     with LiveRun(options.program, folder, page=False, options=["--duration", options.seconds],
                  camera=options.camera is not None,

@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-from live_run import SQUARE, LiveRun  # noqa: E402
+from live_run import LiveRun, round_and_round  # noqa: E402
 
 
 def times_ms(recording):
@@ -40,10 +40,8 @@ def main():
     parser.add_argument("--camera", type=int, metavar="WIDTH_PX")
     parser.add_argument("--work", type=pathlib.Path, help="keep the recording here")
     options = parser.parse_args()
-    rounds = max(1, options.seconds // 10)
     session = {"lockstep": options.real_time is None, "rate_hz": options.real_time or 30,
-               "waypoints": SQUARE[:-1] + ", " + ", ".join([SQUARE[1:-1]] * (rounds - 1)) + "]"
-               if rounds > 1 else SQUARE}
+               "waypoints": round_and_round(options.seconds // 10 + 1)}
     with tempfile.TemporaryDirectory() as folder:
         work = options.work or pathlib.Path(folder)
         work.mkdir(parents=True, exist_ok=True)

@@ -39,7 +39,8 @@ SeveralResult DiagnoseSeveral(const std::vector<NamedRecording>& recordings,
                               const DiagnoseOptions& options = {});
 
 /// Throws InputError where the recordings cannot be stretches of one session (recording/join.h):
-/// another instrument, or a wrist that begins elsewhere than it had ended.
+/// another instrument, a sensor that says something else of itself, or a wrist that begins
+/// elsewhere than it had ended.
 void RequireOneSession(const std::vector<NamedRecording>& recordings);
 
 /// As JudgeDiagnosis does, with what began.

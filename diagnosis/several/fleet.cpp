@@ -54,6 +54,37 @@ void RequireAlike(const NamedRecording& a, const NamedRecording& b) {
     RefuseTogether(a, b, "tolerances", Text(a.recording.tolerances), Text(b.recording.tolerances));
 }
 
+/// What the sensors say of themselves, which a join takes from the first.
+void RequireSensorsAlike(const NamedRecording& a, const NamedRecording& b) {
+  const auto number = [&](const char* what, double of_a, double of_b) {
+    if (of_a != of_b) RefuseTogether(a, b, what, fmt::format("{}", of_a), fmt::format("{}", of_b));
+  };
+  const Recording &x = a.recording, &y = b.recording;
+  if (x.wrist0 && y.wrist0)
+    number("wrist0 position_noise_m", x.wrist0->position_noise_m, y.wrist0->position_noise_m);
+  if (x.em0 && y.em0) {
+    number("em0 distance_from_tip_m", x.em0->distance_from_tip_m, y.em0->distance_from_tip_m);
+    number("em0 position_noise_m", x.em0->position_noise_m, y.em0->position_noise_m);
+    number("em0 registration_noise_m", x.em0->registration_noise_m, y.em0->registration_noise_m);
+  }
+  if (x.strain0 && y.strain0) {
+    for (const int i : {0, 1})
+      number("strain0 stations_from_wrist_m", x.strain0->station_from_wrist_m[i],
+             y.strain0->station_from_wrist_m[i]);
+    number("strain0 moment_noise_Nm", x.strain0->moment_noise_Nm, y.strain0->moment_noise_Nm);
+  }
+  if (x.load0 && y.load0)
+    number("load0 force_noise_N", x.load0->force_noise_N, y.load0->force_noise_N);
+  if (x.cam0 && y.cam0) {
+    number("cam0 fu_px", x.cam0->calibration.fu_px, y.cam0->calibration.fu_px);
+    const bool same_pose = x.cam0->calibration.T_RC.p == y.cam0->calibration.T_RC.p &&
+                           x.cam0->calibration.T_RC.R == y.cam0->calibration.T_RC.R;
+    if (!same_pose)
+      RefuseTogether(a, b, "cam0 T_RC", Text(x.cam0->calibration.T_RC.p),
+                     Text(y.cam0->calibration.T_RC.p));
+  }
+}
+
 /// One goes on where the one before ended.
 void RequireGoesOn(const NamedRecording& before, const NamedRecording& after) {
   constexpr double kNear_m = 0.005;
@@ -109,6 +140,7 @@ void ShareCentre(std::vector<SampleSet>& all) {
 void RequireOneSession(const std::vector<NamedRecording>& recordings) {
   for (std::size_t i = 1; i < recordings.size(); ++i) {
     RequireAlike(recordings.front(), recordings[i]);
+    RequireSensorsAlike(recordings.front(), recordings[i]);
     RequireGoesOn(recordings[i - 1], recordings[i]);
   }
 }

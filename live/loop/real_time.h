@@ -7,7 +7,8 @@ namespace flextip::live {
 
 /// Real-time priority for the calling thread, and all memory of the process kept from being swapped
 /// or mapped late, while the object lives; each where the system gives it. Memory is locked only
-/// where no limit could make later allocations fail.
+/// where no limit could make later allocations fail. From then on the process keeps what it frees,
+/// up to 256 MB.
 class RealTime {
  public:
   RealTime();

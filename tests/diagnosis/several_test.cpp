@@ -177,5 +177,27 @@ TEST(Several, RefusesAnotherInstrument) {
   EXPECT_THAT(message(), HasSubstr("tolerances is {}"));
 }
 
+TEST(OneSession, IsRefusedWhereASensorSaysSomethingElseOrTheWristIsElsewhere) {
+  NamedRecording first = Series({}, {}, 1, 1, 47).front();
+  NamedRecording next = first;
+  next.name = "next";
+  const auto refusal = [&]() -> std::string {
+    try {
+      RequireOneSession({first, next});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  auto& begin = next.recording.wrist0->samples.front().value.p_RW;
+  begin = first.recording.wrist0->samples.back().value.p_RW + Eigen::Vector3d(0.004, 0, 0);
+  EXPECT_EQ(refusal(), "");
+  begin.x() += 0.002;
+  EXPECT_THAT(refusal(), HasSubstr("day_0 and next: the wrist begins 0.006 m from where"));
+  begin.x() -= 0.002;
+  next.recording.em0->distance_from_tip_m += 0.001;
+  EXPECT_THAT(refusal(), HasSubstr("day_0 and next: em0 distance_from_tip_m is"));
+}
+
 }  // namespace
 }  // namespace flextip::diagnosis

@@ -38,6 +38,15 @@ class Sampler {
     pixels_.places.clear();
   }
 
+  FLEXTIP_LANES_INLINE void Run() {
+    Edges();
+    Flats();
+    Read();
+  }
+
+ private:
+  using Edge = BlurredPattern::Edge;
+
   // By an edge's length in the picture, so that pixels count alike.
   FLEXTIP_LANES_INLINE void Edges() {
     const auto& p = r_.places_px;
@@ -80,9 +89,6 @@ class Sampler {
       pixels_.Add(ray.x, ray.y, GreyAt(image_, place.x, place.y), place.patch);
     }
   }
-
- private:
-  using Edge = BlurredPattern::Edge;
 
   // Whether a part of the edge may lie within the limits.
   bool Begins(const Edge& edge) const {
@@ -171,27 +177,13 @@ class Sampler {
   float to_patch_;
 };
 
-FLEXTIP_LANES_INLINE void DrawAll(Sampler& sampler) {
-  sampler.Edges();
-  sampler.Flats();
-  sampler.Read();
-}
-
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) void DrawAllAvx2(Sampler& sampler) { DrawAll(sampler); }
-#endif
-
 }  // namespace
 
 void SampleEdges(const TagRegion& region, const BlurredPattern& pattern, const LensMap& lens,
                  const Image& image, FacePixels& pixels) {
   if (region.x1 < region.x0 || region.y1 < region.y0) return;
   Sampler sampler(region, pattern, lens, image, pixels);
-#if defined(__x86_64__)
-  static const bool wide = __builtin_cpu_supports("avx2");
-  if (wide) return DrawAllAvx2(sampler);
-#endif
-  DrawAll(sampler);
+  lanes::RunWidest(sampler);
 }
 
 }  // namespace flextip

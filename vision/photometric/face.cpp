@@ -144,7 +144,6 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
     }
   }
   const auto& p = region.places_px;
-  region.outline_px = {p[0][0], p[0][2], p[2][2], p[2][0]};
   region.x0 = std::max(0, static_cast<int>(low.x()));
   region.y0 = std::max(0, static_cast<int>(low.y()));
   region.x1 = std::min(lens.WidthPx() - 1, static_cast<int>(high.x()) + 1);
@@ -163,7 +162,7 @@ void PhotometricFace::SelectPixels(const CameraModel& camera, const LensMap& len
     const Eigen::Vector2d across = 2 * (p[1][2] - middle), down = 2 * (p[2][1] - middle);
     const double area_px = std::abs(across.x() * down.y() - across.y() * down.x());
     const double bands_px = choice.reach * PixelsPerSigma(camera, T_CE, optics);
-    const double all = area_px * -std::expm1(-bands_px / area_px);
+    const double all = area_px > 0 ? area_px * -std::expm1(-bands_px / area_px) : 0;
     // Pixels that are drawn at random come twice: of n pixels n (1 - exp(-draws / n)) are seen.
     region.samples = static_cast<int>(std::lround(-all * std::log1p(-choice.share)));
     region.flat_samples = static_cast<int>(std::lround(kFlatPart * choice.share * all));

@@ -3,10 +3,6 @@
 #include "vision/photometric/lanes.h"
 #include "vision/photometric/pattern_lanes.h"
 
-#if defined(__x86_64__)
-#define FLEXTIP_HAS_AVX2
-#endif
-
 namespace flextip {
 namespace {
 
@@ -260,14 +256,16 @@ FLEXTIP_LANES_INLINE void AddAll(const FacePixels& pixels, const FaceModel& mode
   sums.CountContradictions(brighter, darker);
 }
 
-#ifdef FLEXTIP_HAS_AVX2
-__attribute__((target("avx2"))) void AddAllAvx2(const FacePixels& pixels, const FaceModel& model,
-                                                const BlurredPattern& pattern,
-                                                const ToneCurve& tone, const RobustRule& rule,
-                                                FaceSums::Rows& rows, FaceSums& sums) {
-  AddAll(pixels, model, pattern, tone, rule, rows, sums);
-}
-#endif
+struct Adding {
+  const FacePixels& pixels;
+  const FaceModel& model;
+  const BlurredPattern& pattern;
+  const ToneCurve& tone;
+  const RobustRule& rule;
+  FaceSums::Rows& rows;
+  FaceSums& sums;
+  FLEXTIP_LANES_INLINE void Run() { AddAll(pixels, model, pattern, tone, rule, rows, sums); }
+};
 
 }  // namespace
 
@@ -303,11 +301,8 @@ void FacePixels::Sort() {
 void AddFaceRows(const FacePixels& pixels, const FaceModel& model, const BlurredPattern& pattern,
                  const ToneCurve& tone, const RobustRule& rule, FaceSums::Rows& rows,
                  FaceSums& sums) {
-#ifdef FLEXTIP_HAS_AVX2
-  static const bool wide = __builtin_cpu_supports("avx2");
-  if (wide) return AddAllAvx2(pixels, model, pattern, tone, rule, rows, sums);
-#endif
-  AddAll(pixels, model, pattern, tone, rule, rows, sums);
+  Adding adding{pixels, model, pattern, tone, rule, rows, sums};
+  lanes::RunWidest(adding);
 }
 
 }  // namespace flextip

@@ -106,4 +106,22 @@ FLEXTIP_LANES_INLINE double Sum(const F& value) {
          ((double{x[4]} + x[5]) + (double{x[6]} + x[7]));
 }
 
+#if defined(__x86_64__)
+template <class Work>
+__attribute__((target("avx2"))) void RunByAvx2(Work& work) {
+  work.Run();
+}
+#endif
+
+/// Calls `work.Run()`, which is FLEXTIP_LANES_INLINE as is all that it calls, compiled for AVX2
+/// where the processor has it.
+template <class Work>
+void RunWidest(Work& work) {
+#if defined(__x86_64__)
+  static const bool wide = __builtin_cpu_supports("avx2");
+  if (wide) return RunByAvx2(work);
+#endif
+  work.Run();
+}
+
 }  // namespace flextip::lanes

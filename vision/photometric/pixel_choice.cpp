@@ -38,7 +38,7 @@ class Chooser {
   }
 
   // Rows within the tag's outline, in steps of eight pixels.
-  FLEXTIP_LANES_INLINE void All() {
+  FLEXTIP_LANES_INLINE void Run() {
     for (int y = r_.y0; y <= r_.y1; ++y) {
       int x0, x1;
       Span(y, x0, x1);
@@ -50,8 +50,10 @@ class Chooser {
   // The pixels of a row that lie in the outline or near it.
   void Span(int y, int& x0, int& x1) const {
     double low = r_.x1 + 1.0, high = r_.x0 - 1.0;
+    const auto& p = r_.places_px;
+    const Eigen::Vector2d* outline[] = {&p[0][0], &p[0][2], &p[2][2], &p[2][0], &p[0][0]};
     for (int i = 0; i < 4; ++i) {
-      const Eigen::Vector2d &a = r_.outline_px[i], &b = r_.outline_px[(i + 1) % 4];
+      const Eigen::Vector2d &a = *outline[i], &b = *outline[i + 1];
       const double top = std::max(std::min(a.y(), b.y()), y - kRowMargin_px);
       const double bottom = std::min(std::max(a.y(), b.y()), y + kRowMargin_px);
       if (top > bottom) continue;
@@ -122,18 +124,6 @@ class Chooser {
   int flat_ = 0;
 };
 
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) void ChooseAllAvx2(Chooser& chooser) { chooser.All(); }
-#endif
-
-void ChooseAll(Chooser& chooser) {
-#if defined(__x86_64__)
-  static const bool wide = __builtin_cpu_supports("avx2");
-  if (wide) return ChooseAllAvx2(chooser);
-#endif
-  chooser.All();
-}
-
 }  // namespace
 
 Eigen::Vector4f LimitsWithin(const TagRegion& r, const BlurredPattern& pattern) {
@@ -151,7 +141,7 @@ void ChoosePixels(const TagRegion& region, const BlurredPattern& pattern, const 
   } else if (region.stride > 1 || lens.WidthPx() < kLanes) {
     chooser.Every(region.stride);
   } else {
-    ChooseAll(chooser);
+    lanes::RunWidest(chooser);
   }
   pixels.Sort();
 }

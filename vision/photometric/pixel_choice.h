@@ -14,8 +14,7 @@ namespace flextip {
 /// A tag's surroundings in a picture, and what to take of them. Places on the tag are in cells from
 /// its top left corner.
 struct TagRegion {
-  int x0, y0, x1, y1;                         ///< the pixels around the tag, ends included
-  std::array<Eigen::Vector2d, 4> outline_px;  ///< of the tag with its surroundings
+  int x0, y0, x1, y1;  ///< the pixels around the tag, ends included
   /// Places of the tag with its surroundings in the picture: rows by v, columns by u, at the
   /// beginning, the middle and the end.
   std::array<std::array<Eigen::Vector2d, 3>, 3> places_px;
@@ -30,7 +29,8 @@ struct TagRegion {
 /// Returns the limits (as in TagRegion) without what is too near to cells that are not known.
 Eigen::Vector4f LimitsWithin(const TagRegion& region, const BlurredPattern& pattern);
 
-/// Takes the pixels near the edges between black and white, and every eighth of the others.
+/// Takes the pixels near the edges between black and white, and every eighth of the others; or
+/// draws `samples` and `flat_samples` of them.
 void ChoosePixels(const TagRegion& region, const BlurredPattern& pattern, const LensMap& lens,
                   const Image& image, FacePixels& pixels);
 
