@@ -23,7 +23,7 @@ using simulation::LoopResult;
 using simulation::Scenario;
 
 constexpr double kSeconds = 20.0, kNever = 40.0;
-constexpr double kChecks_s[] = {1.5, 3.0, 6.0, 12.0, kSeconds};
+constexpr double kChecks_s[] = {0.5, 1.0, 1.5, 2.0, 3.0, 4.5, 6.0, 9.0, 13.0, kSeconds};
 constexpr double kPortForce = 4.0;  // of EI / L^2: the library's largest weight and bends
 constexpr double kCertain = 0.95, kNotThere = 0.5;
 
@@ -138,20 +138,23 @@ double SecondsByOne(const Begun& begun, const diagnosis::NextMotion& motion) {
 /// By a plan, and by a new one wherever a check leaves a doubt, as `simulate --diagnose`.
 double SecondsByPlans(const Begun& begun, diagnosis::NextMotion plan,
                       const diagnosis::MotionLimits& limits) {
-  Recording all = begun.first.recording;
-  int round = 0;
+  Recording before = begun.first.recording;  // of the plan
+  int round = 1;
   Eigen::Vector3d p_RW = begun.first.updates.back().p_RW;
   double before_s = 0.0;
   for (const double seconds : kChecks_s) {
-    const LoopResult run = Moved(begun, plan, p_RW, ++round, seconds - before_s);
-    before_s = seconds;
-    p_RW = run.updates.back().p_RW;
-    all = Join({&all, &run.recording});
+    const LoopResult run = Moved(begun, plan, p_RW, round, seconds - before_s);
+    const Recording all = Join({&before, &run.recording});
     const auto answer = diagnosis::Diagnose(
         all, "all", {.without = {}, .discover = false, .measure_gain = false, .plan = limits});
     if (IsCertain(begun, answer)) return seconds;
     const auto& next = answer.plan;
-    if (next && next->places_m.size() > 1) plan = *next;
+    if (!next || next->places_m.size() < 2) continue;  // the same motion goes on
+    plan = *next;
+    before = all;
+    before_s = seconds;
+    p_RW = run.updates.back().p_RW;
+    ++round;
   }
   return kNever;
 }

@@ -23,7 +23,7 @@ class BlockBuilder {
     if (count == 0) return sums;
     const auto X = rows_.X.middleRows(first, count);
     const Eigen::VectorXd z = rows_.e.segment(first, count) + X * theta_;
-    sums.H.topLeftCorner(P, P).noalias() = X.transpose() * X;
+    sums.H.topLeftCorner(P, P).selfadjointView<Eigen::Upper>().rankUpdate(X.transpose());
     sums.g.head(P).noalias() = X.transpose() * z;
     sums.c = z.squaredNorm();
     sums.rows = count;

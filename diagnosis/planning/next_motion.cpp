@@ -20,11 +20,15 @@ namespace {
 
 using Rng = std::mt19937_64;
 constexpr double kRate_hz = 12.5;
-constexpr int kBlocks = 10;  // of a motion's time: how finely its end is found
+constexpr double kBlock_s = 0.5;  // how finely a motion's end is found,
+constexpr int kMostBlocks = 60;   // of long motions less finely
+// Parts of a motion's time at which its log odds count: a motion that begins slowly is no good one.
+constexpr double kOnTheWay[] = {0.075, 0.25, 1.0};
 constexpr int kRandom = 40, kImprovements = 60;
 // The model in which a motion is imagined is not quite the instrument: so much more is asked for.
 constexpr double kMargin = 2.0;  // in log odds
 const double kCertainLogOdds = std::log(kCertain / (1.0 - kCertain));
+const double kEnough = kCertainLogOdds + kMargin;
 constexpr double kWeightCosts = 1.3;                      // in time: a person has to hang it
 constexpr double kSmallWeight = 0.4, kLargeWeight = 1.2;  // of EI / L^2
 constexpr double kMostWeight_N = 6.0;
@@ -41,18 +45,21 @@ struct Told {
   std::optional<double> certain_s;
   double log_odds = -1e300;  ///< of the least sure rival, at the end
   std::size_t least_sure = 0;
+  double on_the_way = -1e300;  ///< sum of the log odds that count, each up to the certain ones
 
-  /// The earlier certain the better, then the surer at the end.
+  /// The earlier certain the better, then the surer on the way.
   bool BetterThan(const Told& other) const {
     if (possible != other.possible) return possible;
     if (certain_s.has_value() != other.certain_s.has_value()) return certain_s.has_value();
-    return certain_s ? *certain_s < *other.certain_s : log_odds > other.log_odds;
+    if (certain_s && *certain_s != *other.certain_s) return *certain_s < *other.certain_s;
+    return on_the_way > other.on_the_way;
   }
 };
 
 double Probability(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
-/// Places as parts of the workspace: depth in [0, 1], and two turns in the unit disc.
+/// Where the tip goes from its place at the recording's end, as parts of the workspace: depth in
+/// [0, 1], and two turns in the unit disc.
 struct Course {
   std::vector<Eigen::Vector3d> parts;
   double load_N = 0.0;
@@ -85,7 +92,8 @@ class Planner {
         seconds_(limits.seconds),
         space_(RecordedWorkspace(set_)),
         speed_m_s_(limits.wrist_speed_m_s.value_or(RecordedSpeed(set_))),
-        R_mean_(MeanShaftFrame(set_)) {
+        R_mean_(MeanShaftFrame(set_)),
+        p_RE_start_(StraightTip(set_.samples.back().p_RW, set_.p_RP, set_.instrument.length_m)) {
     space_.inserted_from_m = limits.inserted_from_m.value_or(space_.inserted_from_m);
     space_.inserted_to_m = limits.inserted_to_m.value_or(space_.inserted_to_m);
     space_.angle_rad = limits.angle_rad.value_or(space_.angle_rad);
@@ -124,21 +132,27 @@ class Planner {
     for (const ReplayedSample& sample : imagined.Samples())
       if (sample.solved.lateral_force_N > most_force_N) return told;
     told.possible = true;
-    const LinearProblem problem = MakeLinearProblem(imagined, {}, kBlocks);
+    const double seconds = double(samples.samples.size()) * samples.period_s;
+    const int blocks = std::clamp(int(std::lround(seconds / kBlock_s)), 1, kMostBlocks);
+    const LinearProblem problem = MakeLinearProblem(imagined, {}, blocks);
     std::vector<Eigen::MatrixXd> H;  // up to each block's end
     for (const NormalSums& block : problem.blocks) {
       H.emplace_back(weight_ * block.H);
       if (H.size() > 1) H.back() += H[H.size() - 2];
     }
-    const double seconds = double(samples.samples.size()) * samples.period_s;
     const auto least = rivals_.LeastSureWith(H.back());
     told.log_odds = least.log_odds;
     told.least_sure = least.rival;
-    if (told.log_odds < kCertainLogOdds + kMargin) return told;
+    told.on_the_way = 0.0;
+    for (const double part : kOnTheWay) {
+      const auto block = std::size_t(std::max(0.0, std::ceil(part * double(H.size())) - 1.0));
+      told.on_the_way += std::min(rivals_.LeastSureWith(H[block]).log_odds, kEnough);
+    }
+    if (told.log_odds < kEnough) return told;
     std::size_t low = 0, high = H.size() - 1;
     while (low < high) {
       const std::size_t middle = (low + high) / 2;
-      const bool enough = rivals_.LeastSureWith(H[middle]).log_odds >= kCertainLogOdds + kMargin;
+      const bool enough = rivals_.LeastSureWith(H[middle]).log_odds >= kEnough;
       (enough ? high : low) = enough ? middle : middle + 1;
     }
     told.certain_s = seconds * double(high + 1) / double(H.size());
@@ -146,7 +160,7 @@ class Planner {
   }
 
   TipCourse CourseOf(const Course& course) const {
-    std::vector<Eigen::Vector3d> places;
+    std::vector<Eigen::Vector3d> places{p_RE_start_};
     for (const Eigen::Vector3d& part : course.parts) {
       const double inserted =
           space_.inserted_from_m + part.x() * (space_.inserted_to_m - space_.inserted_from_m);
@@ -166,7 +180,7 @@ class Planner {
   }
 
   Course RandomCourse(Rng& rng, double load_N) const {
-    Course course{{RandomPart(rng), RandomPart(rng)}, load_N};
+    Course course{{RandomPart(rng)}, load_N};
     Fill(course, rng);
     return course;
   }
@@ -174,7 +188,7 @@ class Planner {
   /// Adds places until the time is over.
   void Fill(Course& course, Rng& rng) const {
     while (CourseOf(course).Seconds() < seconds_) course.parts.push_back(RandomPart(rng));
-    while (course.parts.size() > 2) {
+    while (course.parts.size() > 1) {
       Course shorter = course;
       shorter.parts.pop_back();
       if (CourseOf(shorter).Seconds() < seconds_) break;
@@ -215,6 +229,7 @@ class Planner {
   Workspace space_;
   double speed_m_s_, most_force_N_ = 0.0;
   Eigen::Matrix3d R_mean_;
+  Eigen::Vector3d p_RE_start_;
   std::vector<double> weights_N_;
 };
 

@@ -55,6 +55,11 @@ double RecordedSpeed(const SampleSet& recorded) {
   return *high;
 }
 
+Eigen::Vector3d StraightTip(const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_RP,
+                            double length_m) {
+  return p_RW + length_m * (p_RP - p_RW).normalized();
+}
+
 TipCourse::TipCourse(std::vector<Eigen::Vector3d> places, const Eigen::Vector3d& p_RP,
                      double length_m, double most_speed_m_s)
     : places_(std::move(places)), p_RP_(p_RP), length_m_(length_m) {

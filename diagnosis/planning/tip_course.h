@@ -20,6 +20,11 @@ Workspace RecordedWorkspace(const SampleSet& recorded);
 /// Returns the highest speed (m/s) of the recorded wrist, but for one sample in twenty.
 double RecordedSpeed(const SampleSet& recorded);
 
+/// Returns where the tip of a straight shaft (`length_m`) from the wrist at `p_RW` through the port
+/// `p_RP` is (m, in R).
+Eigen::Vector3d StraightTip(const Eigen::Vector3d& p_RW, const Eigen::Vector3d& p_RP,
+                            double length_m);
+
 /// Straight lines of the tip, each from the end of the last, at a constant speed.
 class TipCourse {
  public:

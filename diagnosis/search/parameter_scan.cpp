@@ -40,6 +40,19 @@ Eigen::MatrixXd ByInputs(const Replay& replay, const WhitenedRows& rows,
   return by_inputs;
 }
 
+/// The lower triangle of X^T X; stretches of rows in parallel.
+Eigen::MatrixXd Squares(const Eigen::MatrixXd& X) {
+  constexpr Eigen::Index kParts = 8;
+  std::vector<Eigen::MatrixXd> parts(kParts, Eigen::MatrixXd::Zero(X.cols(), X.cols()));
+  tbb::parallel_for(Eigen::Index{0}, kParts, [&](Eigen::Index part) {
+    const Eigen::Index from = X.rows() * part / kParts, to = X.rows() * (part + 1) / kParts;
+    parts[std::size_t(part)].selfadjointView<Eigen::Lower>().rankUpdate(
+        X.middleRows(from, to - from).transpose());
+  });
+  for (std::size_t part = 1; part < parts.size(); ++part) parts[0] += parts[part];
+  return parts[0];
+}
+
 /// The products of each sample's rows, a column a sample: what a shape, which is one number a
 /// sample, needs of them.
 struct SampleProducts {
@@ -53,14 +66,14 @@ struct SampleProducts {
     with_X.resize(inputs * X.cols(), n);
     with_self.resize(inputs * inputs, n);
     with_left.resize(inputs, n);
-    for (Eigen::Index k = 0; k < n; ++k) {
+    tbb::parallel_for(Eigen::Index{0}, n, [&](Eigen::Index k) {
       const auto at = static_cast<std::size_t>(k);
       const Eigen::MatrixXd b = B.middleRows(rows.first_row[at], rows.Rows(at));
       const auto x = X.middleRows(rows.first_row[at], rows.Rows(at));
       with_X.col(k) = (b.transpose() * x).reshaped();
       with_self.col(k) = (b.transpose() * b).reshaped();
       with_left.col(k) = b.transpose() * left.segment(rows.first_row[at], rows.Rows(at));
-    }
+    });
   }
 };
 
@@ -112,7 +125,7 @@ double BestScannedValue(const Replay& replay, int block) {
   Eigen::VectorXd sd = replay.Layout().Tolerances();
   sd.segment(own.first, own.size).setZero();
   const Eigen::MatrixXd X = rows.X * sd.asDiagonal();
-  Eigen::MatrixXd M = X.transpose() * X;
+  Eigen::MatrixXd M = Squares(X);
   M.diagonal().array() += 1.0;
   const Llt llt(M);
   const Eigen::VectorXd z = rows.e + rows.X * replay.Theta();

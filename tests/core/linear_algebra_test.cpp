@@ -51,6 +51,18 @@ TYPED_TEST(LinearAlgebra, Llt) {
   EXPECT_FALSE(Llt(this->A + this->A.transpose() - 3.0 * this->I).Succeeded());
 }
 
+TEST(LargeLlt, TheInverseOfSeveralBlocksIsOne) {
+  for (const int n : {1, 31, 32, 33, 100}) {
+    const Eigen::MatrixXd B = Eigen::MatrixXd::NullaryExpr(
+        n, n,
+        [](Eigen::Index i, Eigen::Index j) { return std::sin(7.0 * double(i * j) + double(i)); });
+    const Eigen::MatrixXd A = B * B.transpose() + Eigen::MatrixXd::Identity(n, n);
+    const Eigen::MatrixXd inverse = Llt(A).Inverse();
+    EXPECT_LT((A * inverse - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-10) << n;
+    EXPECT_EQ((inverse - inverse.transpose()).norm(), 0.0) << n;
+  }
+}
+
 TYPED_TEST(LinearAlgebra, Lu) {
   const Lu lu(this->A);
   EXPECT_LT((this->A * lu.Solve(this->b) - this->b).norm(), 1e-12);

@@ -95,8 +95,11 @@ TEST(PlanNextMotion, KeepsTheLimits) {
   const TipCourse course(plan.places_m, recorded.p_RP, recorded.instrument.length_m, 0.06);
   EXPECT_LE(plan.speed_m_s, 0.06);
   const Vector3d axis = MeanShaftFrame(recorded).col(0);
-  for (const Vector3d& place : plan.places_m) {
-    const Vector3d to_tip = place - recorded.p_RP;
+  const Vector3d end =
+      StraightTip(recorded.samples.back().p_RW, recorded.p_RP, recorded.instrument.length_m);
+  EXPECT_NEAR((plan.places_m.front() - end).norm(), 0.0, 1e-12);  // where the recording ended
+  for (std::size_t i = 1; i < plan.places_m.size(); ++i) {
+    const Vector3d to_tip = plan.places_m[i] - recorded.p_RP;
     EXPECT_LE(to_tip.norm(), 0.26 + 1e-9);
     EXPECT_LE(std::acos(to_tip.normalized().dot(axis)), 0.2 + 1e-9);
   }
