@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "arms/diagnose/problem.h"
+#include "arms/search/problem.h"
 
 namespace flextip::arms {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "arms/diagnose/diagnose.h"
 #include "arms/diagnose/heldout.h"
-#include "arms/diagnose/noise.h"
 #include "arms/replay/replay.h"
+#include "arms/search/noise.h"
 
 namespace flextip::arms {
 

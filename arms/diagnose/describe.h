@@ -5,7 +5,7 @@
 
 #include "arms/diagnose/diagnose.h"
 #include "arms/diagnose/heldout.h"
-#include "arms/diagnose/search.h"
+#include "arms/search/search.h"
 
 namespace flextip::arms {
 

@@ -9,9 +9,10 @@
 
 #include "arms/diagnose/describe.h"
 #include "arms/diagnose/heldout.h"
-#include "arms/diagnose/nuisances.h"
-#include "arms/diagnose/search.h"
 #include "arms/effects/effects.h"
+#include "arms/search/adequacy.h"
+#include "arms/search/nuisances.h"
+#include "arms/search/search.h"
 #include "core/check.h"
 #include "core/error.h"
 
@@ -22,9 +23,7 @@ using diagnosis::Verdict;
 
 constexpr int kBags = 8;
 constexpr std::size_t kLeaders = 30;
-constexpr double kInadequate = 4.0;  // chi-squared per measurement
-constexpr double kExplains = 0.4;    // of the base's misfit, what a known answer must take away
-constexpr double kKnown = 0.05;      // probability left to known answers that do not
+constexpr double kKnown = 0.05;  // probability left to known answers that do not explain it
 
 void RequireOneArm(const std::vector<ArmData>& recordings) {
   const Arm& first = recordings.front().arm;
@@ -99,33 +98,23 @@ std::vector<double> BaggedProbabilities(const Found& found, const Layout& layout
   return p;
 }
 
-/// Squared residuals in stated noise, of kept rows.
-struct Misfit {
-  double squares = 0.0, count = 0.0;
-  double PerMeasurement() const { return squares / std::max(1.0, count); }
-};
-Misfit MisfitOf(const Replay& replay, const Noise& noise) {
-  Misfit misfit;
-  const Arm& arm = replay.GetLayout().Recordings().front().arm;
-  for (std::size_t i = 0; i < noise.size(); ++i) {
-    const Channel& channel = replay.Channels()[i];
-    // Efforts of unknown masses are never as quiet as their noise: friction has no simple law.
-    if (channel.kind == Kind::kTorque && arm.links.empty()) continue;
-    for (Eigen::Index k = 0; k < channel.Rows(); ++k)
-      for (Eigen::Index c = 0; c < channel.Components(); ++c) {
-        if (!noise[i].keep(k, c)) continue;
-        misfit.squares += std::pow(channel.residual(k, c) / noise[i].floor[c], 2);
-        misfit.count += 1.0;
-      }
-  }
-  return misfit;
+/// From the best answer to where all effects of the catalogue together would lead, by the
+/// derivatives there.
+Eigen::VectorXd StepToAll(const Replay& replay, const Found& found, const Basis& basis,
+                          const SearchOptions& options) {
+  const Layout& layout = replay.GetLayout();
+  diagnosis::Hypothesis all;
+  for (int b = 0; b < layout.EffectCount(); ++b) all.effects.push_back(b);
+  const Problem problem = MakeProblem(replay, found.noise, basis, found.sizes, options.parts);
+  const diagnosis::Evidence evidence(problem.total, layout.Prior(), found.generic_sd,
+                                     {.scales = {0.3, 3.0}, .unknown_sd = {}});
+  const diagnosis::WeighedHypothesis weighed{all, 0.0, std::vector<double>(all.effects.size(), 3.0),
+                                             0.0};
+  return evidence.Mode(weighed, evidence.Covariance(weighed)).head(layout.Size()) - replay.Theta();
 }
 
-/// Where nothing known explains much of a misfit that is far beyond the noise, it is unknown.
-void SayUnknownWhereItIs(const Misfit& base, const Misfit& best,
-                         std::map<Verdict, double>& probability) {
-  if (best.PerMeasurement() < kInadequate || best.squares < (1.0 - kExplains) * base.squares)
-    return;
+/// Leaves little to known answers.
+void SayUnknown(std::map<Verdict, double>& probability) {
   double& unknown = probability[{"unknown"}];
   const double known = 1.0 - unknown;
   if (known <= kKnown) return;
@@ -171,7 +160,11 @@ ArmResult Diagnose(const std::vector<ArmData>& recordings, const ArmOptions& opt
 
   ArmResult result;
   const auto p = BaggedProbabilities(found, layout, search_options);
-  const Misfit best = MisfitOf(extended, found.noise), of_base = MisfitOf(base, found.noise);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(layout.Size());
+  const Misfit best =
+      MisfitOf(extended, found.noise, basis, StepToAll(extended, found, basis, search_options));
+  const Misfit of_base = MisfitOf(base, found.noise, basis, none);
+  const bool is_unknown = IsUnknown(of_base, best);
   const auto fill = [&](int only, diagnosis::DiagnosisResult& answer) {
     std::map<Verdict, double> probability{{{"none"}, 0.0}, {{"unknown"}, 0.0}}, evidence;
     for (std::size_t i = 0; i < found.scored.size(); ++i) {
@@ -179,7 +172,7 @@ ArmResult Diagnose(const std::vector<ArmData>& recordings, const ArmOptions& opt
       probability[verdict] += p[i];
       evidence.try_emplace(verdict, found.scored[i].weighed.log_evidence);
     }
-    SayUnknownWhereItIs(of_base, best, probability);
+    if (is_unknown) SayUnknown(probability);
     FillProbabilities(probability, evidence, answer);
   };
   fill(-1, result.answer);

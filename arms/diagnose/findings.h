@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "arms/diagnose/search.h"
+#include "arms/search/search.h"
 #include "diagnosis/model/effect.h"
 
 namespace flextip::arms {

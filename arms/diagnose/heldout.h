@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "arms/diagnose/diagnose.h"
-#include "arms/diagnose/search.h"
+#include "arms/search/search.h"
 
 namespace flextip::arms {
 

@@ -4,7 +4,7 @@
 
 #include "arms/diagnose/curves.h"
 #include "arms/diagnose/heldout.h"
-#include "arms/diagnose/nuisances.h"
+#include "arms/search/nuisances.h"
 
 namespace flextip::arms {
 namespace {

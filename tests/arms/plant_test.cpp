@@ -24,8 +24,8 @@ using testing::Not;
 Eigen::Vector3d V(double a, double b, double c) { return {a, b, c}; }
 
 ArmResult DiagnosisOf(const ArmFaults& faults, const ArmSensors& sensors,
-                      const ArmMotion& motion = {}) {
-  return Diagnose({ArmData(RecordArm(SmallArm(), faults, sensors, motion), "plant")});
+                      const ArmMotion& motion = {}, const ArmOptions& options = {}) {
+  return Diagnose({ArmData(RecordArm(SmallArm(), faults, sensors, motion), "plant")}, options);
 }
 
 const ArmSensors kSeen{.command = false, .encoders = true, .seen = true};
@@ -129,6 +129,15 @@ TEST(ArmPlant, PayloadIsFoundWithItsPlace) {
     EXPECT_NEAR(Value(result, "payload", "mass_kg"), 0.2, 0.01);
     EXPECT_EQ(Value(result, "payload", "link"), 3.0);
   }
+}
+
+// A known effect takes part of each up, and leaves a function of the joints that no other has.
+TEST(ArmPlant, WhatTheCatalogueLacksIsUnknown) {
+  const ArmFaults offset{.encoder_offset = V(0.0, 0.02, 0.0)}, late{.command_delay_s = 0.12};
+  EXPECT_THAT(DiagnosisOf(offset, kSeen, {}, {.without = {"joint_offset"}}).answer.verdict,
+              ElementsAre("unknown"));
+  EXPECT_THAT(DiagnosisOf(late, kCommand, {}, {.without = {"command_latency"}}).answer.verdict,
+              ElementsAre("unknown"));
 }
 
 TEST(ArmPlant, LateCommandsAreFound) {

@@ -37,6 +37,13 @@ TEST_F(RealArms, ServoLagAndDroopAreFoundWhereEffortsAreThere) {
   EXPECT_LT(result.answer.extended.heldout_rms.at("joints0_q2_rad"), 0.15e-3);
 }
 
+// Its offsets drift, and what is left is far beyond the noise: that alone makes it no unknown.
+TEST_F(RealArms, AWristWhoseOffsetsDriftIsStillNamed) {
+  const ArmResult result = Diagnose({Read("seen_joints_wrist_one_joint_c")});
+  EXPECT_THAT(result.answer.verdict, Contains("joint_offset"));
+  EXPECT_THAT(result.answer.verdict, Contains("joint_backlash"));
+}
+
 /// Rows of a part of the recording.
 Recording PartOf(Recording recording, double from, double to) {
   const auto cut = [&](auto& samples) {

@@ -1,12 +1,12 @@
-#include "arms/diagnose/search.h"
+#include "arms/search/search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
 
-#include "arms/diagnose/nuisances.h"
-#include "arms/diagnose/windows.h"
+#include "arms/search/nuisances.h"
+#include "arms/search/windows.h"
 
 namespace flextip::arms {
 namespace {

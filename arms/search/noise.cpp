@@ -1,4 +1,4 @@
-#include "arms/diagnose/noise.h"
+#include "arms/search/noise.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "arms/diagnose/nuisances.h"
+#include "arms/search/nuisances.h"
 
 #include <vector>
 

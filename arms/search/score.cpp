@@ -1,4 +1,4 @@
-#include "arms/diagnose/score.h"
+#include "arms/search/score.h"
 
 #include <tbb/parallel_for.h>
 

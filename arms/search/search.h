@@ -5,10 +5,10 @@
 #include <map>
 #include <vector>
 
-#include "arms/diagnose/noise.h"
-#include "arms/diagnose/problem.h"
-#include "arms/diagnose/score.h"
 #include "arms/replay/replay.h"
+#include "arms/search/noise.h"
+#include "arms/search/problem.h"
+#include "arms/search/score.h"
 
 namespace flextip::arms {
 

@@ -1,4 +1,4 @@
-#include "arms/diagnose/problem.h"
+#include "arms/search/problem.h"
 
 #include <tbb/parallel_for.h>
 
@@ -22,7 +22,7 @@ std::vector<int> ComponentsByKind(const Replay& replay) {
 Basis::Basis(const Replay& replay) {
   const auto& recordings = replay.GetLayout().Recordings();
   const int n = recordings.front().Size();
-  functions_ = 3 * n + 1;
+  functions_ = 3 * n + 2;
   for (const Channel& channel : replay.Channels()) {
     const ArmData& data = recordings[channel.recording];
     const bool followed = channel.kind == Kind::kFollowed;
@@ -31,6 +31,8 @@ Basis::Basis(const Replay& replay) {
     const double end = std::max(1e-9, channel.t_s[channel.Rows() - 1] - channel.t_s[0]);
     for (Eigen::Index k = 0; k < channel.Rows(); ++k) {
       const Where& where = channel.where[k];
+      // Where commands and efforts are off by a constant, the servo itself is.
+      values(k, 3 * n + 1) = channel.kind == Kind::kSeen || channel.kind == Kind::kPose ? 1.0 : 0.0;
       values(k, 0) = std::sqrt(12.0) * ((channel.t_s[k] - channel.t_s[0]) / end - 0.5);
       for (int i = 0; i < n; ++i) {
         values(k, 1 + i) = At(q, where)[i];

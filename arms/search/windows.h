@@ -4,8 +4,8 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "arms/diagnose/noise.h"
 #include "arms/replay/replay.h"
+#include "arms/search/noise.h"
 
 namespace flextip::arms {
 

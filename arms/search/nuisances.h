@@ -3,8 +3,8 @@
 
 #include <Eigen/Dense>
 
-#include "arms/diagnose/noise.h"
 #include "arms/replay/replay.h"
+#include "arms/search/noise.h"
 
 namespace flextip::arms {
 

@@ -1,4 +1,4 @@
-#include "arms/diagnose/windows.h"
+#include "arms/search/windows.h"
 
 #include <algorithm>
 

@@ -5,8 +5,8 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "arms/diagnose/noise.h"
 #include "arms/replay/replay.h"
+#include "arms/search/noise.h"
 #include "diagnosis/evidence/normal_sums.h"
 
 namespace flextip::arms {
@@ -19,6 +19,8 @@ class Basis {
   /// Rows x functions, of channel `i`.
   const Eigen::MatrixXd& Of(std::size_t i) const { return values_[i]; }
   int Functions() const { return functions_; }
+  /// The same without the function of time.
+  auto OfJoints(std::size_t i) const { return values_[i].rightCols(functions_ - 1); }
 
  private:
   std::vector<Eigen::MatrixXd> values_;
