@@ -55,7 +55,7 @@ std::string Sentence(const NextMotion& plan) {
 std::string MotionYaml(const NextMotion& plan) {
   FLEXTIP_CHECK(!plan.places_m.empty(), "a motion has places");
   std::string text = fmt::format("# {}\n", Sentence(plan));
-  text += "# The tip goes to the first place from wherever it is.\n";
+  text += "# The tip goes from wherever it is to where the recording ended, then on.\n";
   text += fmt::format("frame: R\nspeed_m_s: {}\nsettle_s: 0.5\nwaypoints:\n",
                       YamlNumber(plan.speed_m_s));
   for (const Eigen::Vector3d& p : plan.places_m)
