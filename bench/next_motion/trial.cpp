@@ -135,7 +135,7 @@ double SecondsByOne(const Begun& begun, const diagnosis::NextMotion& motion) {
   return kNever;
 }
 
-/// By a plan, and by a new one wherever a check leaves a doubt, as `simulate --diagnose`.
+/// By a plan to its end, and by a new one where that leaves a doubt, as `simulate --diagnose`.
 double SecondsByPlans(const Begun& begun, diagnosis::NextMotion plan,
                       const diagnosis::MotionLimits& limits) {
   Recording before = begun.first.recording;  // of the plan
@@ -149,7 +149,8 @@ double SecondsByPlans(const Begun& begun, diagnosis::NextMotion plan,
         all, "all", {.without = {}, .discover = false, .measure_gain = false, .plan = limits});
     if (IsCertain(begun, answer)) return seconds;
     const auto& next = answer.plan;
-    if (!next || next->places_m.size() < 2) continue;  // the same motion goes on
+    const bool is_over = seconds - before_s >= plan.seconds;
+    if (!is_over || !next || next->places_m.size() < 2) continue;  // the same motion goes on
     plan = *next;
     before = all;
     before_s = seconds;
@@ -174,7 +175,9 @@ TrialRecord RunTrial(const std::filesystem::path& file, std::uint64_t seed) {
     const Instrument& instrument = begun.scenario.loop.base.instrument;
     const double unit_N = instrument.bending_stiffness_Nm2 / std::pow(instrument.length_m, 2);
     const auto limits = simulation::LimitsOf(
-        begun.scenario, {.seconds = kSeconds, .port_force_N = kPortForce * unit_N});
+        begun.scenario, {.seconds = kSeconds,
+                         .wrist_speed_m_s = begun.scenario.loop.servo.max_speed_m_s,
+                         .port_force_N = kPortForce * unit_N});
     const auto told = diagnosis::Diagnose(
         begun.first.recording, "first",
         {.without = {}, .discover = false, .measure_gain = false, .plan = limits});

@@ -1,7 +1,10 @@
 #include "diagnosis/discovery/certify.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <random>
 
@@ -119,13 +122,16 @@ double SamplesAsOne(const ResidualProblem& problem, const Term& term,
 double Stability(const ResidualProblem& problem, const std::vector<Candidate>& leaders,
                  const StatesByTarget& states, int bags) {
   std::mt19937_64 rng(5);
-  int stable = 0;
   const std::size_t count = std::min(leaders.size(), kRivals);
+  std::vector<std::vector<double>> weights;
   for (int bag = 0; bag < bags; ++bag) {
-    std::vector<double> weight(static_cast<std::size_t>(problem.Blocks()), 0.0);
+    auto& weight = weights.emplace_back(static_cast<std::size_t>(problem.Blocks()), 0.0);
     std::uniform_int_distribution<std::size_t> draw(0, weight.size() - 1);
     for (std::size_t i = 0; i < weight.size(); ++i) weight[draw(rng)] += 1.0;
-    const WeightedProblem weighted(problem, weight);
+  }
+  std::atomic<int> stable = 0;
+  tbb::parallel_for(std::size_t{0}, weights.size(), [&](std::size_t bag) {
+    const WeightedProblem weighted(problem, weights[bag]);
     std::vector<Candidate> again(leaders.begin(), leaders.begin() + std::ptrdiff_t(count));
     double best = 0.0;
     for (Candidate& one : again) {
@@ -141,7 +147,7 @@ double Stability(const ResidualProblem& problem, const std::vector<Candidate>& l
       if (again[i].criterion > again[first].criterion) first = i;
     }
     stable += again[first].criterion > 0.0 && again[first].term.target == leaders[0].term.target;
-  }
+  });
   return double(stable) / double(bags);
 }
 

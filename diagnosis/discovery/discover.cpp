@@ -126,15 +126,19 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
       free(best.term);  // within tolerance: there, and no matter
       continue;
     }
-    const double as_one = SamplesAsOne(problem, best.term, states);
-    if (Criterion(best, variance * as_one, all.samples) < options.worth) break;
-    const double false_discovery = CertifyByHalves(problem, states, options.waves_only);
-    if (false_discovery > options.most_false) break;
-    const double stability = Stability(problem, candidates, states, options.bags);
+    FoundTerm found{.at_sd = best.at_sd};
+    if (options.certify) {
+      const double as_one = SamplesAsOne(problem, best.term, states);
+      if (Criterion(best, variance * as_one, all.samples) < options.worth) break;
+      found.false_discovery = CertifyByHalves(problem, states, options.waves_only);
+      if (found.false_discovery > options.most_false) break;
+      found.stability = Stability(problem, candidates, states, options.bags);
+      found.rivals = RivalsOf(candidates, options.alike);
+    }
     DropOffset(all, states, variance, best);
     search.complexity += best.gain / variance - best.criterion;
-    search.terms.push_back(
-        {best.term, best.at_sd, false_discovery, stability, RivalsOf(candidates, options.alike)});
+    found.term = best.term;
+    search.terms.push_back(std::move(found));
     free(best.term);
   }
   return search;

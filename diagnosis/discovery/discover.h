@@ -21,6 +21,7 @@ struct DiscoverOptions {
   bool waves_only = false;        ///< periodic terms alone
   double alike = 9.0;             ///< twice the log odds within which forms cannot be told apart
   int bags = 8;
+  bool certify = true;  ///< off: all terms that are worth their numbers, whether they hold or not
 };
 
 struct FoundTerm {

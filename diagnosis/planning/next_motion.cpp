@@ -20,8 +20,9 @@ namespace {
 
 using Rng = std::mt19937_64;
 constexpr double kRate_hz = 12.5;
-constexpr double kBlock_s = 0.5;  // how finely a motion's end is found,
-constexpr int kMostBlocks = 60;   // of long motions less finely
+constexpr double kSettle_s = 0.25;  // after a weight was hung, which recordings leave out
+constexpr double kBlock_s = 0.5;    // how finely a motion's end is found,
+constexpr int kMostBlocks = 60;     // of long motions less finely
 // Parts of a motion's time at which its log odds count: a motion that begins slowly is no good one.
 constexpr double kOnTheWay[] = {0.075, 0.25, 1.0};
 constexpr int kRandom = 40, kImprovements = 60;
@@ -125,6 +126,8 @@ class Planner {
   /// What the samples of an imagined motion tell.
   Told Tell(SampleSet samples, double most_force_N) const {
     Told told;
+    std::erase_if(samples.samples, [](const auto& sample) { return sample.t_s < kSettle_s; });
+    if (samples.samples.empty()) return told;
     if (!MeasureByModel(samples, layout_, replay_.Theta())) return told;
     Replay imagined(samples, layout_);
     imagined.SetNoiseScale(replay_.NoiseScales());
@@ -155,7 +158,7 @@ class Planner {
       const bool enough = rivals_.LeastSureWith(H[middle]).log_odds >= kEnough;
       (enough ? high : low) = enough ? middle : middle + 1;
     }
-    told.certain_s = seconds * double(high + 1) / double(H.size());
+    told.certain_s = kSettle_s + seconds * double(high + 1) / double(H.size());
     return told;
   }
 
