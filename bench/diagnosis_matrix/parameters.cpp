@@ -14,7 +14,8 @@ simulation::EffectParameters TruthNear(const hidden::HiddenRecording& hidden,
                                        const diagnosis::EffectFit& fit) {
   simulation::EffectParameters truth = TruthOf(hidden, fit.effect);
   truth.erase("turn");                // the label has none: not judged
-  if (fit.effect == "port_motion") {  // -a with phase + pi is the same motion
+  // -a with phase + pi is the same swing.
+  if (fit.effect == "port_motion" || fit.effect == "em_interference") {
     const auto& value = fit.parameters.at(0).value;
     auto& amplitude = truth["amplitude_m"];
     double product = 0.0;
