@@ -171,6 +171,16 @@ TEST(ShortRecordings, WithoutALoadTellNoStiffness) {
   }
 }
 
+// The port's real friction sticks as a bristle does: such a term is friction, not something
+// unknown.
+TEST(StrongFriction, IsNamedThoughItsFormIsAnother) {
+  hidden::HiddenOptions options{.effects = {"port_friction"}, .size = kStrong};
+  options.scene.family = hidden::MotionFamily::kHeldOut;
+  const DiagnosisResult result = Diagnose(hidden::MakeHidden(options, 1106347176).recording,
+                                          "friction", {.without = {}, .measure_gain = false});
+  EXPECT_EQ(result.verdict, Verdict{"port_friction"}) << Answers(result);
+}
+
 /// Of a form that the catalogue lacks one draw says little: two of these seven are called something
 /// else (111 em_distortion+shaft_load, 602 em_distortion).
 TEST(HiddenForms, MostTapersAreUnknown) {
