@@ -13,7 +13,7 @@ namespace {
 simulation::EffectParameters TruthNear(const hidden::HiddenRecording& hidden,
                                        const diagnosis::EffectFit& fit) {
   simulation::EffectParameters truth = TruthOf(hidden, fit.effect);
-  truth.erase("turn");                // the label has none: not judged
+  truth.erase("turn");  // the label has none: not judged
   // -a with phase + pi is the same swing.
   if (fit.effect == "port_motion" || fit.effect == "em_interference") {
     const auto& value = fit.parameters.at(0).value;

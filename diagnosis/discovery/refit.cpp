@@ -156,14 +156,17 @@ std::vector<TermName> NamesOf(const std::vector<Candidate>& rivals) {
 constexpr double kNoisier = 1.15;  // times the data sheets' noise: something fast may be in it
 constexpr double kBetter = 20.0;   // twice the log odds by which terms alone must beat the effects
 
-/// Whether a term is what a named effect says already: friction that comes with the way is that of
-/// a bristle (Dahl), which sticks.
-bool IsSaidBy(const Verdict& named, const TermSearch& search) {
+/// Whether a term is what one of `effects` says already: friction that comes with the way is that
+/// of a bristle (Dahl), which sticks.
+bool IsSaidBy(const ParameterLayout& layout, const std::vector<int>& effects,
+              const TermSearch& search) {
   return std::ranges::any_of(search.terms, [&](const FoundTerm& found) {
-    const bool sticks =
+    const bool is_hysteresis =
         found.term.shape == TermShape::kPlay || found.term.shape == TermShape::kSmoothPlay;
-    return sticks && found.term.target == TermTarget::kFriction &&
-           std::ranges::find(named, "port_friction") != named.end();
+    const int input = InfoOf(found.term.target).first_input;
+    return is_hysteresis && std::ranges::any_of(effects, [&](int b) {
+             return layout.Blocks()[b].effect->HysteresisInput() == input;
+           });
   });
 }
 
@@ -212,10 +215,9 @@ std::unique_ptr<TermModel> FindTerms(const Replay& base, Replay& best, const Sel
   const Replay* from = &best;
   if (!effects.empty()) {
     const Eigen::VectorXd none = sd({});
-    Verdict named;
-    for (const int b : effects) named.push_back(layout.Blocks()[b].effect->Name());
     const auto is_better = [&](const TermSearch& bare) {
-      return !bare.terms.empty() && !IsSaidBy(named, bare) && LogOdds(bare, search) > kBetter;
+      return !bare.terms.empty() && !IsSaidBy(layout, effects, bare) &&
+             LogOdds(bare, search) > kBetter;
     };
     // Terms that need not hold explain more than those that do, and are found in a third of the
     // time: mostly they say already that the effects are better.

@@ -123,6 +123,10 @@ class Effect {
     return theta;
   }
 
+  /// Returns the input that the effect moves by a hysteresis of the insertion depth, or -1: a term
+  /// without a name of that shape is the effect.
+  virtual int HysteresisInput() const { return -1; }
+
   /// Returns whether Apply needs the port's place in `Instant`.
   virtual bool NeedsPortPlace() const { return false; }
   /// Returns the input by which the first parameter delays a sensor (kEmDelay, kCameraDelay), or

@@ -34,6 +34,7 @@ class PortFriction : public DirectEffect {
     change.Linear(0, sample_input::kPortFriction, ratio / coefficient);
   }
   bool NeedsPortPlace() const override { return true; }
+  int HysteresisInput() const override { return sample_input::kPortFriction; }
 
  protected:
   std::vector<Named> Names() const override { return {{"coefficient"}}; }
