@@ -48,11 +48,13 @@ struct Told {
   std::size_t least_sure = 0;
   double on_the_way = -1e300;  ///< sum of the log odds that count, each up to the certain ones
 
-  /// The earlier certain the better, then the surer on the way.
+  /// The earlier certain the better, of the same time the surer on the way; else the surer at the
+  /// end.
   bool BetterThan(const Told& other) const {
     if (possible != other.possible) return possible;
     if (certain_s.has_value() != other.certain_s.has_value()) return certain_s.has_value();
-    if (certain_s && *certain_s != *other.certain_s) return *certain_s < *other.certain_s;
+    if (!certain_s) return log_odds > other.log_odds;
+    if (*certain_s != *other.certain_s) return *certain_s < *other.certain_s;
     return on_the_way > other.on_the_way;
   }
 };
