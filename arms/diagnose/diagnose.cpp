@@ -98,21 +98,6 @@ std::vector<double> BaggedProbabilities(const Found& found, const Layout& layout
   return p;
 }
 
-/// From the best answer to where all effects of the catalogue together would lead, by the
-/// derivatives there.
-Eigen::VectorXd StepToAll(const Replay& replay, const Found& found, const Basis& basis,
-                          const SearchOptions& options) {
-  const Layout& layout = replay.GetLayout();
-  diagnosis::Hypothesis all;
-  for (int b = 0; b < layout.EffectCount(); ++b) all.effects.push_back(b);
-  const Problem problem = MakeProblem(replay, found.noise, basis, found.sizes, options.parts);
-  const diagnosis::Evidence evidence(problem.total, layout.Prior(), found.generic_sd,
-                                     {.scales = {0.3, 3.0}, .unknown_sd = {}});
-  const diagnosis::WeighedHypothesis weighed{all, 0.0, std::vector<double>(all.effects.size(), 3.0),
-                                             0.0};
-  return evidence.Mode(weighed, evidence.Covariance(weighed)).head(layout.Size()) - replay.Theta();
-}
-
 /// Leaves little to known answers.
 void SayUnknown(std::map<Verdict, double>& probability) {
   double& unknown = probability[{"unknown"}];
@@ -160,11 +145,9 @@ ArmResult Diagnose(const std::vector<ArmData>& recordings, const ArmOptions& opt
 
   ArmResult result;
   const auto p = BaggedProbabilities(found, layout, search_options);
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(layout.Size());
-  const Misfit best =
-      MisfitOf(extended, found.noise, basis, StepToAll(extended, found, basis, search_options));
-  const Misfit of_base = MisfitOf(base, found.noise, basis, none);
-  const bool is_unknown = IsUnknown(of_base, best);
+  const Misfit best = MisfitOf(extended, found.noise), of_base = MisfitOf(base, found.noise);
+  const bool is_unknown =
+      IsUnknown(of_base, best, SquaresOfAnotherForm(extended, found, basis, search_options));
   const auto fill = [&](int only, diagnosis::DiagnosisResult& answer) {
     std::map<Verdict, double> probability{{{"none"}, 0.0}, {{"unknown"}, 0.0}}, evidence;
     for (std::size_t i = 0; i < found.scored.size(); ++i) {

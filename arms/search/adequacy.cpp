@@ -43,35 +43,62 @@ double SmoothSquares(const Channel& channel, const ChannelNoise& noise,
   return std::max(0.0, squares);
 }
 
+/// From the best answer to where all effects of the catalogue together would lead.
+Eigen::VectorXd StepToAll(const Replay& replay, const Found& found, const Basis& basis,
+                          const SearchOptions& options) {
+  const Layout& layout = replay.GetLayout();
+  diagnosis::WeighedHypothesis all;
+  for (int b = 0; b < layout.EffectCount(); ++b) all.hypothesis.effects.push_back(b);
+  all.scales.assign(all.hypothesis.effects.size(), 3.0);
+  const Problem problem = MakeProblem(replay, found.noise, basis, found.sizes, options.parts);
+  const diagnosis::Evidence evidence(problem.total, layout.Prior(), found.generic_sd,
+                                     {.scales = {0.3, 3.0}, .unknown_sd = {}});
+  return evidence.Mode(all, evidence.Covariance(all)).head(layout.Size()) - replay.Theta();
+}
+
+bool Counts(const Channel& channel, const Replay& replay) {
+  return channel.kind != Kind::kTorque ||
+         !replay.GetLayout().Recordings().front().arm.links.empty();
+}
+
 }  // namespace
 
 double Misfit::PerMeasurement() const { return squares / std::max(1.0, count); }
 
-Misfit MisfitOf(const Replay& replay, const Noise& noise, const Basis& basis,
-                const Eigen::VectorXd& step) {
+Misfit MisfitOf(const Replay& replay, const Noise& noise) {
   Misfit misfit;
-  const auto& recordings = replay.GetLayout().Recordings();
-  misfit.recordings = int(recordings.size());
   for (std::size_t i = 0; i < noise.size(); ++i) {
     const Channel& channel = replay.Channels()[i];
-    if (channel.kind == Kind::kTorque && recordings.front().arm.links.empty()) continue;
-    for (Eigen::Index c = 0; c < channel.Components(); ++c) {
-      for (Eigen::Index k = 0; k < channel.Rows(); ++k) {
+    if (!Counts(channel, replay)) continue;
+    for (Eigen::Index k = 0; k < channel.Rows(); ++k)
+      for (Eigen::Index c = 0; c < channel.Components(); ++c) {
         if (!noise[i].keep(k, c)) continue;
         misfit.squares += std::pow(channel.residual(k, c) / noise[i].floor[c], 2);
         misfit.count += 1.0;
       }
-      misfit.smooth_squares += SmoothSquares(channel, noise[i], basis.OfJoints(i), step, c);
-    }
   }
   return misfit;
 }
 
-bool IsUnknown(const Misfit& base, const Misfit& best) {
+double SquaresOfAnotherForm(const Replay& replay, const Found& found, const Basis& basis,
+                            const SearchOptions& options) {
+  if (replay.GetLayout().Recordings().size() > 1) return 0.0;
+  const Eigen::VectorXd step = StepToAll(replay, found, basis, options);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < found.noise.size(); ++i) {
+    const Channel& channel = replay.Channels()[i];
+    if (!Counts(channel, replay)) continue;
+    for (Eigen::Index c = 0; c < channel.Components(); ++c)
+      squares += SmoothSquares(channel, found.noise[i], basis.OfJoints(i), step, c);
+  }
+  return squares;
+}
+
+bool IsUnknown(const Misfit& base, const Misfit& best, double squares_of_another_form) {
   const bool explains_little =
       best.PerMeasurement() >= kInadequate && best.squares >= (1.0 - kExplains) * base.squares;
-  const bool has_another_form = best.recordings == 1 && best.smooth_squares > kShows * best.count &&
-                                best.smooth_squares > kSmooth * kSmooth * base.squares;
+  const bool has_another_form = squares_of_another_form > kShows * best.count &&
+                                squares_of_another_form > kSmooth * kSmooth * base.squares;
   return explains_little || has_another_form;
 }
 

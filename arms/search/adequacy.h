@@ -4,6 +4,7 @@
 #include "arms/replay/replay.h"
 #include "arms/search/noise.h"
 #include "arms/search/problem.h"
+#include "arms/search/search.h"
 
 namespace flextip::arms {
 
@@ -11,20 +12,21 @@ namespace flextip::arms {
 /// friction has no simple law.
 struct Misfit {
   double squares = 0.0, count = 0.0;
-  double smooth_squares = 0.0;  ///< of these, what smooth functions of the joints take away
-  int recordings = 0;
 
   double PerMeasurement() const;
 };
+Misfit MisfitOf(const Replay& replay, const Noise& noise);
 
-/// Returns what the replay leaves. The smooth part is measured on stretches of time that its fit
-/// did not see (five, each left out in turn), so that slow noise and drifts are no part of it.
-Misfit MisfitOf(const Replay& replay, const Noise& noise, const Basis& basis,
-                const Eigen::VectorXd& step);
+/// Returns the squares, in stated noise, that smooth functions of the joints take away from what
+/// `replay`, at the best answer, would leave if all effects of the catalogue were free (by the
+/// derivatives there). Each of five stretches of time is predicted from the others, so that slow
+/// noise and drifts are no part of it. 0 for several recordings: what changes between them looks
+/// like that.
+double SquaresOfAnotherForm(const Replay& replay, const Found& found, const Basis& basis,
+                            const SearchOptions& options);
 
 /// Returns whether what the best known answer leaves is far beyond the noise and either much of
-/// what the base leaves, or a function of the joints that no known effect has. The second is asked
-/// of a single recording: several have changes between them, which look like that.
-bool IsUnknown(const Misfit& base, const Misfit& best);
+/// what the base leaves, or of a form that no known effect has.
+bool IsUnknown(const Misfit& base, const Misfit& best, double squares_of_another_form);
 
 }  // namespace flextip::arms

@@ -156,15 +156,16 @@ std::vector<TermName> NamesOf(const std::vector<Candidate>& rivals) {
 constexpr double kNoisier = 1.15;  // times the data sheets' noise: something fast may be in it
 constexpr double kBetter = 20.0;   // twice the log odds by which terms alone must beat the effects
 
-/// Whether a term is what one of `effects` says already: friction that comes with the way is that
-/// of a bristle (Dahl), which sticks.
+/// Whether a term is what one of `effects` says already: friction by a hysteresis of the depth is
+/// that of a bristle (Dahl), which sticks.
 bool IsSaidBy(const ParameterLayout& layout, const std::vector<int>& effects,
               const TermSearch& search) {
   return std::ranges::any_of(search.terms, [&](const FoundTerm& found) {
     const bool is_hysteresis =
         found.term.shape == TermShape::kPlay || found.term.shape == TermShape::kSmoothPlay;
     const int input = InfoOf(found.term.target).first_input;
-    return is_hysteresis && std::ranges::any_of(effects, [&](int b) {
+    return is_hysteresis && found.term.variable == TermVariable::kInsertionDepth &&
+           std::ranges::any_of(effects, [&](int b) {
              return layout.Blocks()[b].effect->HysteresisInput() == input;
            });
   });
@@ -216,14 +217,13 @@ std::unique_ptr<TermModel> FindTerms(const Replay& base, Replay& best, const Sel
   if (!effects.empty()) {
     const Eigen::VectorXd none = sd({});
     const auto is_better = [&](const TermSearch& bare) {
-      return !bare.terms.empty() && !IsSaidBy(layout, effects, bare) &&
-             LogOdds(bare, search) > kBetter;
+      return !bare.terms.empty() && LogOdds(bare, search) > kBetter;
     };
     // Terms that need not hold explain more than those that do, and are found in a third of the
     // time: mostly they say already that the effects are better.
     if (is_better(SearchTerms(bare_base, none, fast, {.certify = false}))) {
       const TermSearch bare = SearchTerms(bare_base, none, fast);
-      if (is_better(bare)) {
+      if (is_better(bare) && !IsSaidBy(layout, effects, bare)) {
         search = bare;
         effects.clear();
         from = &bare_base;
