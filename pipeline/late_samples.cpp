@@ -28,6 +28,14 @@ Place PlaceOn(const ShaftRodState& rod, double distance_from_tip_m) {
   return {at.p, at.t, at.dp.leftCols<3>(), at.dp.rightCols<3>(), at.dt.rightCols<3>()};
 }
 
+/// Returns the square of a change (N) beyond what its covariance (N^2) explains, direction by
+/// direction.
+double ChangeBeyondNoise(const Eigen::Vector3d& change_N, const Eigen::Matrix3d& covariance_N2) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance_N2);
+  const Eigen::Array3d along_N = (axes.eigenvectors().transpose() * change_N).array();
+  return (along_N.square() - axes.eigenvalues().array()).max(0.0).sum();
+}
+
 }  // namespace
 
 void LateSamples::VisitState(StateText& state) {
@@ -87,17 +95,20 @@ std::optional<LateSamples::TipBySensors> LateSamples::TipBySensorsAt(TimeNs t_ns
   return {};
 }
 
-/// A load that grows steadily is as far off after this step as the random walk says.
-void LateSamples::Learn(TimeNs t_ns, const ShaftModel& model) {
+/// A load that grows steadily is as far off after this step as the random walk says. Along the
+/// shaft it is hardly known: what the estimates differ by there is their own noise.
+void LateSamples::Learn(TimeNs t_ns, const ShaftModel& model,
+                        const Eigen::Matrix3d& force_covariance_N2) {
   constexpr double kStep_s = 0.2, kMemory = 0.8;
-  if (!model.force_known) return;
+  if (!model.force_known || !force_covariance_N2.allFinite()) return;
   const double seconds = load_ ? Seconds(t_ns - load_->t_ns) : 0.0;
   if (load_ && seconds < kStep_s) return;
   if (load_ && seconds < 3 * kStep_s) {
-    const double variance_s = (model.f_tip_N - load_->value).squaredNorm() / 3.0 / seconds;
-    drift_variance_N2_s_ = std::max(kMemory * drift_variance_N2_s_, variance_s);
+    const double change_N2 = ChangeBeyondNoise(model.f_tip_N - load_->value.f_tip_N,
+                                               force_covariance_N2 + load_->value.covariance_N2);
+    drift_variance_N2_s_ = std::max(kMemory * drift_variance_N2_s_, change_N2 / 3.0 / seconds);
   }
-  load_ = {t_ns, model.f_tip_N};
+  load_ = {t_ns, {model.f_tip_N, force_covariance_N2}};
 }
 
 /// To first order in the tissue: the force at the tip follows its way by the tissue's stiffness, as

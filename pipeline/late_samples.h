@@ -27,6 +27,17 @@ struct LateSampleOptions {
   double force_drift_units = 0.03;
 };
 
+/// A load on the tip with its covariance. In R.
+struct KnownLoad {
+  Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance_N2 = Eigen::Matrix3d::Zero();
+
+  void VisitState(StateText& state) {
+    state(f_tip_N);
+    state(covariance_N2);
+  }
+};
+
 /// Carries samples by the rod with the port, load and tissue that were estimated at the tip's time,
 /// joined by how far the other sensors saw the tip go. Fixed size, allocates nothing.
 class LateSamples {
@@ -56,8 +67,9 @@ class LateSamples {
   void NoteTipBySensors(TimeNs t_ns, const Eigen::Vector3d& p_RE,
                         const Eigen::Matrix3d& covariance_m2);
 
-  /// Learns from the load that was estimated at `t_ns` how much it wanders.
-  void Learn(TimeNs t_ns, const ShaftModel& model);
+  /// Learns from the load that was estimated at `t_ns`, with its covariance (N^2, in R), how much
+  /// it wanders beyond what the estimates do by themselves.
+  void Learn(TimeNs t_ns, const ShaftModel& model, const Eigen::Matrix3d& force_covariance_N2);
 
   /// Moves the samples of tip and em0 in `readings`, which stand in R, to the time of the wrist. A
   /// tip that is not there is the last one that was seen, carried on for `keep_s`. A tip of the
@@ -113,8 +125,8 @@ class LateSamples {
   std::optional<Sample<TipMeasurement>> tip_;  // seen last
   TimeNs tip_first_ns_ = 0;                    // the wrist's time at its first cycle
   Rods tip_rods_, em0_rods_;
-  std::optional<Sample<Eigen::Vector3d>> load_;  // what the wandering is learnt against (N)
-  double drift_variance_N2_s_ = 0.0;             // of a component, gained in a second
+  std::optional<Sample<KnownLoad>> load_;  // what the wandering is learnt against
+  double drift_variance_N2_s_ = 0.0;       // of a component, gained in a second
 };
 
 }  // namespace flextip

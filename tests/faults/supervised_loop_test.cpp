@@ -125,6 +125,30 @@ TEST(SupervisedLoop, OthersCarryATipThatIsCoveredFromItsFirstCycleOnWithoutAJump
   EXPECT_LT(LongestStep(guarded), 1.5 * LongestStep(healthy));
 }
 
+// The load's estimates differ along the shaft by their noise: the tip is carried on all the same.
+TEST(SupervisedLoop, ATipThatIsGoneForThreePicturesIsCarriedAlongItsPath) {
+  LoopSetup setup =
+      ReadScenario(std::string(FLEXTIP_SOURCE_DIR) + "/testdata/scenarios/chapter4_away.yaml").loop;
+  const LoopSetup press = PressBySight({});
+  setup.sensors = press.sensors;
+  setup.sensors.wrist->rate_hz = setup.sensors.tip->rate_hz = setup.update_rate_hz;
+  setup.path.mode = PathMode::kContinuous;
+  setup.path.speed_m_s = 0.015;
+  setup.plant_options = press.plant_options;
+  setup.controller.kind = ControllerKind::kRodTrack;
+  setup.supervision.kind = SupervisionKind::kFull;
+  setup.supervision.rate_hz = setup.update_rate_hz;
+  double most_m = 0.0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    setup.seed = seed;
+    setup.faults = {};
+    const double healthy_m = RunClosedLoop(setup, nullptr).max_deviation_m;
+    setup.faults = {{FaultKind::kDropped, FaultStream::kTip, 1.0, 0.1, 1.0}};
+    most_m = std::max(most_m, RunClosedLoop(setup, nullptr).max_deviation_m - healthy_m);
+  }
+  EXPECT_LT(most_m, 5e-4);
+}
+
 // The camera's tip is all that tells rod-calculate the load.
 TEST(SupervisedLoop, ALoopThatCalculatesHoldsWithoutItsSensorAndGoesOnWithIt) {
   constexpr double kLasts_s = 0.5;
