@@ -187,6 +187,7 @@ ShaftEstimate ShaftEstimator::Update(const Measurements& z, const ShaftChange& c
     ShaftEstimate nothing;
     nothing.model = straight;
     nothing.status = EstimateStatus::kNotConverged;
+    nothing.from_all_starts = estimate.from_all_starts;
     last_ = {};
     return nothing;
   };
@@ -233,6 +234,7 @@ bool ShaftEstimator::FitFromAnyStart(RodFit& fit, RodParameters& x, ShaftEstimat
     ShaftEstimate unused = estimate;
     if (Fit(modest, start, unused)) try_from(start);
   }
+  estimate.from_all_starts = !fits();
   return ok;
 }
 

@@ -59,6 +59,7 @@ struct ShaftEstimate {
   double chi2 = 0.0;                                ///< of the measurements and priors
   int measurements = 0;                             ///< scalar measurements used
   SensorMisfits misfits;                            ///< where EstimatorOptions asks for them
+  bool from_all_starts = false;                     ///< another start would not do better
 };
 
 class RodFit;

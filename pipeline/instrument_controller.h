@@ -118,6 +118,7 @@ class InstrumentController {
   ShaftEstimate Estimate(TimeNs t_ns, const Measurements& measurements);
   std::optional<VotedShaft> Vote(TimeNs t_ns, Measurements& z, Supervision& found);
   void Fuse(ControllerCommand& command);
+  void ForgetSources();
   FixturesOutput Keep(const ControllerInputs& inputs, const ShaftEstimate& estimate) const;
   void Control(const ControllerInputs& inputs, ControllerCommand& command);
   void ControlPlace(ControllerCommand& command);

@@ -17,10 +17,12 @@ constexpr TimeNs kTryAfter_ns = 1'000'000'000;
 constexpr TimeNs kOtherwise_ns = 400'000'000;  // for a tip that moves otherwise
 constexpr TimeNs kStepSpan_ns = 16'000'000;    // between steps that are kept
 constexpr double kTimes = 2.0;                 // what it may be astray
-constexpr double kNoise = 5.0;                 // deviations of a motion that is seen
-constexpr double kOtherPart = 0.7;  // of a motion that the wrist makes: tissue that is just touched
-constexpr double kCertain = 2.0;    // deviations of the tip
-constexpr double kModel = 0.3;      // of a motion may be otherwise than the model says
+constexpr double kNoise = 3.0;                 // deviations of a motion that is seen
+constexpr double kOtherPart =
+    0.77;                         // of a motion that the wrist makes: tissue that is just touched
+constexpr double kCertain = 2.0;  // deviations of the tip
+constexpr double kAstray = 3.0;   // the same, for a hold: until then the wrist waits
+constexpr double kModel = 0.3;    // of a motion may be otherwise than the model says
 constexpr double kOtherMotion_m_s = 0.003;  // tissue, breath
 constexpr TimeNs kGone_ns = 300'000'000;    // without a tip, and the filter begins again
 constexpr double kSurprise = 25.0;          // of chi-squared
@@ -111,7 +113,7 @@ bool PathWatch::IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector
   const bool no_nearer =
       deviation_m_ > (comes_back ? from_m_ + kCertain * sd_m : nearest_m_[2] - kCertain * sd_m);
   may_be_astray_ = no_nearer && deviation_m_ > max_deviation_m_;
-  if (deviation_m_ - kCertain * std::hypot(sd_m, tolerance_m_) <= max_deviation_m_) {
+  if (deviation_m_ - kAstray * std::hypot(sd_m, tolerance_m_) <= max_deviation_m_) {
     astray_ns_ = 0;
     tried_ = false;
     return false;

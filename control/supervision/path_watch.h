@@ -31,7 +31,7 @@ class PathWatch {
   PathWatch(double max_deviation_m, double tolerance_m)
       : max_deviation_m_(max_deviation_m), tolerance_m_(tolerance_m) {}
 
-  /// Returns whether the tip, seen as `tip`, is for certain (two deviations) farther than it may be
+  /// Returns whether the tip, seen as `tip`, is for certain (three deviations) farther than it may be
   /// from the way through the wishes of the last second in which they moved, up to `p_wish`, and
   /// gets no nearer to it.
   /// `dp_RE`: how the wrist moved the tip since the last call, by the model.
@@ -43,7 +43,7 @@ class PathWatch {
   bool MayBeAstray() const { return may_be_astray_; }
 
   /// Returns whether the tip that IsAstray was given last moved otherwise than the wrist moved it,
-  /// in the last 0.4 s: by more than noise, seven tenths of the way, and twice what it may be
+  /// in the last 0.4 s: by more than noise, three quarters of the way, and twice what it may be
   /// astray. A caught tip does, and one that is thrown.
   bool MovesOtherwise(TimeNs t_ns) const;
 

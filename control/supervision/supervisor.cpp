@@ -233,7 +233,7 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
     if (late_cycles_ >= options_.max_late_cycles) hold(Stop::kDeadline);
     if (!cycle.may_point_wrong) wrong_since_ns_ = 0;
     if (cycle.may_point_wrong && wrong_since_ns_ == 0) wrong_since_ns_ = cycle.t_ns;
-    if (wrong_since_ns_ != 0 && Seconds(cycle.t_ns - wrong_since_ns_) > options_.resume_after_s)
+    if (wrong_since_ns_ != 0 && Seconds(cycle.t_ns - wrong_since_ns_) > options_.doubt_s)
       hold(Stop::kMotionAngle);
     Judge(cycle, decision);
   } else if (options_.kind == SupervisionKind::kFixedThresholds) {

@@ -6,10 +6,14 @@
 #include <limits>
 #include <optional>
 
+#include "core/linear_algebra.h"
+#include "pipeline/tip_fusion.h"
+
 namespace flextip {
 namespace {
 
 constexpr double kClearly = 20.0;  // of chi-squared: odds of 2e4 to 1
+constexpr double kFar = 10.0;      // times the limit of chi-squared
 constexpr double kLoose_m = 0.03;  // a wrist or port elsewhere is looked for within some of these
 
 double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
@@ -25,6 +29,36 @@ EstimatorOptions OptionsOf(EstimatorOptions options, double port_prior_m) {
 }
 
 std::uint8_t Bit(int sensor) { return static_cast<std::uint8_t>(1U << sensor); }
+
+constexpr int kTurn = static_cast<int>(VotedSensor::kWristTurn);
+
+double ChiSquared(const Eigen::Vector3d& difference, const Eigen::Matrix3d& covariance) {
+  return difference.dot(Ldlt(covariance).Solve(difference));
+}
+
+/// By how much chi-squared of all would be above that of the others, by the linear model; zero
+/// where the others do not say what the sensor should.
+double MisfitOf(VotedSensor sensor, const Measurements& z, const VotedShaft& others) {
+  const Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();
+  if (sensor == VotedSensor::kTip && z.tip)
+    return ChiSquared(z.tip->p_RE - others.tip.p, z.tip->covariance_m2 + others.tip.covariance_m2);
+  if (sensor == VotedSensor::kEm && z.em) {
+    const double noise_m =
+        std::hypot(z.em->position_noise_m, z.em->distance_from_tip_m * z.em->orientation_noise_rad);
+    return ChiSquared(*MeasuredTip({.em = z.em}, true) - others.tip.p,
+                      noise_m * noise_m * unit + others.tip.covariance_m2);
+  }
+  if (sensor == VotedSensor::kLoad && z.load) {
+    const double noise_N = z.load->force_noise_N;
+    return ChiSquared(z.load->f_tip_N - others.f_tip_N,
+                      noise_N * noise_N * unit + others.force_covariance_N2);
+  }
+  return 0.0;
+}
+
+void Mark(bool doubtful, Supervision& found) {
+  if (doubtful && found.doubt == Stop::kNone) found.doubt = Stop::kTipDisagrees;
+}
 
 }  // namespace
 
@@ -86,6 +120,7 @@ SensorVote::Ballot SensorVote::Ask(ShaftEstimator& estimator, const Measurements
       estimate.misfits.begin(), estimate.misfits.end(),
       [this](const SensorMisfit& misfit) { return misfit.chi2 > doubts_.Of(misfit.degrees); });
   ballot.agrees = fitted && estimate.chi2 <= ballot.limit;
+  ballot.from_all_starts = estimate.from_all_starts;
   if (ballot.agrees && estimate.status == EstimateStatus::kOk)
     ballot.shaft = VotedShaft{{estimate.p_RE, estimate.p_RE_covariance_m2},
                               estimate.model.f_tip_N,
@@ -93,25 +128,69 @@ SensorVote::Ballot SensorVote::Ask(ShaftEstimator& estimator, const Measurements
   return ballot;
 }
 
+/// A fit from the last load may have ended beside the least squares.
+SensorVote::Ballot SensorVote::AskTwice(ShaftEstimator& estimator, const Measurements& z,
+                                        const ShaftChange& change) const {
+  const Ballot ballot = Ask(estimator, z, change);
+  if (ballot.agrees || ballot.from_all_starts) return ballot;
+  estimator.Reset();
+  return Ask(estimator, z, change);
+}
+
+SensorVote::Ballot SensorVote::AskWithout(int sensor, Measurements z, const ShaftChange& change) {
+  Drop(static_cast<VotedSensor>(sensor), z);
+  return AskTwice(without_one_, z, change);
+}
+
+/// The sensors that were out a moment ago, as bits.
+std::uint8_t SensorVote::Lately(TimeNs t_ns) const {
+  std::uint8_t lately = 0;
+  for (int i = 0; i < kVotedSensors; ++i) {
+    const TimeNs out_ns = out_ns_[static_cast<std::size_t>(i)];
+    if (out_ns != 0 && Seconds(t_ns - out_ns) <= options_.resume_after_s) lately |= Bit(i);
+  }
+  return lately;
+}
+
+/// The one sensor that Choose takes wherever the others agree without it; -1: there is none.
+int SensorVote::LikeliestOut(TimeNs t_ns, std::uint8_t jumped, std::uint8_t candidates) const {
+  const auto lately = static_cast<std::uint8_t>(Lately(t_ns) & candidates);
+  const auto likely = lately != 0 ? lately : static_cast<std::uint8_t>(jumped & candidates);
+  return std::popcount(likely) == 1 && likely != Bit(kTurn) ? std::countr_zero(likely) : -1;
+}
+
+/// The one sensor that was out a moment ago, and is still far from what the others say, who agree:
+/// nobody else needs to be asked. `ballot`: without it.
+std::optional<int> SensorVote::WhoStaysOut(TimeNs t_ns, const Measurements& z,
+                                           const ShaftChange& change, Ballot& ballot) {
+  const auto lately = static_cast<std::uint8_t>(Lately(t_ns) & SensorsOf(z));
+  if (std::popcount(lately) != 1) return {};
+  const int sensor = std::countr_zero(lately);
+  Measurements rest = z;
+  Drop(static_cast<VotedSensor>(sensor), rest);
+  ballot = Ask(without_one_, rest, change);
+  if (!ballot.agrees || !ballot.shaft) return {};
+  const double misfit =
+      MisfitOf(static_cast<VotedSensor>(sensor), tolerated_.Widened(z), *ballot.shaft);
+  if (!(misfit > kFar * ballot.limit)) return {};
+  ballot.chi2 += misfit;
+  return sensor;
+}
+
 /// The sensor to take out; -1 where it cannot be told, -2 where none alone explains it.
 int SensorVote::Choose(TimeNs t_ns, std::uint8_t jumped,
                        const std::array<Ballot, kVotedSensors>& without,
                        std::uint8_t candidates) const {
-  std::uint8_t explain = 0, lately = 0;
+  std::uint8_t explain = 0;
   for (int i = 0; i < kVotedSensors; ++i) {
-    if ((candidates & Bit(i)) == 0 || !without[static_cast<std::size_t>(i)].agrees) continue;
-    explain |= Bit(i);
-    const TimeNs out_ns = out_ns_[static_cast<std::size_t>(i)];
-    if (out_ns != 0 && Seconds(t_ns - out_ns) <= options_.resume_after_s) lately |= Bit(i);
+    if ((candidates & Bit(i)) != 0 && without[static_cast<std::size_t>(i)].agrees)
+      explain |= Bit(i);
   }
   if (explain == 0) return -2;
   // Without the wrist's turn nobody knows about which axes the gages measure: both are left out.
-  const std::uint8_t turn = Bit(static_cast<int>(VotedSensor::kWristTurn));
-  if ((explain & Bit(static_cast<int>(VotedSensor::kStrain))) != 0) {
-    explain &= static_cast<std::uint8_t>(~turn);
-    lately &= static_cast<std::uint8_t>(~turn);
-  }
-  for (const std::uint8_t choice : {explain, static_cast<std::uint8_t>(explain & lately),
+  if ((explain & Bit(static_cast<int>(VotedSensor::kStrain))) != 0)
+    explain &= static_cast<std::uint8_t>(~Bit(kTurn));
+  for (const std::uint8_t choice : {explain, static_cast<std::uint8_t>(explain & Lately(t_ns)),
                                     static_cast<std::uint8_t>(explain & jumped)}) {
     if (std::popcount(choice) == 1) return std::countr_zero(choice);
   }
@@ -142,45 +221,50 @@ bool SensorVote::WristExplains(const Measurements& z, const ShaftChange& change,
   return ballot.agrees && ballot.chi2 < chi2_without + kClearly;
 }
 
+std::optional<VotedShaft> SensorVote::TakeOut(TimeNs t_ns, int sensor, const Ballot& ballot,
+                                              Measurements& z, Supervision& found) {
+  Drop(static_cast<VotedSensor>(sensor), z);
+  found.voted_out |= Bit(sensor);
+  out_ns_[static_cast<std::size_t>(sensor)] = t_ns;
+  Mark(ballot.doubtful, found);
+  return ballot.shaft;
+}
+
 std::optional<VotedShaft> SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped,
                                            const ShaftChange& change, Measurements& z,
                                            Supervision& found) {
   const std::uint8_t candidates = SensorsOf(z);
   if (candidates == 0) return {};
-  Ballot all = Ask(all_, z, change);
-  if (!all.agrees) {
-    // A fit from the last load may have ended beside the least squares.
-    all_.Reset();
-    all = Ask(all_, z, change);
+  Ballot rest;
+  if (const auto out = WhoStaysOut(t_ns, z, change, rest)) {
+    found.chi2 = rest.chi2;
+    found.chi2_limit = rest.limit;
+    return TakeOut(t_ns, *out, rest, z, found);
   }
+  const Ballot all = AskTwice(all_, z, change);
   found.chi2 = all.chi2;
   found.chi2_limit = all.limit;
-  const auto doubt = [&found](const Ballot& ballot) {
-    if (ballot.doubtful && found.doubt == Stop::kNone) found.doubt = Stop::kTipDisagrees;
-  };
   if (all.agrees) {
-    doubt(all);
+    Mark(all.doubtful, found);
     if (all.shaft) tolerated_.Learn(t_ns, z, all.shaft->tip.p);
     for (int i = 0; i < kVotedSensors; ++i) {
-      const TimeNs out_ns = out_ns_[static_cast<std::size_t>(i)];
-      if (out_ns == 0 || Seconds(t_ns - out_ns) > options_.resume_after_s) continue;
+      if ((Lately(t_ns) & Bit(i)) == 0) continue;
       Drop(static_cast<VotedSensor>(i), z);
       found.voted_out |= Bit(i);
     }
     return all.shaft;
   }
   std::array<Ballot, kVotedSensors> without;
-  for (int i = 0; i < kVotedSensors; ++i) {
-    if ((candidates & Bit(i)) == 0) continue;
-    Measurements rest = z;
-    Drop(static_cast<VotedSensor>(i), rest);
-    Ballot& ballot = without[static_cast<std::size_t>(i)];
-    ballot = Ask(without_one_, rest, change);
-    if (ballot.agrees) continue;
-    without_one_.Reset();
-    ballot = Ask(without_one_, rest, change);
+  int out = LikeliestOut(t_ns, jumped, candidates);
+  if (out >= 0) without[static_cast<std::size_t>(out)] = AskWithout(out, z, change);
+  if (out < 0 || !without[static_cast<std::size_t>(out)].agrees) {
+    const int asked = out;
+    for (int i = 0; i < kVotedSensors; ++i) {
+      if ((candidates & Bit(i)) != 0 && i != asked)
+        without[static_cast<std::size_t>(i)] = AskWithout(i, z, change);
+    }
+    out = Choose(t_ns, jumped, without, candidates);
   }
-  const int out = Choose(t_ns, jumped, without, candidates);
   const double chi2_without = out >= 0 ? without[static_cast<std::size_t>(out)].chi2
                                        : std::numeric_limits<double>::infinity();
   if (WristExplains(z, change, chi2_without)) {
@@ -189,13 +273,7 @@ std::optional<VotedShaft> SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped,
     found.reaction = Reaction::kHold;
     return {};
   }
-  if (out >= 0) {
-    Drop(static_cast<VotedSensor>(out), z);
-    found.voted_out |= Bit(out);
-    out_ns_[static_cast<std::size_t>(out)] = t_ns;
-    doubt(without[static_cast<std::size_t>(out)]);
-    return without[static_cast<std::size_t>(out)].shaft;
-  }
+  if (out >= 0) return TakeOut(t_ns, out, without[static_cast<std::size_t>(out)], z, found);
   if (found.reaction >= Reaction::kHold) return {};
   found.reaction = Reaction::kHold;
   if (out == -1) {

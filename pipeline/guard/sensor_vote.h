@@ -30,7 +30,8 @@ struct VotedShaft {
 };
 
 /// Chi-squared of all sensors together, with all covariances, and, where it is above its limit, of
-/// all but one. Allocates nothing; one fit a call, sixteen at most where sensors disagree.
+/// all but one. Allocates nothing. One fit a call where the sensors agree, and where one of them
+/// stays out; sixteen at most.
 class SensorVote {
  public:
   SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options);
@@ -56,11 +57,20 @@ class SensorVote {
  private:
   /// The agreement of all sensors but one.
   struct Ballot {
-    bool agrees = false, doubtful = false;
+    bool agrees = false, doubtful = false, from_all_starts = false;
     double chi2 = 0.0, limit = 0.0;
     std::optional<VotedShaft> shaft;
   };
   Ballot Ask(ShaftEstimator& estimator, const Measurements& z, const ShaftChange& change) const;
+  Ballot AskTwice(ShaftEstimator& estimator, const Measurements& z,
+                  const ShaftChange& change) const;
+  Ballot AskWithout(int sensor, Measurements z, const ShaftChange& change);
+  std::optional<int> WhoStaysOut(TimeNs t_ns, const Measurements& z, const ShaftChange& change,
+                                 Ballot& ballot);
+  int LikeliestOut(TimeNs t_ns, std::uint8_t jumped, std::uint8_t candidates) const;
+  std::uint8_t Lately(TimeNs t_ns) const;
+  std::optional<VotedShaft> TakeOut(TimeNs t_ns, int sensor, const Ballot& ballot, Measurements& z,
+                                    Supervision& found);
   bool WristExplains(const Measurements& z, const ShaftChange& change, double chi2_without);
   int Choose(TimeNs t_ns, std::uint8_t jumped, const std::array<Ballot, kVotedSensors>& without,
              std::uint8_t candidates) const;

@@ -74,6 +74,13 @@ void InstrumentController::Fuse(ControllerCommand& command) {
   p_RE_last_ = command.p_RE_measured;
 }
 
+/// A wrist that is held has no jump to fear from a change of sources. What held it may have led one
+/// of them far off.
+void InstrumentController::ForgetSources() {
+  p_RE_last_.reset();
+  p_RE_offset_.setZero();
+}
+
 /// Whether the tip may move by more than the limit beside what this step wants. A step that is
 /// within the tip's noise wants nothing.
 bool InstrumentController::MayPointWrong(ControllerCommand& command) {
@@ -188,6 +195,7 @@ void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerC
   found = decision.supervision;
   const bool held = found.reaction >= Reaction::kHold;
   const bool by_path = held && found.stop == Stop::kTipAstray;
+  if (held) ForgetSources();
   if ((held && !by_path) || decision.resumed) path_watch_.ComeBack(inputs.t_ns);
   if (by_path) path_watch_.TryOnce(inputs.t_ns);
   if (decision.p_RW_command) command.p_RW_command = *decision.p_RW_command;

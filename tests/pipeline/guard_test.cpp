@@ -218,6 +218,31 @@ TEST_F(SensorVoting, ASensorThatWasOutComesBackAfterAWhile) {
   EXPECT_EQ(Ask(z).voted_out, 0);
 }
 
+TEST_F(SensorVoting, OfASensorThatStaysOutTheOthersAreAskedAloneUntilTheyDisagree) {
+  constexpr TimeNs kCycle_ns = 33'000'000;
+  const Measurements right = *Gather(shaft.Next());
+  Measurements tip_off = right;
+  tip_off.tip->p_RE.y() += 0.02;
+  const Supervision first = Ask(tip_off);
+  EXPECT_EQ(first.voted_out, Bit(VotedSensor::kTip));
+  shaft.t_ns += kCycle_ns;
+  const Supervision second = Ask(tip_off);
+  EXPECT_EQ(second.voted_out, Bit(VotedSensor::kTip));
+  EXPECT_EQ(second.reaction, Reaction::kNone);
+  // By the linear model of the others it is as far off as it was.
+  EXPECT_GT(second.chi2, 0.5 * first.chi2);
+  EXPECT_LT(second.chi2, 2.0 * first.chi2);
+  // Another one fails while the first has become right again.
+  Measurements em_off = right;
+  em_off.em->T_RS.p.z() += 0.02;
+  shaft.t_ns += kCycle_ns;
+  EXPECT_EQ(Ask(em_off).voted_out, Bit(VotedSensor::kEm));
+  // Or as well: no one sensor is to blame.
+  em_off.tip->p_RE.y() += 0.02;
+  shaft.t_ns += kCycle_ns;
+  EXPECT_EQ(Ask(em_off).reaction, Reaction::kHold);
+}
+
 TEST_F(SensorVoting, AllocatesNothing) {
   Measurements z = *Gather(shaft.Next());
   Ask(z);
