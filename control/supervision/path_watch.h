@@ -31,8 +31,8 @@ class PathWatch {
   PathWatch(double max_deviation_m, double tolerance_m)
       : max_deviation_m_(max_deviation_m), tolerance_m_(tolerance_m) {}
 
-  /// Returns whether the tip, seen as `tip`, is for certain (three deviations) farther than it may be
-  /// from the way through the wishes of the last second in which they moved, up to `p_wish`, and
+  /// Returns whether the tip, seen as `tip`, is for certain (three deviations) farther than it may
+  /// be from the way through the wishes of the last second in which they moved, up to `p_wish`, and
   /// gets no nearer to it.
   /// `dp_RE`: how the wrist moved the tip since the last call, by the model.
   bool IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector3d& dp_RE,
