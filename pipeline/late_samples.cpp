@@ -28,12 +28,14 @@ Place PlaceOn(const ShaftRodState& rod, double distance_from_tip_m) {
   return {at.p, at.t, at.dp.leftCols<3>(), at.dp.rightCols<3>(), at.dt.rightCols<3>()};
 }
 
-/// Returns the square of a change (N) beyond what its covariance (N^2) explains, direction by
-/// direction.
+/// Returns the square of a change (N) in the directions in which it is no noise of the covariance
+/// (N^2).
 double ChangeBeyondNoise(const Eigen::Vector3d& change_N, const Eigen::Matrix3d& covariance_N2) {
+  constexpr double kNoise = 9.0;  // three deviations
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance_N2);
-  const Eigen::Array3d along_N = (axes.eigenvectors().transpose() * change_N).array();
-  return (along_N.square() - axes.eigenvalues().array()).max(0.0).sum();
+  const Eigen::Array3d squares_N2 = (axes.eigenvectors().transpose() * change_N).array().square();
+  const Eigen::Array3d noise_N2 = axes.eigenvalues().array();
+  return (squares_N2 > kNoise * noise_N2).select(squares_N2 - noise_N2, 0.0).sum();
 }
 
 }  // namespace

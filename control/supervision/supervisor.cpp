@@ -138,17 +138,23 @@ Eigen::Vector3d Supervisor::Limit(const SupervisedCycle& cycle, Supervision& sup
   return smooth;
 }
 
-/// What the wrist waits for, for the next samples to tell. A doubt that neither goes nor becomes a
-/// finding was none.
+/// What the wrist waits for, for the next samples to tell.
 Stop Supervisor::Doubt(const SupervisedCycle& cycle) {
   Stop doubt = cycle.found.doubt;
   if (Beside_m(cycle) > kDoubtful * AllowedBeside_m(cycle)) doubt = Stop::kWristNotFollowing;
   if (doubt == Stop::kNone) {
     doubt_since_ns_ = 0;
-    return doubt;
+  } else if (doubt_since_ns_ == 0) {
+    doubt_since_ns_ = cycle.t_ns;
   }
-  if (doubt_since_ns_ == 0) doubt_since_ns_ = cycle.t_ns;
-  return Seconds(cycle.t_ns - doubt_since_ns_) < options_.doubt_s ? doubt : Stop::kNone;
+  return doubt;
+}
+
+/// Whether sensors, or sensors and wrist, have been in doubt in each cycle for so long that it is
+/// no chance. A tip that may be astray is another matter: it must move to come back.
+bool Supervisor::IsNoChance(Stop doubt, TimeNs t_ns) const {
+  return (doubt == Stop::kTipDisagrees || doubt == Stop::kWristNotFollowing) &&
+         options_.doubt_s > 0.0 && Seconds(t_ns - doubt_since_ns_) >= options_.doubt_s;
 }
 
 /// Hold and fault: entered at once, left when the cause has been gone for long enough, or by a
@@ -224,9 +230,12 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
     decision.supervision.stop = stop;
     decision.supervision.reaction = Reaction::kHold;
   };
-  if (options_.kind == SupervisionKind::kFull) {
+  const bool full = options_.kind == SupervisionKind::kFull;
+  const Stop doubt = full ? Doubt(cycle) : Stop::kNone;
+  if (full) {
     if (cycle.p_wish && !cycle.p_wish->allFinite()) hold(Stop::kNotFinite);
     if (IsAstray(cycle)) hold(Stop::kWristNotFollowing);
+    if (IsNoChance(doubt, cycle.t_ns)) hold(doubt);
     const bool is_late =
         t_last_ns_ > 0 && Seconds(cycle.t_ns - t_last_ns_) > kLate / options_.rate_hz;
     late_cycles_ = is_late ? late_cycles_ + 1 : 0;
@@ -241,9 +250,11 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
   }
   // For a moment the robot only waits: the next estimate may know better.
   Stop waits_for = Stop::kNone;
-  if (options_.kind == SupervisionKind::kFull) {
+  if (full) {
+    const bool in_doubt =
+        doubt != Stop::kNone && Seconds(cycle.t_ns - doubt_since_ns_) < options_.doubt_s;
     if (cycle.tip_is_hidden) waits_for = Stop::kStaleTip;
-    if (const Stop doubt = Doubt(cycle); doubt != Stop::kNone) waits_for = doubt;
+    if (in_doubt) waits_for = doubt;
     if (cycle.may_point_wrong) waits_for = Stop::kMotionAngle;
   }
   const bool waits = waits_for != Stop::kNone;

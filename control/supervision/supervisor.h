@@ -75,6 +75,7 @@ class Supervisor {
   /// How far the wrist is from the way that it was sent in the robot's lag (m).
   double Beside_m(const SupervisedCycle& cycle) const;
   Stop Doubt(const SupervisedCycle& cycle);
+  bool IsNoChance(Stop doubt, TimeNs t_ns) const;
   void Judge(const SupervisedCycle& cycle, Decision& decision);
 
   SupervisorOptions options_;

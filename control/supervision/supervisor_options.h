@@ -47,7 +47,7 @@ struct SupervisorOptions {
   double false_alarm = 1e-7;
   /// Of one sensor against the others: as likely as this by chance, and the wrist waits.
   double doubt = 1e-3;
-  double doubt_s = 0.6;  ///< so long at most: by then a fault that grows is found
+  double doubt_s = 0.6;  ///< so long; of sensors or wrist it then holds; 0: never
   SensorTolerances tolerances;
   double resume_after_s = 0.2;  ///< a hold ends when its cause has been gone for so long
   double fault_after_s = 2.0;   ///< a hold that lasts so long becomes a fault

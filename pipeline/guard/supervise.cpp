@@ -179,7 +179,9 @@ void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerC
       if (path_watch_.MayBeAstray()) found.doubt = Stop::kTipAstray;
       hold(path_watch_.MovesOtherwise(inputs.t_ns), Stop::kModelDisagrees);
     }
-    if (acts && !command.J_tip_wrist.isZero(0.0)) {
+    // A wrist that is held goes nowhere, and what holds it may leave no rod to judge by.
+    const bool moves = acts && !command.J_tip_wrist.isZero(0.0) && found.reaction < Reaction::kHold;
+    if (moves) {
       cycle.may_point_wrong = MayPointWrong(command);
       const Limited corrected = Corrected(command);
       cycle.p_wish = corrected.p;

@@ -141,7 +141,7 @@ TEST_F(LateTip, LoadsThatDifferByTheirNoiseDoNotWander) {
   const Eigen::Matrix3d noise_N2 =
       kNoise_N * kNoise_N * along * along.transpose() + 1e-4 * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d steady = CarriedAfterLoads(Eigen::Vector3d::Zero(), noise_N2, model_, tip);
-  const Eigen::Matrix3d by_noise = CarriedAfterLoads(kNoise_N * along, noise_N2, model_, tip);
+  const Eigen::Matrix3d by_noise = CarriedAfterLoads(2.0 * kNoise_N * along, noise_N2, model_, tip);
   EXPECT_LT(by_noise.trace(), 1.1 * steady.trace());
   // Across the shaft it is seen to change.
   const Eigen::Matrix3d across = CarriedAfterLoads(kNoise_N * tip.R.col(1), noise_N2, model_, tip);
