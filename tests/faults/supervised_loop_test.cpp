@@ -156,6 +156,23 @@ double FartherByFaults(LoopSetup setup, const std::vector<Fault>& faults) {
   return most_m;
 }
 
+// Too slow for the vote, and for a while within what a servo may be beside its way.
+TEST(SupervisedLoop, AWristWhoseReadingDriftsIsHeldWhenTheDoubtStays) {
+  LoopSetup setup = AwayBySight(true);
+  setup.sensors = Press(SupervisionKind::kFull).sensors;
+  setup.controller.kind = ControllerKind::kRodCalculate;
+  setup.faults = {{FaultKind::kDrift, FaultStream::kWrist, 0.5, 1.0, 0.004}};
+  const LoopResult result = RunClosedLoop(setup, nullptr);
+  const bool held =
+      std::any_of(result.updates.begin(), result.updates.end(), [](const LoopUpdate& update) {
+        return update.supervision.reaction >= Reaction::kHold &&
+               update.supervision.stop == Stop::kWristNotFollowing;
+      });
+  EXPECT_TRUE(held);
+  setup.supervision.doubt_s = 0.0;
+  EXPECT_LT(result.max_deviation_m, RunClosedLoop(setup, nullptr).max_deviation_m - 3e-4);
+}
+
 // The load's estimates differ along the shaft by their noise: the tip is carried on all the same.
 TEST(SupervisedLoop, ATipThatIsGoneForThreePicturesIsCarriedAlongItsPath) {
   EXPECT_LT(FartherByFaults(AwayBySight(false),
