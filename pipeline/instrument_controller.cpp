@@ -239,7 +239,7 @@ void InstrumentController::Learn(TimeNs t_ns, const ShaftEstimate& estimate) {
   if (estimate.status != EstimateStatus::kOk && estimate.status != EstimateStatus::kUnobservable)
     return;
   shaft_ = estimate.model;
-  late_.Learn(t_ns, shaft_, estimate.covariance.bottomRightCorner<3, 3>());
+  late_.Learn(t_ns, shaft_);
 }
 
 /// Undoes what the found model says of the sensors.

@@ -28,16 +28,6 @@ Place PlaceOn(const ShaftRodState& rod, double distance_from_tip_m) {
   return {at.p, at.t, at.dp.leftCols<3>(), at.dp.rightCols<3>(), at.dt.rightCols<3>()};
 }
 
-/// Returns the square of a change (N) in the directions in which it is no noise of the covariance
-/// (N^2).
-double ChangeBeyondNoise(const Eigen::Vector3d& change_N, const Eigen::Matrix3d& covariance_N2) {
-  constexpr double kNoise = 9.0;  // three deviations
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance_N2);
-  const Eigen::Array3d squares_N2 = (axes.eigenvectors().transpose() * change_N).array().square();
-  const Eigen::Array3d noise_N2 = axes.eigenvalues().array();
-  return (squares_N2 > kNoise * noise_N2).select(squares_N2 - noise_N2, 0.0).sum();
-}
-
 }  // namespace
 
 void LateSamples::VisitState(StateText& state) {
@@ -97,20 +87,17 @@ std::optional<LateSamples::TipBySensors> LateSamples::TipBySensorsAt(TimeNs t_ns
   return {};
 }
 
-/// A load that grows steadily is as far off after this step as the random walk says. Along the
-/// shaft it is hardly known: what the estimates differ by there is their own noise.
-void LateSamples::Learn(TimeNs t_ns, const ShaftModel& model,
-                        const Eigen::Matrix3d& force_covariance_N2) {
+/// A load that grows steadily is as far off after this step as the random walk says.
+void LateSamples::Learn(TimeNs t_ns, const ShaftModel& model) {
   constexpr double kStep_s = 0.2, kMemory = 0.8;
-  if (!model.force_known || !force_covariance_N2.allFinite()) return;
+  if (!model.force_known) return;
   const double seconds = load_ ? Seconds(t_ns - load_->t_ns) : 0.0;
   if (load_ && seconds < kStep_s) return;
   if (load_ && seconds < 3 * kStep_s) {
-    const double change_N2 = ChangeBeyondNoise(model.f_tip_N - load_->value.f_tip_N,
-                                               force_covariance_N2 + load_->value.covariance_N2);
-    drift_variance_N2_s_ = std::max(kMemory * drift_variance_N2_s_, change_N2 / 3.0 / seconds);
+    const double variance_s = (model.f_tip_N - load_->value).squaredNorm() / 3.0 / seconds;
+    drift_variance_N2_s_ = std::max(kMemory * drift_variance_N2_s_, variance_s);
   }
-  load_ = {t_ns, {model.f_tip_N, force_covariance_N2}};
+  load_ = {t_ns, model.f_tip_N};
 }
 
 /// To first order in the tissue: the force at the tip follows its way by the tissue's stiffness, as

@@ -27,17 +27,6 @@ struct LateSampleOptions {
   double force_drift_units = 0.03;
 };
 
-/// A load on the tip with its covariance. In R.
-struct KnownLoad {
-  Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance_N2 = Eigen::Matrix3d::Zero();
-
-  void VisitState(StateText& state) {
-    state(f_tip_N);
-    state(covariance_N2);
-  }
-};
-
 /// Carries samples by the rod with the port, load and tissue that were estimated at the tip's time,
 /// joined by how far the other sensors saw the tip go. Fixed size, allocates nothing.
 class LateSamples {
@@ -67,9 +56,8 @@ class LateSamples {
   void NoteTipBySensors(TimeNs t_ns, const Eigen::Vector3d& p_RE,
                         const Eigen::Matrix3d& covariance_m2);
 
-  /// Learns from the load that was estimated at `t_ns`, with its covariance (N^2, in R), how much
-  /// it wanders beyond what the estimates do by themselves.
-  void Learn(TimeNs t_ns, const ShaftModel& model, const Eigen::Matrix3d& force_covariance_N2);
+  /// Learns from the load that was estimated at `t_ns` how much it wanders.
+  void Learn(TimeNs t_ns, const ShaftModel& model);
 
   /// Moves the samples of tip and em0 in `readings`, which stand in R, to the time of the wrist. A
   /// tip that is not there is the last one that was seen, carried on for `keep_s`. A tip of the
@@ -77,6 +65,9 @@ class LateSamples {
   /// all late ones where the rod of `model`, as estimated last, has no equilibrium.
   /// Returns whether the tip now is one that was carried on.
   bool Carry(const ShaftModel& model, SensorReadings& readings);
+
+  /// Returns the wrist's time in the cycle in which the tip that is carried on came.
+  TimeNs TipCame_ns() const { return tip_first_ns_; }
 
   void VisitState(StateText& state);
 
@@ -125,8 +116,8 @@ class LateSamples {
   std::optional<Sample<TipMeasurement>> tip_;  // seen last
   TimeNs tip_first_ns_ = 0;                    // the wrist's time at its first cycle
   Rods tip_rods_, em0_rods_;
-  std::optional<Sample<KnownLoad>> load_;  // what the wandering is learnt against
-  double drift_variance_N2_s_ = 0.0;       // of a component, gained in a second
+  std::optional<Sample<Eigen::Vector3d>> load_;  // what the wandering is learnt against (N)
+  double drift_variance_N2_s_ = 0.0;             // of a component, gained in a second
 };
 
 }  // namespace flextip

@@ -41,6 +41,10 @@ bool SampleScreen::TipIsOverdue(TimeNs t_ns) const {
   return tip_past_.arrived_ns == 0 || Seconds(t_ns - tip_past_.arrived_ns) > usual_s + kAge_s;
 }
 
+bool SampleScreen::TipIsDue(TimeNs last_ns, TimeNs t_ns) const {
+  return Seconds(t_ns - last_ns) > Seconds(tip_past_.gap_ns) - 0.5 / options_.rate_hz;
+}
+
 /// Whether a sample on its arrival is older or younger than those before, by more than the cycle in
 /// which it had to wait. Clocks that leap, or stand still for a while, show so.
 bool SampleScreen::IsOfAnotherAge(Past& past, double age_s) const {

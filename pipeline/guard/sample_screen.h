@@ -49,6 +49,9 @@ class SampleScreen {
   bool TipIsStale(TimeNs t_ns) const { return IsStale(tip_past_, t_ns); }
   /// Returns whether the next tip should have come by now.
   bool TipIsOverdue(TimeNs t_ns) const;
+  /// Returns whether, after one that came at `last_ns`, another one was to come by now, with half a
+  /// cycle to spare.
+  bool TipIsDue(TimeNs last_ns, TimeNs t_ns) const;
 
   /// Takes the places of `readings` as believed from now on.
   void BelieveTip(const SensorReadings& readings, const LateSamples& late);

@@ -34,6 +34,7 @@ class SensorGuard {
 
   bool TipIsStale(TimeNs t_ns) const { return screen_.TipIsStale(t_ns); }
   bool TipIsOverdue(TimeNs t_ns) const { return screen_.TipIsOverdue(t_ns); }
+  bool TipIsDue(TimeNs last_ns, TimeNs t_ns) const { return screen_.TipIsDue(last_ns, t_ns); }
 
   /// Takes the next places as they come: a person says that they are right.
   void Forget() { screen_.Forget(); }

@@ -12,6 +12,7 @@ namespace {
 // The other sensors carry the tip while it is, by three of its deviations, within half of the 2 mm
 // that count as astray.
 constexpr double kTakeOver_m = 0.0003;
+constexpr double kKnown_m = 0.001;   // half of these 2 mm
 constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is taken up
 
 // Two pictures that are wrong in a row may lead the tip by 1.2 of what it may be astray: the first
@@ -60,8 +61,13 @@ void InstrumentController::Fuse(ControllerCommand& command) {
   if (options_.supervision.kind != SupervisionKind::kFull ||
       options_.control.kind != ControllerKind::kRodTrack)
     return;
-  const bool others = !command.p_RE_measured && estimate.status == EstimateStatus::kOk &&
-                      MaxSd(estimate.p_RE_covariance_m2) < kTakeOver_m;
+  const double tip_sd_m = MaxSd(estimate.p_RE_covariance_m2);
+  // Where nobody else knows the load the fit leads a tip that is missing to where no load is.
+  const bool missing = tip_is_carried_ && guard_.TipIsDue(late_.TipCame_ns(), command.t_ns);
+  if (missing && tip_sd_m > kKnown_m)
+    command.p_RE_measured = MeasuredTip(command.measurements, options_.em_is_tip);
+  const bool others =
+      !command.p_RE_measured && estimate.status == EstimateStatus::kOk && tip_sd_m < kTakeOver_m;
   if (others) command.p_RE_measured = estimate.p_RE;
   if (!command.p_RE_measured) {
     p_RE_last_.reset();

@@ -117,37 +117,6 @@ TEST_F(LateTip, TheTimesDeviationCountsByTheSpeed) {
   EXPECT_LT((more - expected).norm(), 0.1 * expected.norm());
 }
 
-/// The covariance of a tip that is carried over 20 cycles, after loads that differ by `change_N` in
-/// turn were learnt.
-Eigen::Matrix3d CarriedAfterLoads(const Eigen::Vector3d& change_N, const Eigen::Matrix3d& noise_N2,
-                                  ShaftModel model, const Pose& tip) {
-  LateSamples samples({}, kTissueGain);
-  for (int i = 0; i < 40; ++i) samples.Note(WristOnly(i));
-  for (int i = 0; i < 8; ++i) {
-    model.f_tip_N += (i % 2 == 0 ? 1.0 : -1.0) * change_N;
-    samples.Learn(kStart_ns + i * 250'000'000LL, model, noise_N2);
-  }
-  SensorReadings now = WristOnly(39);
-  now.tip = Tip(now.wrist->t_ns - 20 * kPeriod_ns, tip);
-  EXPECT_TRUE(samples.Carry(model, now));
-  return now.tip->value.tip.covariance_m2;
-}
-
-// Along the shaft a force is hardly seen: its estimates differ from sample to sample.
-TEST_F(LateTip, LoadsThatDifferByTheirNoiseDoNotWander) {
-  const Pose tip = TrueTip(19);
-  const Eigen::Vector3d along = tip.R.col(0);
-  constexpr double kNoise_N = 1.0;
-  const Eigen::Matrix3d noise_N2 =
-      kNoise_N * kNoise_N * along * along.transpose() + 1e-4 * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d steady = CarriedAfterLoads(Eigen::Vector3d::Zero(), noise_N2, model_, tip);
-  const Eigen::Matrix3d by_noise = CarriedAfterLoads(2.0 * kNoise_N * along, noise_N2, model_, tip);
-  EXPECT_LT(by_noise.trace(), 1.1 * steady.trace());
-  // Across the shaft it is seen to change.
-  const Eigen::Matrix3d across = CarriedAfterLoads(kNoise_N * tip.R.col(1), noise_N2, model_, tip);
-  EXPECT_GT(across.trace(), 3.0 * steady.trace());
-}
-
 TEST_F(LateTip, OtherSensorsTakeOverWhereTheLoadChanges) {
   // A tenth of the load went since the tip was seen; the rod does not know, the other sensors do.
   simulation::PlantSetup unloaded = PressedShaft();
