@@ -83,28 +83,31 @@ void EstimatorUpdate(benchmark::State& state) {
 }
 BENCHMARK(EstimatorUpdate);
 
-/// The vote over the sensors, with a tip that is wrong by so many mm: in the first cycle, and where
-/// it stays so. The peer is the vote over sensors that agree, 0 mm.
+enum Wrong { kTipAtFirst, kTipStays, kWristStays };
+
+/// The vote over the sensors, with a tip or wrist that is wrong by so many mm: in the first cycle,
+/// and where it stays so. The peer is the vote over sensors that agree, 0 mm.
 void Vote(benchmark::State& state) {
   SupervisorOptions options;
   options.kind = SupervisionKind::kFull;
   SensorVote vote(Options(), options);
-  const bool stays = state.range(1) != 0;
+  const auto wrong = static_cast<Wrong>(state.range(1));
   const auto tip = static_cast<std::uint8_t>(1U << static_cast<int>(VotedSensor::kTip));
   TimeNs t_ns = 0;
   long i = 0;
   for (auto _ : state) {
     state.PauseTiming();
     Measurements z = Measured(i++);
-    z.tip->p_RE.z() += 1e-3 * static_cast<double>(state.range(0));
-    t_ns += stays ? 33'000'000 : 1'000'000'000;
+    (wrong == kWristStays ? z.p_RW : z.tip->p_RE).z() += 1e-3 * static_cast<double>(state.range(0));
+    t_ns += wrong == kTipAtFirst ? 1'000'000'000 : 33'000'000;
     Supervision found;
     state.ResumeTiming();
-    benchmark::DoNotOptimize(vote.Vote(t_ns, tip, {}, z, found));
+    benchmark::DoNotOptimize(vote.Vote(t_ns, wrong == kWristStays ? 0 : tip, {}, z, found));
   }
-  state.SetLabel(stays ? "stays wrong" : "first cycle");
+  constexpr const char* kLabels[] = {"tip, first cycle", "tip stays wrong", "wrist stays wrong"};
+  state.SetLabel(kLabels[wrong]);
 }
-BENCHMARK(Vote)->ArgsProduct({{0, 5, 20, 100, 500}, {0, 1}});
+BENCHMARK(Vote)->ArgsProduct({{0, 5, 20, 100, 500}, {kTipAtFirst, kTipStays, kWristStays}});
 
 }  // namespace
 }  // namespace flextip

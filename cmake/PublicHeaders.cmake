@@ -44,6 +44,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   control/joints/joint_model.h
   control/motion_error.h
   control/supervision/chi_squared.h
+  control/supervision/commanded_way.h
   control/supervision/jerk_filter.h
   control/supervision/motion_guard.h
   control/supervision/path_watch.h

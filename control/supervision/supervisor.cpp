@@ -2,51 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "control/supervision/rate_limits.h"
-#include "core/error.h"
-#include "core/linear_algebra/segment.h"
 
 namespace flextip {
 namespace {
 
 double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 
-constexpr double kLate = 1.5;  // of a cycle's time
-// Of three components at once, each normal, less than one in 1e7 is this many deviations long.
-constexpr double kDeviations = 6.0;
+constexpr double kLate = 1.5;         // of a cycle's time
 constexpr double kSmoothed_m = 1e-5;  // by less the limit of jerk does not count as acting
 constexpr double kDoubtful = 0.7;     // of what a reading may be beside the commanded way
-constexpr double kSettle_m = 0.0005;  // a servo may stay so far from its set-point
 
-/// How far a reading may be beside the commanded way.
-double AllowedBeside_m(const SupervisedCycle& cycle) {
-  return kSettle_m + kDeviations * std::numbers::sqrt2 * cycle.p_RW_noise_m;
+WristReading WristOf(const SupervisedCycle& cycle) {
+  return {cycle.t_ns, cycle.p_RW, cycle.p_RW_noise_m};
 }
 
 }  // namespace
 
 void Supervisor::Keep(const SupervisedCycle& cycle, const Eigen::Vector3d& p_RW) {
-  sent_[next_] = {cycle.t_ns, p_RW, cycle.p_RW.value_or(p_RW)};
-  next_ = (next_ + 1) % kSize;
-  count_ = std::min(count_ + 1, kSize);
+  way_.Keep(WristOf(cycle), p_RW);
   p_last_ = p_RW;
 }
 
 void Supervisor::NoteSent(const Eigen::Vector3d& p_RW) {
-  if (count_ == 0 || !p_RW.allFinite()) return;
-  sent_[(next_ + kSize - 1) % kSize].p_RW = p_RW;
+  if (way_.IsEmpty() || !p_RW.allFinite()) return;
+  way_.Replace(p_RW);
   p_last_ = p_RW;
   if (p_held_) p_held_ = p_RW;
 }
 
 void Supervisor::VisitState(StateText& state) {
-  state(next_);
-  state(count_);
-  if (next_ >= kSize || count_ > kSize) throw InputError("saved state: no place in a ring");
-  for (std::size_t i = 1; i <= count_; ++i) state(sent_[(next_ + kSize - i) % kSize]);
+  state(way_);
   state(p_last_);
   state(p_held_);
   state(v_last_m_s_);
@@ -61,51 +48,6 @@ void Supervisor::VisitState(StateText& state) {
   state(late_cycles_);
   state(jerk_);
   state(p_limited_);
-}
-
-double Supervisor::Beside_m(const SupervisedCycle& cycle) const {
-  if (!cycle.p_RW || count_ == 0) return 0.0;
-  double nearest_m = std::numeric_limits<double>::infinity();
-  std::optional<Eigen::Vector3d> later;
-  for (std::size_t i = 1; i <= count_; ++i) {
-    const Sent& sent = sent_[(next_ + kSize - i) % kSize];
-    const Eigen::Vector3d on_way =
-        NearestOnSegment(sent.p_RW, later.value_or(sent.p_RW), *cycle.p_RW);
-    nearest_m = std::min(nearest_m, (*cycle.p_RW - on_way).norm());
-    later = sent.p_RW;
-    // The command of before the lag counts: the robot may only now leave it.
-    if (Seconds(cycle.t_ns - sent.t_ns) > options_.follow_lag_s) return nearest_m;
-  }
-  // Not commanded for long enough yet to say.
-  return 0.0;
-}
-
-bool Supervisor::IsAstray(const SupervisedCycle& cycle) const {
-  if (!cycle.p_RW || count_ == 0) return false;
-  const double allowed_m = AllowedBeside_m(cycle);
-  const Sent& newest = sent_[(next_ + kSize - 1) % kSize];
-  const double moved_m = (*cycle.p_RW - newest.p_RW_before).norm();
-  double farthest_m = 0.0, away_m = 0.0;
-  for (std::size_t i = 1; i <= count_; ++i) {
-    const Sent& sent = sent_[(next_ + kSize - i) % kSize];
-    farthest_m = std::max(farthest_m, (sent.p_RW - newest.p_RW_before).norm());
-    away_m = std::max(away_m, (sent.p_RW_before - *cycle.p_RW).norm());
-    if (Seconds(cycle.t_ns - sent.t_ns) <= options_.follow_lag_s) continue;
-    const bool stands = away_m < allowed_m && Beside_m(cycle) > allowed_m;
-    return stands || moved_m > farthest_m + allowed_m;
-  }
-  // Not commanded for long enough yet to say.
-  return false;
-}
-
-/// Whether the wrist stood in this cycle though it is not where it was sent: its goal should not
-/// run away from it.
-bool Supervisor::Lags(const SupervisedCycle& cycle) const {
-  if (!moving_ || !cycle.p_RW || count_ == 0) return false;
-  const Sent& newest = sent_[(next_ + kSize - 1) % kSize];
-  const double noise_m = kDeviations * std::numbers::sqrt2 * cycle.p_RW_noise_m;
-  return (*cycle.p_RW - newest.p_RW).norm() > AllowedBeside_m(cycle) &&
-         (*cycle.p_RW - newest.p_RW_before).norm() <= noise_m;
 }
 
 Eigen::Vector3d Supervisor::Limit(const SupervisedCycle& cycle, Supervision& supervision) {
@@ -141,7 +83,9 @@ Eigen::Vector3d Supervisor::Limit(const SupervisedCycle& cycle, Supervision& sup
 /// What the wrist waits for, for the next samples to tell.
 Stop Supervisor::Doubt(const SupervisedCycle& cycle) {
   Stop doubt = cycle.found.doubt;
-  if (Beside_m(cycle) > kDoubtful * AllowedBeside_m(cycle)) doubt = Stop::kWristNotFollowing;
+  const WristReading wrist = WristOf(cycle);
+  if (way_.Beside_m(wrist) > kDoubtful * CommandedWay::AllowedBeside_m(wrist))
+    doubt = Stop::kWristNotFollowing;
   if (doubt == Stop::kNone) {
     doubt_since_ns_ = 0;
   } else if (doubt_since_ns_ == 0) {
@@ -192,18 +136,9 @@ void Supervisor::Judge(const SupervisedCycle& cycle, Decision& decision) {
 /// the acceleration allows it, else at the last command. A reading may be what is wrong.
 std::optional<Eigen::Vector3d> Supervisor::StopAt(const SupervisedCycle& cycle) const {
   if (!p_last_ || !cycle.p_RW || !cycle.p_RW->allFinite()) return p_last_;
-  double nearest_m = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d stop = *p_last_, later = *p_last_;
-  for (std::size_t i = 1; i <= count_; ++i) {
-    const Sent& sent = sent_[(next_ + kSize - i) % kSize];
-    const Eigen::Vector3d on_way = NearestOnSegment(sent.p_RW, later, *cycle.p_RW);
-    const double distance_m = (*cycle.p_RW - on_way).norm();
-    if (distance_m < nearest_m) stop = on_way;
-    nearest_m = std::min(nearest_m, distance_m);
-    later = sent.p_RW;
-    if (Seconds(cycle.t_ns - sent.t_ns) > options_.follow_lag_s) break;
-  }
-  if (nearest_m > AllowedBeside_m(cycle)) return p_last_;
+  const WristReading wrist = WristOf(cycle);
+  const Eigen::Vector3d stop = way_.NearestTo(wrist, *p_last_);
+  if ((*cycle.p_RW - stop).norm() > CommandedWay::AllowedBeside_m(wrist)) return p_last_;
   const double a_m_s2 = options_.rates.max_acceleration_m_s2;
   if (a_m_s2 <= 0.0) return stop;
   const double dt_s = std::max(0.0, Seconds(cycle.t_ns - t_last_ns_));
@@ -234,7 +169,7 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
   const Stop doubt = full ? Doubt(cycle) : Stop::kNone;
   if (full) {
     if (cycle.p_wish && !cycle.p_wish->allFinite()) hold(Stop::kNotFinite);
-    if (IsAstray(cycle)) hold(Stop::kWristNotFollowing);
+    if (way_.IsLeft(WristOf(cycle))) hold(Stop::kWristNotFollowing);
     if (IsNoChance(doubt, cycle.t_ns)) hold(doubt);
     const bool is_late =
         t_last_ns_ > 0 && Seconds(cycle.t_ns - t_last_ns_) > kLate / options_.rate_hz;
@@ -262,8 +197,8 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
     decision.supervision.stop = waits_for;
     decision.supervision.reaction = Reaction::kLimit;
   }
-  decision.supervision.waits =
-      waits || Lags(cycle) || decision.supervision.reaction >= Reaction::kHold;
+  decision.supervision.waits = waits || (moving_ && way_.Lags(WristOf(cycle))) ||
+                               decision.supervision.reaction >= Reaction::kHold;
   const bool moves = decision.supervision.reaction < Reaction::kHold && !waits && cycle.p_wish &&
                      cycle.p_wish->allFinite();
   if (moves) {
@@ -279,8 +214,9 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
                         found.chi2 <= found.chi2_limit;
     if (!p_held_) p_held_ = (moving_ && !stands) || !readable ? StopAt(cycle) : cycle.p_RW;
     // A person may have led the robot elsewhere.
-    const bool led = decision.resumed && readable && p_held_ &&
-                     (*cycle.p_RW - *p_held_).norm() > AllowedBeside_m(cycle);
+    const bool led =
+        decision.resumed && readable && p_held_ &&
+        (*cycle.p_RW - *p_held_).norm() > CommandedWay::AllowedBeside_m(WristOf(cycle));
     if (led) p_held_ = cycle.p_RW;
     if (!p_held_ && readable) p_held_ = cycle.p_RW;
     decision.p_RW_command = p_held_;

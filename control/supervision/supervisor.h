@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "control/supervision/commanded_way.h"
 #include "control/supervision/jerk_filter.h"
 #include "control/supervision/stops.h"
 #include "control/supervision/supervisor_options.h"
@@ -30,7 +31,7 @@ struct SupervisedCycle {
 class Supervisor {
  public:
   explicit Supervisor(const SupervisorOptions& options)
-      : options_(options), jerk_(options.rates, options.rate_hz) {}
+      : options_(options), jerk_(options.rates, options.rate_hz), way_(options.follow_lag_s) {}
 
   struct Decision {
     std::optional<Eigen::Vector3d> p_RW_command;  ///< empty before the wrist was ever measured
@@ -43,10 +44,6 @@ class Supervisor {
   /// is not on the commanded way.
   Decision Decide(const SupervisedCycle& cycle);
 
-  /// Returns whether the wrist did not move for the robot's lag though it was sent away all the
-  /// time, or moved farther in a cycle than it was sent; both by more than noise.
-  bool IsAstray(const SupervisedCycle& cycle) const;
-
   /// Takes what really went out in this cycle, where somebody limited the command further.
   void NoteSent(const Eigen::Vector3d& p_RW);
 
@@ -56,24 +53,9 @@ class Supervisor {
   void VisitState(StateText& state);
 
  private:
-  struct Sent {
-    TimeNs t_ns = 0;
-    Eigen::Vector3d p_RW = Eigen::Vector3d::Zero();         // commanded
-    Eigen::Vector3d p_RW_before = Eigen::Vector3d::Zero();  // as measured in that cycle
-    void VisitState(StateText& state) {
-      state(t_ns);
-      state(p_RW);
-      state(p_RW_before);
-    }
-  };
-  static constexpr std::size_t kSize = 512;
-
-  bool Lags(const SupervisedCycle& cycle) const;
   std::optional<Eigen::Vector3d> StopAt(const SupervisedCycle& cycle) const;
   void Keep(const SupervisedCycle& cycle, const Eigen::Vector3d& p_RW);
   Eigen::Vector3d Limit(const SupervisedCycle& cycle, Supervision& supervision);
-  /// How far the wrist is from the way that it was sent in the robot's lag (m).
-  double Beside_m(const SupervisedCycle& cycle) const;
   Stop Doubt(const SupervisedCycle& cycle);
   bool IsNoChance(Stop doubt, TimeNs t_ns) const;
   void Judge(const SupervisedCycle& cycle, Decision& decision);
@@ -81,8 +63,7 @@ class Supervisor {
   SupervisorOptions options_;
   JerkFilter jerk_;
   std::optional<Eigen::Vector3d> p_limited_;  // before the limit of jerk, while it moves
-  std::array<Sent, kSize> sent_;              // a ring, the newest before next_
-  std::size_t next_ = 0, count_ = 0;
+  CommandedWay way_;
   std::optional<Eigen::Vector3d> p_last_, p_held_;
   Eigen::Vector3d v_last_m_s_ = Eigen::Vector3d::Zero();
   TimeNs t_last_ns_ = 0;
