@@ -131,6 +131,7 @@ void InstrumentController::VisitState(StateText& state) {
   state(supervisor_);
   state(by_others_);
   state(p_RE_last_);
+  state(p_RW_last_);
   state(p_RE_offset_);
   state(between_);
   state(without_tip_);

@@ -155,6 +155,7 @@ class InstrumentController {
   // Where the tip's source changes, the difference is taken up slowly.
   bool by_others_ = false;
   std::optional<Eigen::Vector3d> p_RE_last_;
+  Eigen::Vector3d p_RW_last_ = Eigen::Vector3d::Zero();  // of p_RE_last_
   Eigen::Vector3d p_RE_offset_ = Eigen::Vector3d::Zero();
   // Where tips are late, or come more seldom than cycles. Tissue and port are learnt from what was
   // measured at one time, by estimator_; between_ fits the tip that is carried on.

@@ -12,7 +12,8 @@ namespace {
 // The other sensors carry the tip while it is, by three of its deviations, within half of the 2 mm
 // that count as astray.
 constexpr double kTakeOver_m = 0.0003;
-constexpr double kKnown_m = 0.001;   // half of these 2 mm
+constexpr double kKnown_m = 0.001;  // half of these 2 mm
+constexpr double kDiffers_m = 2.0 * kTakeOver_m;
 constexpr double kTakeOver_s = 0.3;  // in which a difference of sources is taken up
 
 // Two pictures that are wrong in a row may lead the tip by 1.2 of what it may be astray: the first
@@ -73,11 +74,18 @@ void InstrumentController::Fuse(ControllerCommand& command) {
     p_RE_last_.reset();
     return;
   }
-  if (others != by_others_ && p_RE_last_) p_RE_offset_ = *p_RE_last_ - *command.p_RE_measured;
+  const Eigen::Vector3d& p_RW = command.measurements.p_RW;
+  if (others != by_others_ && p_RE_last_) {
+    // What the wrist did since is no difference of the sources, nor what neither of them knows.
+    const Eigen::Matrix3d J = motion_guard_.Jacobian().value_or(Eigen::Matrix3d::Zero());
+    const Eigen::Vector3d differs = *p_RE_last_ + J * (p_RW - p_RW_last_) - *command.p_RE_measured;
+    p_RE_offset_ = std::min(1.0, kDiffers_m / differs.norm()) * differs;
+  }
   by_others_ = others;
   p_RE_offset_ *= std::exp(-1.0 / (options_.supervision.rate_hz * kTakeOver_s));
   *command.p_RE_measured += p_RE_offset_;
   p_RE_last_ = command.p_RE_measured;
+  p_RW_last_ = p_RW;
 }
 
 /// A wrist that is held has no jump to fear from a change of sources. What held it may have led one

@@ -189,6 +189,15 @@ TEST(SupervisedLoop, WhatHeldTheWristDoesNotLeadItAfterwards) {
             5e-4);
 }
 
+// At each change of sources the tip goes on by what the wrist did, and by no more than the sources
+// may differ.
+TEST(SupervisedLoop, ATipThatComesAndGoesDoesNotLeadTheWristBesideThePath) {
+  LoopSetup setup = Press(SupervisionKind::kFull);
+  setup.supervision.max_tip_deviation_m = 0.002;
+  EXPECT_LT(FartherByFaults(setup, {{FaultKind::kDropped, FaultStream::kTip, 0.5, 3.0, 0.6}}),
+            5e-4);
+}
+
 // The camera's tip is all that tells rod-calculate the load.
 TEST(SupervisedLoop, ALoopThatCalculatesHoldsWithoutItsSensorAndGoesOnWithIt) {
   constexpr double kLasts_s = 0.5;
