@@ -18,11 +18,11 @@ constexpr TimeNs kOtherwise_ns = 400'000'000;  // for a tip that moves otherwise
 constexpr TimeNs kStepSpan_ns = 16'000'000;    // between steps that are kept
 constexpr double kTimes = 2.0;                 // what it may be astray
 constexpr double kNoise = 3.0;                 // deviations of a motion that is seen
-constexpr double kOtherPart =
-    0.77;                         // of a motion that the wrist makes: tissue that is just touched
-constexpr double kCertain = 2.0;  // deviations of the tip
-constexpr double kAstray = 3.0;   // the same, for a hold: until then the wrist waits
-constexpr double kModel = 0.3;    // of a motion may be otherwise than the model says
+// Of a motion that the wrist makes: tissue that is just touched takes less.
+constexpr double kOtherPart = 0.77;
+constexpr double kCertain = 2.0;            // deviations of the tip
+constexpr double kAstray = 3.0;             // the same, for a hold: until then the wrist waits
+constexpr double kModel = 0.3;              // of a motion may be otherwise than the model says
 constexpr double kOtherMotion_m_s = 0.003;  // tissue, breath
 constexpr TimeNs kGone_ns = 300'000'000;    // without a tip, and the filter begins again
 constexpr double kSurprise = 25.0;          // of chi-squared

@@ -31,7 +31,7 @@ struct VotedShaft {
 
 /// Chi-squared of all sensors together, with all covariances, and, where it is above its limit, of
 /// all but one. Allocates nothing. One fit a call where the sensors agree, and where one of them
-/// stays out; sixteen at most.
+/// stays out by far: chi-squared of all is then that of the others' linear model. Sixteen at most.
 class SensorVote {
  public:
   SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options);
