@@ -17,7 +17,7 @@ constexpr TimeNs kTryAfter_ns = 1'000'000'000;
 constexpr TimeNs kOtherwise_ns = 400'000'000;  // for a tip that moves otherwise
 constexpr TimeNs kStepSpan_ns = 16'000'000;    // between steps that are kept
 constexpr double kTimes = 2.0;                 // what it may be astray
-constexpr double kNoise = 3.0;                 // deviations of a motion that is seen
+constexpr double kNoise = 4.0;                 // deviations of a motion that is seen
 // Of a motion that the wrist makes: tissue that is just touched takes less.
 constexpr double kOtherPart = 0.77;
 constexpr double kCertain = 2.0;            // deviations of the tip

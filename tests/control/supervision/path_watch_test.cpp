@@ -121,6 +121,21 @@ TEST(PathWatch, ATipInTissueThatIsJustTouchedFollowsTheWrist) {
   }
 }
 
+// A press that the tip's noise makes look like a catch for a third of a second: 5.3 mm that the
+// wrist leads, of which the tip is seen to go a tenth.
+TEST(PathWatch, AMomentOfTissueIsNoCatch) {
+  PathWatch watch(0.002, 0.0);
+  const Eigen::Matrix3d covariance_m2 = 2e-8 * Eigen::Matrix3d::Identity();  // 0.2 mm of a motion
+  const Eigen::Vector3d way(0.00066, 0.0, 0.0);
+  Eigen::Vector3d p(0.0, 0.0, 0.0);
+  for (int i = 0; i < 30; ++i) {
+    p += (i > 10 && i <= 18 ? 0.11 : 0.6) * way;
+    const TimeNs t_ns = 1'000'000'000 + i * kCycle_ns;
+    watch.IsAstray(t_ns, {p, covariance_m2}, way, p);
+    EXPECT_FALSE(watch.MovesOtherwise(t_ns)) << i;
+  }
+}
+
 TEST(PathWatch, ATipThatIsThrownMovesOtherwise) {
   PathWatch watch(0.0018, 0.0);
   for (int i = 0; i < 20; ++i) {
