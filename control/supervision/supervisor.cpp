@@ -193,7 +193,7 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
     if (cycle.may_point_wrong) waits_for = Stop::kMotionAngle;
   }
   const bool waits = waits_for != Stop::kNone;
-  if (waits && decision.supervision.reaction == Reaction::kNone) {
+  if (waits && decision.supervision.reaction < Reaction::kHold) {
     decision.supervision.stop = waits_for;
     decision.supervision.reaction = Reaction::kLimit;
   }

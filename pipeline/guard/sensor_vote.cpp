@@ -15,6 +15,9 @@ namespace {
 constexpr double kClearly = 20.0;  // of chi-squared: odds of 2e4 to 1
 constexpr double kFar = 10.0;      // times the limit of chi-squared
 constexpr double kLoose_m = 0.03;  // a wrist or port elsewhere is looked for within some of these
+// Of votes in a row that named no sensor: from then on they are taken less often.
+constexpr int kUnnamed = 2;
+constexpr double kUnnamedTime = 0.5;  // of resume_after_s, until the next
 
 double Seconds(TimeNs span_ns) { return 1e-9 * static_cast<double>(span_ns); }
 
@@ -233,6 +236,28 @@ std::optional<VotedShaft> SensorVote::TakeOut(TimeNs t_ns, int sensor, const Bal
 std::optional<VotedShaft> SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped,
                                            const ShaftChange& change, Measurements& z,
                                            Supervision& found) {
+  const bool keeps = unnamed_.in_a_row >= kUnnamed &&
+                     Seconds(t_ns - unnamed_.t_ns) < kUnnamedTime * options_.resume_after_s;
+  std::optional<VotedShaft> shaft;
+  if (keeps) {
+    found.chi2 = unnamed_.chi2;
+    found.chi2_limit = unnamed_.chi2_limit;
+  } else {
+    Stop stop = Stop::kNone;
+    shaft = VoteAnew(t_ns, jumped, change, z, found, stop);
+    const int in_a_row = stop == Stop::kNone ? 0 : unnamed_.in_a_row + 1;
+    unnamed_ = {t_ns, std::min(in_a_row, kUnnamed), stop, found.chi2, found.chi2_limit};
+  }
+  if (unnamed_.stop != Stop::kNone && found.reaction < Reaction::kHold) {
+    found.stop = unnamed_.stop;
+    found.reaction = Reaction::kHold;
+  }
+  return shaft;
+}
+
+std::optional<VotedShaft> SensorVote::VoteAnew(TimeNs t_ns, std::uint8_t jumped,
+                                               const ShaftChange& change, Measurements& z,
+                                               Supervision& found, Stop& unnamed) {
   const std::uint8_t candidates = SensorsOf(z);
   if (candidates == 0) return {};
   Ballot rest;
@@ -268,18 +293,14 @@ std::optional<VotedShaft> SensorVote::Vote(TimeNs t_ns, std::uint8_t jumped,
   const double chi2_without = out >= 0 ? without[static_cast<std::size_t>(out)].chi2
                                        : std::numeric_limits<double>::infinity();
   if (WristExplains(z, change, chi2_without)) {
-    if (found.reaction >= Reaction::kHold) return {};
-    found.stop = Stop::kWristNotFollowing;
-    found.reaction = Reaction::kHold;
+    unnamed = Stop::kWristNotFollowing;
     return {};
   }
   if (out >= 0) return TakeOut(t_ns, out, without[static_cast<std::size_t>(out)], z, found);
-  if (found.reaction >= Reaction::kHold) return {};
-  found.reaction = Reaction::kHold;
   if (out == -1) {
-    found.stop = Stop::kTipDisagrees;
+    unnamed = Stop::kTipDisagrees;
   } else {
-    found.stop = Ask(loose_, z, change).agrees ? Stop::kPortMoved : Stop::kModelDisagrees;
+    unnamed = Ask(loose_, z, change).agrees ? Stop::kPortMoved : Stop::kModelDisagrees;
   }
   return {};
 }

@@ -32,6 +32,8 @@ struct VotedShaft {
 /// Chi-squared of all sensors together, with all covariances, and, where it is above its limit, of
 /// all but one. Allocates nothing. One fit a call where the sensors agree, and where one of them
 /// stays out by far: chi-squared of all is then that of the others' linear model. Sixteen at most.
+/// After two calls in a row that named no sensor the next ones, for half of `resume_after_s`,
+/// ask nobody and find the same: such a vote takes longer than a cycle.
 class SensorVote {
  public:
   SensorVote(const EstimatorOptions& estimator, const SupervisorOptions& options);
@@ -52,15 +54,32 @@ class SensorVote {
     state(loose_);
     state(tolerated_);
     state(out_ns_);
+    state(unnamed_);
   }
 
  private:
+  /// The last vote; `stop`: what it holds by, where it named no sensor.
+  struct Unnamed {
+    TimeNs t_ns = 0;
+    int in_a_row = 0;
+    Stop stop = Stop::kNone;
+    double chi2 = 0.0, chi2_limit = 0.0;
+    void VisitState(StateText& state) {
+      state(t_ns);
+      state(in_a_row);
+      state(stop);
+      state(chi2);
+      state(chi2_limit);
+    }
+  };
   /// The agreement of all sensors but one.
   struct Ballot {
     bool agrees = false, doubtful = false, from_all_starts = false;
     double chi2 = 0.0, limit = 0.0;
     std::optional<VotedShaft> shaft;
   };
+  std::optional<VotedShaft> VoteAnew(TimeNs t_ns, std::uint8_t jumped, const ShaftChange& change,
+                                     Measurements& z, Supervision& found, Stop& unnamed);
   Ballot Ask(ShaftEstimator& estimator, const Measurements& z, const ShaftChange& change) const;
   Ballot AskTwice(ShaftEstimator& estimator, const Measurements& z,
                   const ShaftChange& change) const;
@@ -80,6 +99,7 @@ class SensorVote {
   ToleratedSensors tolerated_;
   ShaftEstimator all_, without_one_, loose_;
   std::array<TimeNs, kVotedSensors> out_ns_{};  // when it was voted out last; 0: never
+  Unnamed unnamed_;
 };
 
 /// Returns the sensors that `z` has, as bits.

@@ -203,6 +203,35 @@ TEST_F(SensorVoting, AMovedPortIsNamedAndNoSensorIsBlamed) {
   EXPECT_EQ(found.reaction, Reaction::kHold);
 }
 
+// A vote that ends nowhere takes longer than a cycle: it must not be taken in each.
+TEST_F(SensorVoting, WhereNoneIsNamedTwiceTheNextVoteWaits) {
+  for (const int unnamed : {1, 2}) {
+    SensorVote fresh(estimator, Full());
+    const auto ask = [&](double off_m, TimeNs after_ns) {
+      shaft.t_ns += after_ns;
+      Measurements z = *Gather(shaft.Next());
+      shaft.t_ns -= 1'000'000'000;
+      z.p_RW.z() += off_m;
+      Supervision found;
+      fresh.Vote(shaft.t_ns, 0, {}, z, found);
+      return found;
+    };
+    Supervision last;
+    for (int i = 0; i < unnamed; ++i) {
+      last = ask(0.1, 33'000'000);
+      EXPECT_EQ(last.reaction, Reaction::kHold);
+      EXPECT_EQ(last.voted_out, 0);
+    }
+    const Supervision next = ask(0.0, 33'000'000);
+    EXPECT_EQ(next.reaction, unnamed == 2 ? Reaction::kHold : Reaction::kNone) << unnamed;
+    if (unnamed == 2) {
+      EXPECT_EQ(next.stop, last.stop);
+      EXPECT_EQ(next.chi2, last.chi2);
+    }
+    EXPECT_EQ(ask(0.0, 100'000'000).reaction, Reaction::kNone);  // half of resume_after_s
+  }
+}
+
 TEST_F(SensorVoting, ASensorThatWasOutComesBackAfterAWhile) {
   Measurements z = *Gather(shaft.Next());
   z.tip->p_RE.y() += 0.01;

@@ -119,6 +119,9 @@ TEST(Supervisor, AWristWaitsForADoubtToGoAndADoubtThatStaysHolds) {
       SupervisedCycle cycle = Cycle(i * dt_s, kWrist, kWrist + Eigen::Vector3d(1e-4, 0, 0));
       const bool in_doubt = i == 5 || i >= 20;
       if (in_doubt) cycle.found.doubt = stop;
+      // A step that is too long, too: where the wrist waits it is not what counts.
+      cycle.found.stop = Stop::kStep;
+      cycle.found.reaction = Reaction::kLimit;
       const Supervision supervision = supervisor.Decide(cycle).supervision;
       if (!supervision.waits) continue;
       EXPECT_EQ(supervision.stop, stop);
