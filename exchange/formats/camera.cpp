@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/median.h"
+#include "exchange/values/times.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/text/bounds.h"
 #include "recording/text/yaml_map.h"
@@ -62,9 +63,10 @@ CameraStream ReadCameraOf(const std::string& name, const CameraPlan& plan, int w
 void TakeFrameRate(CameraStream& camera) {
   std::vector<TimeNs> steps;
   const auto add = [&](const auto& frames) {
-    for (std::size_t i = 1; i < frames.size(); ++i) {
-      steps.push_back(frames[i].t_ns - frames[i - 1].t_ns);
-    }
+    std::vector<TimeNs> times;
+    for (const auto& frame : frames) times.push_back(frame.t_ns);
+    RefuseLeaps("the pictures", times);
+    for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   };
   add(camera.frame_numbers);
   add(camera.filenames);

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/median.h"
+#include "exchange/values/times.h"
 #include "recording/text/bounds.h"
 
 namespace flextip::exchange {
@@ -101,6 +102,7 @@ NotTold Settings::MissingKey(const std::string& key) const {
 }
 
 double Settings::Rate(const std::vector<TimeNs>& times) {
+  RefuseLeaps(stream_ + ": its samples", times);
   if (const auto told = List("rate_hz"); !told.empty()) return told.front();
   std::vector<TimeNs> steps;
   for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);

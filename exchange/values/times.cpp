@@ -8,7 +8,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/error.h"
 #include "core/median.h"
+#include "recording/streams/series_file.h"
 #include "recording/text/bounds.h"
 #include "recording/text/text.h"
 
@@ -16,6 +18,7 @@ namespace flextip::exchange {
 namespace {
 
 constexpr TimeNs kNsPerSecond = 1'000'000'000;
+constexpr TimeNs kDay_ns = 24 * 3600 * kNsPerSecond;
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
@@ -176,6 +179,16 @@ std::optional<TimeNs> WithOffset(TimeNs t_ns, TimeNs offset_ns) {
   if (__builtin_add_overflow(t_ns, offset_ns, &sum)) return {};
   if (!ExpectedWithin(BoundsOf("_ns"), static_cast<double>(sum)).empty()) return {};
   return sum;
+}
+
+void RefuseLeaps(const std::string& whose, const std::vector<TimeNs>& times) {
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] - times[i - 1] <= kLongestGap_ns) continue;
+    throw InputError(
+        fmt::format("{} {} and {} are {:.3g} days apart, expected at most {}", whose, i, i + 1,
+                    static_cast<double>(times[i] - times[i - 1]) / static_cast<double>(kDay_ns),
+                    kLongestGap_ns / kDay_ns));
+  }
 }
 
 std::string SecondsText(TimeNs t_ns) {

@@ -28,6 +28,10 @@ std::optional<TimeNs> ParseTime(std::string_view text, const std::string& unit);
 /// Returns a time with an offset added; empty where the sum is beyond what a recording holds.
 std::optional<TimeNs> WithOffset(TimeNs t_ns, TimeNs offset_ns);
 
+/// Throws InputError where two times in a row are farther apart than a recording holds. `whose`:
+/// "em0: its samples".
+void RefuseLeaps(const std::string& whose, const std::vector<TimeNs>& times);
+
 /// Exact, in seconds: "12.3".
 std::string SecondsText(TimeNs t_ns);
 

@@ -7,7 +7,6 @@
 namespace flextip {
 namespace {
 
-constexpr TimeNs kLongestGap_ns = TimeNs(30) * 24 * 3600 * 1'000'000'000;  // of a recording
 constexpr double kUnitTolerance = 1e-3;
 constexpr double kUnitRounding = 1e-12;  // a unit vector of doubles is unit to about 1e-16
 

@@ -14,6 +14,8 @@
 namespace flextip {
 
 inline constexpr const char* kTimeColumn = "timestamp [ns]";
+/// Between two rows: 30 days.
+inline constexpr TimeNs kLongestGap_ns = TimeNs(30) * 24 * 3600 * 1'000'000'000;
 
 /// "timestamp [ns]" and the names.
 std::vector<std::string> TimedColumns(const std::vector<std::string>& names);
@@ -51,7 +53,7 @@ Series<T> ReadSeries(const std::filesystem::path& file, const std::vector<std::s
 }
 
 /// Writes `file`; `add_value(csv, value)` appends a value's fields. Throws WorkError for what
-/// ReadSeries would reject: no samples, or time not increasing.
+/// ReadSeries would reject: no samples, or a time that does not increase or leaps.
 template <class T, class AddValue>
 void WriteSeries(const std::filesystem::path& file, const std::vector<std::string>& names,
                  const Series<T>& series, AddValue add_value);
@@ -69,6 +71,8 @@ void WriteSeries(const std::filesystem::path& file, const std::vector<std::strin
   for (std::size_t i = 0; i < series.size(); ++i) {
     if (i > 0 && series[i].t_ns <= series[i - 1].t_ns)
       RefuseToWrite(file, "time does not increase");
+    if (i > 0 && series[i].t_ns - series[i - 1].t_ns > kLongestGap_ns)
+      RefuseToWrite(file, "time leaps by more than 30 days");
     csv.Add(series[i].t_ns);
     add_value(csv, series[i].value);
     csv.EndRow();

@@ -62,6 +62,24 @@ TEST(FarTimes, ApartByHoursAreRefused) {
   EXPECT_THAT(test_support::Refusal(plan), HasSubstr("wrist0: its samples are 6e+04 s apart"));
 }
 
+// One leap among many rows does not change their rate.
+TEST(FarTimes, LeapsOfYearsAreRefused) {
+  for (const char* rate_hz : {"", "10"}) {
+    const TemporaryFolder folder;
+    WriteText(folder / "a.csv",
+              "t [s],x [m],y [m],z [m]\n0,1,2,3\n0.1,1,2,3\n0.2,1,2,3\n"
+              "86400000,1,2,3\n86400000.1,1,2,3\n");
+    ImportPlan plan = PlanWithSettings();
+    plan.streams["wrist0"].file = folder / "a.csv";
+    plan.streams["wrist0"].units["length"] = "m";
+    TellSensor(plan, "test", "wrist0", "position_noise_m", "1e-4");
+    TellSensor(plan, "test", "wrist0", "orientation_noise_rad", "1e-3");
+    if (*rate_hz) TellSensor(plan, "test", "wrist0", "rate_hz", rate_hz);
+    EXPECT_THAT(test_support::Refusal(plan),
+                HasSubstr("wrist0: its samples 3 and 4 are 1e+03 days apart, expected at most 30"));
+  }
+}
+
 TEST(FarTimes, OfASideCarAreRefused) {
   const TemporaryFolder folder;
   WriteText(folder / "v.json", R"({"timestamps": [-3.9e9], "estimated_latency": 3.9e9})");
