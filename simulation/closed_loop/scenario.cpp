@@ -6,9 +6,8 @@
 
 #include "core/error.h"
 #include "diagnosis/running/running_diagnosis.h"
-#include "recording/cameras/camera_file.h"
-#include "recording/streams/sensor_streams.h"
 #include "recording/text/yaml_map.h"
+#include "simulation/closed_loop/scenario_sections.h"
 #include "simulation/effects/catalogue.h"
 #include "task/path_time.h"
 #include "task/task_reader.h"
@@ -17,11 +16,6 @@ namespace flextip::simulation {
 namespace {
 
 constexpr double kLongestHeld_s = 5.0;  // of a supervised run, beyond its path
-
-Eigen::Vector3d VectorOr(const YamlMap& map, const std::string& key,
-                         const Eigen::Vector3d& fallback) {
-  return map.Has(key) ? map.Vector3(key) : fallback;
-}
 
 /// Reads a file's sections and remembers them, to find the keys nobody asked for.
 class ScenarioReader {
@@ -39,13 +33,17 @@ class ScenarioReader {
     ReadEffects();
     ReadTask();
     ReadFaults();
-    scenario_.loop.seed = static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
+    scenario_.loop.seed = Seed();
     top_.RefuseUnknown();
     for (const YamlMap& section : sections_) section.RefuseUnknown();
     return std::move(scenario_);
   }
 
  private:
+  std::uint64_t Seed() const {
+    return static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
+  }
+
   YamlMap Section(const YamlMap& map, const std::string& key) {
     sections_.push_back(map.Map(key));
     return sections_.back();
@@ -99,128 +97,16 @@ class ScenarioReader {
   }
 
   void ReadSensors() {
-    const YamlMap map = Section(top_, "sensors");
-    SensorSetup& sensors = scenario_.loop.sensors;
-    const YamlMap wrist = Section(map, "wrist");
-    sensors.wrist.emplace();
-    sensors.wrist->comment = "wrist encoders";
-    sensors.wrist->rate_hz = wrist.Positive("rate_hz");
-    sensors.wrist->position_noise_m = wrist.NonNegative("position_noise_m");
-    sensors.wrist->orientation_noise_rad = wrist.NonNegative("orientation_noise_rad");
-    if (map.Has("em0")) sensors.em0 = ReadEm(Section(map, "em0"), false);
-    if (map.Has("em1")) sensors.em1 = ReadEm(Section(map, "em1"), true);
-    if (map.Has("strain")) ReadStrain(Section(map, "strain"), sensors.strain.emplace());
-    if (map.Has("load")) {
-      const YamlMap load = Section(map, "load");
-      sensors.load.emplace();
-      sensors.load->comment = "load cell on the tip";
-      sensors.load->rate_hz = load.Positive("rate_hz");
-      sensors.load->force_noise_N = load.NonNegative("force_noise_N");
-    }
-    if (map.Has("tip")) ReadTip(Section(map, "tip"), sensors.tip.emplace());
+    scenario_.loop.sensors = ReadScenarioSensors(
+        Section(top_, "sensors"), scenario_.loop.base.instrument.length_m, sections_);
   }
 
-  EmStream ReadEm(const YamlMap& map, bool on_port) {
-    EmStream em;
-    em.comment = on_port ? "EM sensor on the port" : "EM sensor on the shaft";
-    em.rate_hz = map.Positive("rate_hz");
-    em.orientation_noise_rad = map.NonNegative("orientation_noise_rad");
-    em.position_noise_m =
-        on_port ? map.NonNegativeOr("position_noise_m", 0.0) : map.NonNegative("position_noise_m");
-    if (!on_port) {
-      em.distance_from_tip_m = map.NonNegative("distance_from_tip_m");
-      if (em.distance_from_tip_m > scenario_.loop.base.instrument.length_m) {
-        throw map.Error("distance_from_tip_m", "the sensor is beyond the shaft's wrist end");
-      }
-    }
-    const std::string distribution = map.TextOr("noise_distribution", "gaussian");
-    if (distribution != "gaussian" && distribution != "uniform") {
-      throw map.Error("noise_distribution",
-                      fmt::format("found '{}', expected gaussian or uniform", distribution));
-    }
-    em.noise_distribution =
-        distribution == "uniform" ? NoiseDistribution::kUniform : NoiseDistribution::kGaussian;
-    return em;
-  }
-
-  void ReadStrain(const YamlMap& map, StrainStream& strain) {
-    strain.comment = "strain gages";
-    strain.rate_hz = map.Positive("rate_hz");
-    strain.moment_noise_Nm = map.NonNegative("moment_noise_Nm");
-    const auto stations = map.Numbers("stations_from_wrist_m", 2);
-    const double length = scenario_.loop.base.instrument.length_m;
-    if (!(0 <= stations[0] && stations[0] < stations[1] && stations[1] <= length)) {
-      throw map.Error("stations_from_wrist_m",
-                      fmt::format("found {} and {}, expected two places along the shaft of {} m",
-                                  stations[0], stations[1], length));
-    }
-    std::copy(stations.begin(), stations.end(), strain.station_from_wrist_m);
-  }
-
-  void ReadTip(const YamlMap& map, TipSensorSetup& tip) {
-    tip.across_noise_m = map.NonNegative("across_noise_m");
-    tip.depth_noise_m = map.NonNegative("depth_noise_m");
-    tip.direction_noise_rad = map.NonNegative("direction_noise_rad");
-    if (map.Has("line_of_sight")) tip.line_of_sight = ReadUnit(map, "line_of_sight");
-    tip.rate_hz = map.Has("rate_hz") ? map.Positive("rate_hz") : 30.0;
-  }
-
-  /// Camera and collar are files in a recording's own format, named relative to the scenario.
   void ReadCamera() {
     LoopSetup& loop = scenario_.loop;
     if (loop.sensors.tip) loop.update_rate_hz = loop.sensors.tip->rate_hz;
     if (!top_.Has("camera")) return;
-    const YamlMap map = Section(top_, "camera");
-    ReadLog log;
-    const auto folder = file_.parent_path();
-    loop.base.cam0.emplace();
-    loop.base.cam0->comment = "rendered laparoscope";
-    loop.base.cam0->calibration = ReadCameraCalibration(folder / map.Text("calibration"), &log);
-    loop.base.tags0 = ReadTags(folder / map.Text("collar"), log);
-    scenario_.warnings.insert(scenario_.warnings.end(), log.warnings.begin(), log.warnings.end());
-    if (map.Has("rate_hz")) loop.base.cam0->calibration.rate_hz = map.Positive("rate_hz");
-    loop.update_rate_hz = loop.base.cam0->calibration.rate_hz;
-    if (loop.sensors.tip) {
-      loop.sensors.tip->rate_hz = loop.update_rate_hz;
-      loop.sensors.tip->T_RC = loop.base.cam0->calibration.T_RC;
-    }
-    scenario_.has_camera = true;
-
-    LaparoscopeOptions& scope = scenario_.laparoscope;
-    scope.seed = static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
-    scope.exposure = map.PositiveOr("exposure", scope.exposure);
-    scope.blur_sigma_px = map.NonNegativeOr("blur_sigma_px", scope.blur_sigma_px);
-    scope.full_well_electrons = map.NonNegativeOr("full_well_electrons", scope.full_well_electrons);
-    scope.read_noise_electrons =
-        map.NonNegativeOr("read_noise_electrons", scope.read_noise_electrons);
-    scope.tissue.relief_m = map.NonNegativeOr("tissue_relief_m", scope.tissue.relief_m);
-    if (map.Has("tissue_point_m")) scope.tissue.point_R = map.Vector3("tissue_point_m");
-    if (map.Has("tissue_normal")) scope.tissue.normal_R = ReadUnit(map, "tissue_normal");
-    if (map.Has("occluders")) {
-      for (const YamlMap& occluder : map.Maps("occluders")) ReadOccluder(occluder);
-    }
-    scenario_.tracker.detector.quad_decimate = map.PositiveOr("quad_decimate", 1.0);
-  }
-
-  void ReadOccluder(const YamlMap& map) {
-    sections_.push_back(map);
-    Occluder occluder;
-    const std::string kind = map.Text("kind");
-    if (kind != "capsule" && kind != "disc") {
-      throw map.Error("kind", fmt::format("found '{}', expected capsule or disc", kind));
-    }
-    occluder.kind = kind == "disc" ? Occluder::Kind::kDisc : Occluder::Kind::kCapsule;
-    occluder.a_R = map.Vector3("a_m");
-    occluder.b_R = map.Vector3("b_m");
-    occluder.radius_m = map.Positive("radius_m");
-    occluder.velocity_R = VectorOr(map, "velocity_m_per_frame", Eigen::Vector3d::Zero());
-    if (map.Has("metal") && map.Number("metal") > 0) {
-      occluder.albedo_bgr = {0.5, 0.5, 0.5};
-      occluder.specular = 1.0;
-    }
-    if (map.Has("first_frame")) occluder.first_frame = static_cast<int>(map.Integer("first_frame"));
-    if (map.Has("last_frame")) occluder.last_frame = static_cast<int>(map.Integer("last_frame"));
-    scenario_.laparoscope.occluders.push_back(occluder);
+    scenario_.laparoscope.seed = Seed();
+    ReadScenarioCamera(Section(top_, "camera"), file_.parent_path(), sections_, scenario_);
   }
 
   /// effects: {NAME: {PARAMETER: number or list}}, of plant and sensors.
@@ -314,8 +200,7 @@ class ScenarioReader {
                                        map.NonNegativeOr("duration_s", kLongestPath_s),
                                        map.NumberOr("size", 0.0)});
     }
-    scenario_.loop.fault_seed =
-        static_cast<std::uint64_t>(top_.Has("seed") ? top_.Integer("seed") : 1);
+    scenario_.loop.fault_seed = Seed();
   }
 
   /// The controller's rate, and the latencies that it is told of.
