@@ -5,19 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/shaft/next_load.h"
-#include "calibration/shaft/stiffness_fit.h"
+#include "calibration/shaft/stiffness_model_fit.h"
 #include "core/error.h"
-#include "core/linear_algebra.h"
-#include "core/median.h"
 
 namespace flextip {
 namespace {
 
-constexpr std::size_t kFolds = 8;
 constexpr double kTaperPrior = 1.0;
 constexpr double kKnownStiffness = 0.1, kKnownTaper = 0.3;  // standard deviations, of one
-constexpr double kMostOutliers = 0.1;                       // of the holds: more is the model
 constexpr int kBins = 10;
 
 LoadClock ClockOf(const Recording& recording, const std::string& source) {
@@ -62,135 +57,6 @@ StiffnessSetup SetupOf(const Recording& recording, const std::vector<LoadHold>& 
   return setup;
 }
 
-/// chi2 of `n` over what a hold with plain noise hardly ever exceeds.
-double Excess(double chi2, double n) { return chi2 / (n + 8 * std::sqrt(2 * n)); }
-
-/// One model, fitted without outliers, and how it does on what it was not fitted to.
-class ModelFit {
- public:
-  ModelFit(const StiffnessSetup& setup, const std::vector<LoadHold>& holds)
-      : fitter_(setup, holds), weights_(holds.size(), 1.0), taper_(setup.taper_prior > 0) {
-    fit_ = fitter_.Fit(weights_, fitter_.Nominal());
-    RejectOutliers();
-    Score();
-    HoldOut();
-  }
-  const StiffnessFit& fit() const { return fit_; }
-  const StiffnessModel& model() const { return model_; }
-  const std::vector<double>& weights() const { return weights_; }
-  const StiffnessMatrix& covariance() const { return covariance_; }
-  StiffnessFitter& fitter() { return fitter_; }
-  bool IsIncomplete() const {
-    return model_.chi2_per_dof > std::max(1.3, 1 + 5 * std::sqrt(2 / freedoms_));
-  }
-
- private:
-  void RejectOutliers();
-  void Score();
-  void HoldOut();
-
-  StiffnessFitter fitter_;
-  std::vector<double> weights_;
-  bool taper_;
-  StiffnessFit fit_;
-  StiffnessModel model_;
-  StiffnessMatrix covariance_;
-  double freedoms_ = 1.0;
-};
-
-/// Where many are far off it is not they who are wrong: then all stay.
-void ModelFit::RejectOutliers() {
-  for (int round = 0; round < 4 && fit_.converged; ++round) {
-    std::vector<double> ratios;
-    for (const StiffnessRows& rows : fit_.rows) {
-      const auto n = static_cast<double>(rows.residual.size());
-      if (rows.usable) ratios.push_back(rows.Chi2() / (n * std::pow(1 - 2 / (9 * n), 3)));
-    }
-    const double scale = std::max(1.0, Median(ratios));
-    std::vector<double> weights(weights_.size(), 1.0);
-    double out = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      const StiffnessRows& rows = fit_.rows[i];
-      if (!rows.usable) continue;
-      if (Excess(rows.Chi2() / scale, static_cast<double>(rows.residual.size())) < 1) continue;
-      weights[i] = 0;
-      ++out;
-    }
-    if (out > kMostOutliers * static_cast<double>(ratios.size())) weights.assign(weights.size(), 1);
-    if (weights == weights_) return;
-    weights_ = weights;
-    fit_ = fitter_.Fit(weights_, fit_.x);
-  }
-}
-
-void ModelFit::Score() {
-  double chi2 = 0, squares = 0, places = 0;
-  freedoms_ = taper_ ? -2 : -1;
-  for (std::size_t i = 0; i < weights_.size(); ++i) {
-    const StiffnessRows& rows = fit_.rows[i];
-    if (!rows.usable || weights_[i] == 0) continue;
-    chi2 += rows.Chi2();
-    freedoms_ += static_cast<double>(rows.residual.size());
-    if (!rows.has_place) continue;
-    squares += rows.residual.head<3>().squaredNorm();
-    ++places;
-  }
-  freedoms_ = std::max(freedoms_, 1.0);
-  model_.converged = fit_.converged;
-  model_.chi2_per_dof = chi2 / freedoms_;
-  model_.tip_rms_m = std::sqrt(squares / std::max(places, 1.0));
-  model_.stiffness_Nm2 = std::exp(fit_.x[kLogStiffness]);
-  model_.taper = fit_.x[kStiffnessTaper];
-}
-
-/// Each block of the recording by a fit to the others, to first order about the whole fit. How the
-/// blocks' fits scatter (a jackknife) also says how much the model's own misfit leaves in doubt.
-void ModelFit::HoldOut() {
-  const std::size_t n = weights_.size();
-  double squares = 0, places = 0, chi2 = 0, measurements = 0;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero(), sum_squares = sum;
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    StiffnessMatrix N = fit_.information;
-    StiffnessVector gradient = StiffnessVector::Zero(kStiffnessUnknowns);
-    const std::size_t first = fold * n / kFolds, last = (fold + 1) * n / kFolds;
-    for (std::size_t i = first; i < last; ++i) {
-      const StiffnessRows& rows = fit_.rows[i];
-      if (!rows.usable || weights_[i] == 0) continue;
-      const Ldlt S(rows.covariance);
-      N -= rows.by_unknowns.transpose() * S.Solve(rows.by_unknowns);
-      gradient -= rows.by_unknowns.transpose() * S.Solve(rows.residual);
-    }
-    const StiffnessVector unit = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const StiffnessMatrix scaled = unit.asDiagonal() * N * unit.asDiagonal();
-    const StiffnessVector dx = unit.cwiseProduct(Ldlt(scaled).Solve(unit.cwiseProduct(gradient)));
-    sum += dx.head<2>();
-    sum_squares += dx.head<2>().cwiseAbs2();
-    for (std::size_t i = first; i < last; ++i) {
-      const StiffnessRows& rows = fit_.rows[i];
-      if (!rows.usable || weights_[i] == 0) continue;
-      const Eigen::VectorXd e = rows.residual - rows.by_unknowns * dx;
-      chi2 += e.dot(Ldlt(rows.covariance).Solve(e));
-      measurements += static_cast<double>(e.size());
-      if (!rows.has_place) continue;
-      squares += e.head<3>().squaredNorm();
-      ++places;
-    }
-  }
-  model_.heldout_tip_rms_m = std::sqrt(squares / std::max(places, 1.0));
-  model_.heldout_chi2 = chi2 / std::max(measurements, 1.0);
-  double wider = std::max(1.0, model_.chi2_per_dof);
-  if (IsIncomplete()) {
-    constexpr double k = kFolds;
-    const Eigen::Vector2d jackknife = (k - 1) / k * (sum_squares - sum.cwiseAbs2() / k);
-    for (int i = 0; i < (taper_ ? 2 : 1); ++i) {
-      wider = std::max(wider, jackknife[i] / fit_.covariance(i, i));
-    }
-  }
-  covariance_ = wider * fit_.covariance;
-  model_.stiffness_sd_Nm2 = model_.stiffness_Nm2 * std::sqrt(covariance_(0, 0));
-  model_.taper_sd = taper_ ? std::sqrt(covariance_(1, 1)) : 0.0;
-}
-
 /// The taper is believed where it predicts better and is no chance.
 bool IsTaperBetter(const StiffnessModel& constant, const StiffnessModel& tapered) {
   return tapered.converged && tapered.taper_sd < kKnownTaper &&
@@ -204,7 +70,7 @@ std::string WhyFar(const StiffnessHoldResult& hold) {
                      1e3 * hold.place_residual_m.norm(), hold.chi2, hold.measurements);
 }
 
-void FillHolds(const std::vector<LoadHold>& holds, const ModelFit& chosen,
+void FillHolds(const std::vector<LoadHold>& holds, const StiffnessModelFit& chosen,
                StiffnessCalibration& result) {
   for (std::size_t i = 0; i < holds.size(); ++i) {
     const StiffnessRows& rows = chosen.fit().rows[i];
@@ -259,41 +125,7 @@ void FillInsertions(double length_m, StiffnessCalibration& result) {
   }
 }
 
-/// The variance that matters, after one more hold.
-double VarianceWith(const StiffnessMatrix& information, int unknown) {
-  const StiffnessVector unit = information.diagonal().cwiseSqrt().cwiseInverse();
-  const StiffnessMatrix scaled = unit.asDiagonal() * information * unit.asDiagonal();
-  const StiffnessVector e = StiffnessVector::Unit(kStiffnessUnknowns, unknown);
-  return unit[unknown] * unit[unknown] * Ldlt(scaled).Solve(e)[unknown];
-}
-
-std::string Advice(ModelFit& chosen, bool for_taper, const Eigen::Vector3d& p_RP,
-                   const StiffnessCalibration& result) {
-  const int unknown = for_taper ? kStiffnessTaper : kLogStiffness;
-  std::vector<PlacedHold> placed;
-  for (const auto& h : result.holds) {
-    if (h.used && h.measurements > 0) placed.push_back({h.hold, h.s_port_m});
-  }
-  const double now = VarianceWith(chosen.fit().information, unknown);
-  double best = now;
-  std::string words;
-  for (const NextLoad& next : NextLoads(placed, p_RP)) {
-    const StiffnessRows rows = chosen.fitter().RowsOf(next.hold, chosen.fit().x);
-    if (!rows.usable) continue;
-    const double then =
-        VarianceWith(chosen.fit().information + rows.by_unknowns.transpose() *
-                                                    Ldlt(rows.covariance).Solve(rows.by_unknowns),
-                     unknown);
-    if (then >= best) continue;
-    best = then;
-    words = next.words;
-  }
-  if (best > 0.94 * now) return "";
-  return fmt::format("{} (the {}'s standard deviation falls to {:.0f} %)", words,
-                     for_taper ? "taper" : "stiffness", 100 * std::sqrt(best / now));
-}
-
-void FillFound(const ModelFit& chosen, StiffnessCalibration& result) {
+void FillFound(const StiffnessModelFit& chosen, StiffnessCalibration& result) {
   const StiffnessModel& model = chosen.model();
   Calibration& found = result.found;
   found.kind = "stiffness";
@@ -348,7 +180,7 @@ StiffnessCalibration CalibrateStiffness(const Recording& recording, const std::s
         source, 0, fmt::format("found {} loads with wrist and tip, expected at least 5", usable));
   }
   StiffnessSetup setup = SetupOf(recording, holds, options);
-  std::optional<ModelFit> constant, tapered;
+  std::optional<StiffnessModelFit> constant, tapered;
   if (options.choice != StiffnessChoice::kTaper) constant.emplace(setup, holds);
   setup.taper_prior = kTaperPrior;
   if (options.choice != StiffnessChoice::kConstant) tapered.emplace(setup, holds);
@@ -356,7 +188,7 @@ StiffnessCalibration CalibrateStiffness(const Recording& recording, const std::s
   if (constant) result.constant = constant->model();
   if (tapered) result.tapered = tapered->model();
   result.taper_chosen = !constant || (tapered && IsTaperBetter(*result.constant, *result.tapered));
-  ModelFit& chosen = result.taper_chosen ? *tapered : *constant;
+  StiffnessModelFit& chosen = result.taper_chosen ? *tapered : *constant;
   result.port_noise_m = options.port_noise_m;
   FillHolds(holds, chosen, result);
   FillInsertions(recording.instrument.length_m, result);
@@ -367,7 +199,7 @@ StiffnessCalibration CalibrateStiffness(const Recording& recording, const std::s
                   : chosen.IsIncomplete() ? StiffnessStatus::kModelIncomplete
                                           : StiffnessStatus::kOk;
   FillFound(chosen, result);
-  result.advice = Advice(chosen, result.taper_chosen, recording.p_RP, result);
+  result.advice = AdviseLoad(chosen, result.taper_chosen, recording.p_RP, result);
   return result;
 }
 
