@@ -178,7 +178,7 @@ class Trial:
                 self.blame(name, f"input {way}: {process.returncode} {err.strip()[-200:]!r}")
             if process.returncode == 0 and not out.exists():
                 self.blame(name, f"input {way}: no result")
-            judged = name in ("check", "align")  # whose result may be that something is wrong
+            judged = name in ("check", "align", "replay")  # a result may be that something is wrong
             if process.returncode != 0 and out.exists() and name != "batch" and not judged:
                 self.blame(name, f"input {way}: failed and left a result")
 
