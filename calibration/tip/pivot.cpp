@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kFewestPoses = 5;
 constexpr double kLeastShare = 0.6;
+constexpr double kFarthest_m = 10.0;  // of a tip from its body: beyond, nothing was turned about it
 
 /// Of the poses whose weight is not zero, and per component: all residuals, or those held out.
 double Rms(const std::vector<PivotResidual>& residuals, bool heldout) {
@@ -190,6 +191,14 @@ PivotResult CalibratePivot(const std::vector<PivotPose>& poses, const PivotOptio
   const PivotPoint start = AlgebraicPivot(poses, std::vector<double>(poses.size(), 1.0));
   result.algebraic_rms_m = AlgebraicRms(poses, start);
   const auto [point, weights] = FitPoses(poses, options, RobustPivot(poses, start), result);
+  if (!(point.x_B.norm() < kFarthest_m)) {
+    result.status = PivotStatus::kNoPivot;
+    result.unobservable = fmt::format(
+        "no point within {:.0f} m of the body stays in place: it was moved, and not turned about "
+        "its tip",
+        kFarthest_m);
+    return result;
+  }
   const Matrix6d H = PivotInformation(poses, weights, point);
   const Matrix6d C = CompleteOrthogonal(H).PseudoInverse();
   DescribeResiduals(poses, point, weights, C, result);

@@ -32,7 +32,7 @@ enum class PivotStatus : std::uint8_t {
   kOk,
   kTooFewPoses,   ///< fewer than five
   kUnobservable,  ///< the motion leaves the tip unknown, see `unobservable`
-  kNoPivot,       ///< fewer than 60 % of the poses agree on any fixed point
+  kNoPivot,       ///< fewer than 60 % of the poses agree on any fixed point, or it is 10 m away
 };
 const char* Name(PivotStatus status);
 

@@ -196,6 +196,31 @@ TEST(Pivot, ATipThatWandersIsNoPivot) {
   EXPECT_NE(CalibratePivot(poses).status, PivotStatus::kOk);
 }
 
+// A wrist that presses: it goes 30 mm and hardly turns. The farther the tip, the more of it passes
+// for noise of the orientation.
+TEST(Pivot, AWristThatOnlyMovesHasNoTip) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    PivotScene scene;
+    scene.poses = 400;
+    scene.turn_sd_rad.setZero();
+    scene.position_noise_m = 5e-5;
+    scene.orientation_noise_rad = 3e-4;
+    std::vector<PivotPose> poses = DrawPivot(scene, random);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const double part = static_cast<double>(i) / 400.0;
+      poses[i].T_RB.p += Eigen::Vector3d(0.01, 0.02 * part, -0.03) * std::sin(6.0 * part);
+      poses[i].T_RB.R = poses[i].T_RB.R * ExpRotation({0.0, 0.02 * part * part, 0.01 * part});
+    }
+    const PivotResult result = CalibratePivot(poses);
+    EXPECT_NE(result.status, PivotStatus::kOk);
+    EXPECT_NE(result.unobservable, "");
+    EXPECT_LT(result.p_BE.norm(), 10.0) << seed;
+    EXPECT_TRUE(std::isfinite(result.rms_m) && std::isfinite(result.heldout_rms_m)) << seed;
+    for (const PivotResidual& r : result.residuals) EXPECT_TRUE(r.heldout_R.allFinite()) << seed;
+  }
+}
+
 // The turn advised is better than the same number of poses about any of the body's axes.
 TEST(Pivot, TheTurnAdvisedIsTheOneThatHelpsMost) {
   PivotScene scene;
