@@ -78,6 +78,11 @@ void RunControl(const ControlCommandOptions& options, bool quiet) {
     if (options.out.empty()) throw InputError("-o RECORDING is missing, expected it with --model");
     return WriteJointCommands({options.session, options.model, options.out, options.force, quiet});
   }
+  if (std::filesystem::is_directory(options.session)) {
+    throw InputError::At(options.session.string(), 0,
+                         "is a folder, expected a session; a recording of an arm's desired joints "
+                         "needs --model MODEL.yaml, which flextip diagnose writes");
+  }
   if (live::IsJointSession(options.session)) {
     if (options.page || options.page_port || options.timing_s)
       throw InputError("--page and --timing are for a session with a shaft, found one of joints");

@@ -162,8 +162,9 @@ ClockResult AlignClocks(const Recording& recording, const ClockOptions& options)
   const Motions motions = MotionsOf(recording);
   const std::string known = motions.Names();
   if (motions.streams.size() < 2) {
-    throw InputError(fmt::format("the recording has {}: two streams that move are needed",
-                                 known.empty() ? "no stream that moves" : known + " alone"));
+    throw InputError(fmt::format(
+        "the recording has {}, expected two of wrist0, em0, vision0, load0 and strain0 that move",
+        known.empty() ? "none of these streams that moves" : known + " alone"));
   }
   const Motion* reference =
       options.reference.empty() ? &motions.streams.front() : motions.Find(options.reference);

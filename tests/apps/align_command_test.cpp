@@ -52,7 +52,7 @@ TEST(AlignCommand, RefusesWhatItCannotCompare) {
   EXPECT_TRUE(IsRefused(
       RunProgram(
           {"align", std::string(FLEXTIP_SOURCE_DIR) + "/testdata/recordings/rendered", "-o", out}),
-      {"wrist0 alone", "two streams"}));
+      {"wrist0 alone", "em0, vision0"}));
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 

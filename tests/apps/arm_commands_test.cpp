@@ -109,6 +109,9 @@ TEST_F(ArmCommands, RefusesWhatIsNoWishAndNoModelOfAnArm) {
   EXPECT_TRUE(IsRefused(Control("wish", "other.yaml"), {"joint_offset.offset", "expected 3"}));
   EXPECT_TRUE(IsRefused(Control("wish", "shaft.yaml"), {"shaft.yaml", "flextip-arm-model"}));
   EXPECT_TRUE(IsRefused(Control("nothing", "good.yaml"), {"nothing"}));
+  EXPECT_TRUE(IsRefused(
+      RunProgram({"control", (folder_ / "wish").string(), "-o", (folder_ / "commands").string()}),
+      {"is a folder", "--model"}));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "commands"));
   EXPECT_EQ(Control("wish", "good.yaml").exit_code, 0);
 }

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "core/error.h"
+#include "tests/scratch_folder.h"
 
 namespace flextip::simulation {
 namespace {
@@ -20,8 +20,7 @@ using testing::HasSubstr;
 /// Returns why the runs are refused: 4000 s along 0.4 m, with that wrist, a tip and updates at 30
 /// Hz each. Empty where they may run.
 std::string Complaint(double wrist_rate_hz, const std::string& controllers) {
-  const auto file = std::filesystem::path(testing::TempDir()) /
-                    fmt::format("flextip-scenario-run-{}.yaml", ::getpid());
+  const auto file = flextip::test_support::ScratchFolder() / "scenario.yaml";
   std::ofstream(file) << fmt::format(R"(
 instrument: {{length_m: 0.6, outer_diameter_m: 0.00238, bending_stiffness_Nm2: 0.304}}
 port: {{position_m: [0.0, 0.0, 0.17]}}

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
+
+#include "tests/scratch_folder.h"
 
 namespace flextip {
 
@@ -31,9 +32,7 @@ Image Rasterise(const std::filesystem::path& pdf, double px_per_mm,
 
 std::filesystem::path Scratch(const std::string& name) {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::temp_directory_path() /
-                      fmt::format("flextip-{}-{}-{}", test->test_suite_name(), test->name(),
-                                  static_cast<long>(::getpid()));
+  auto folder = test_support::ScratchFolder() / test->test_suite_name() / test->name();
   std::filesystem::create_directories(folder);
   return folder / name;
 }

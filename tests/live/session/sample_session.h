@@ -1,13 +1,12 @@
 // A session for tests: the thesis's instrument, all streams of a peer at one port.
 #pragma once
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "live/session/session.h"
+#include "tests/scratch_folder.h"
 
 namespace flextip::live {
 
@@ -35,11 +34,9 @@ path: {frame: start, average_s: 0.2, speed_m_s: 0.01, settle_s: 0.5,
 
 /// Writes a session file into a folder of this test program.
 inline std::filesystem::path WriteSession(const std::string& text) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("flextip-session-" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "session.yaml") << text;
-  return folder / "session.yaml";
+  const auto file = flextip::test_support::ScratchFolder() / "session.yaml";
+  std::ofstream(file) << text;
+  return file;
 }
 
 }  // namespace flextip::live
