@@ -25,6 +25,20 @@ constexpr int kBags = 8;
 constexpr std::size_t kLeaders = 30;
 constexpr double kKnown = 0.05;  // probability left to known answers that do not explain it
 
+/// One recording twice would count as twice the evidence.
+void RequireAnother(const ArmData& a, const ArmData& b) {
+  const auto same = [](const Track& x, const Track& y) {
+    return x.Rows() == y.Rows() && x.values.cols() == y.values.cols() && x.t_s == y.t_s &&
+           x.values == y.values;
+  };
+  const bool all = same(a.joints, b.joints) && same(a.command, b.command) &&
+                   same(a.seen.track, b.seen.track) && same(a.pose.track, b.pose.track) &&
+                   same(a.torque.track, b.torque.track);
+  if (!all) return;
+  throw InputError(fmt::format("{} and {} hold the same samples, expected different recordings",
+                               a.name, b.name));
+}
+
 void RequireOneArm(const std::vector<ArmData>& recordings) {
   const Arm& first = recordings.front().arm;
   for (const ArmData& data : recordings) {
@@ -39,6 +53,8 @@ void RequireOneArm(const std::vector<ArmData>& recordings) {
           fmt::format("another arm than that of {}, expected recordings of one arm",
                       recordings.front().name));
     }
+    for (const ArmData* other = recordings.data(); other != &data; ++other)
+      RequireAnother(*other, data);
   }
 }
 

@@ -7,6 +7,7 @@ namespace {
 
 // A ratio above which a model hardly gains: chance may give any model a few per cent.
 constexpr double kGain = 0.9;
+constexpr double kWorse = 1.1;  // the same, of a model that does not fit
 
 }  // namespace
 
@@ -21,13 +22,16 @@ Judgement JudgePrediction(const Prediction& prediction) {
     return judged;
   }
   const bool gains = gain.heldout_error_ratio < kGain;
+  const char* verdict = gains ? "The model holds for this recording:"
+                        : gain.heldout_error_ratio > kWorse
+                            ? "The model makes the simulation of this recording worse:"
+                            : "The model hardly gains on this recording:";
   judged.says = fmt::format(
       "{} the error is {:.2f} of the base simulation's (90 %: {:.2f} to {:.2f}), the predicted "
       "tip's {:.2f}: {:.2f} mm instead of {:.2f} mm.",
-      gains ? "The model holds for this recording:" : "The model hardly gains on this recording:",
-      gain.heldout_error_ratio, gain.heldout_error_ratio_low, gain.heldout_error_ratio_high,
-      gain.tip_error_ratio, 1e3 * prediction.extended.tip_prediction_rms_m,
-      1e3 * prediction.base.tip_prediction_rms_m);
+      verdict, gain.heldout_error_ratio, gain.heldout_error_ratio_low,
+      gain.heldout_error_ratio_high, gain.tip_error_ratio,
+      1e3 * prediction.extended.tip_prediction_rms_m, 1e3 * prediction.base.tip_prediction_rms_m);
   for (const std::string& warning : prediction.warnings) judged.Beware(warning);
   if (!gains) judged.Beware("the model may be of another instrument, or something has changed");
   judged.next = gains ? "let the estimator use the model" : "find the causes in this recording";

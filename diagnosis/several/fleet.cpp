@@ -34,6 +34,12 @@ std::string Text(const std::map<std::string, std::vector<double>>& tolerances) {
   return fmt::format("{{{}}}", fmt::join(all, ", "));
 }
 
+const Eigen::Vector3d& ValueOf(const WristSample& sample) { return sample.p_RW; }
+const Eigen::Vector3d& ValueOf(const EmSample& sample) { return sample.p_RS; }
+const Eigen::Vector3d& ValueOf(const TipObservation& tip) { return tip.p_RE; }
+const Eigen::Vector3d& ValueOf(const Eigen::Vector3d& force) { return force; }
+const Eigen::Vector4d& ValueOf(const Eigen::Vector4d& moments) { return moments; }
+
 void RequireAlike(const NamedRecording& a, const NamedRecording& b) {
   const auto number = [&](const char* what, double of_a, double of_b) {
     if (of_a != of_b) RefuseTogether(a, b, what, fmt::format("{}", of_a), fmt::format("{}", of_b));
@@ -83,6 +89,30 @@ void RequireSensorsAlike(const NamedRecording& a, const NamedRecording& b) {
       RefuseTogether(a, b, "cam0 T_RC", Text(x.cam0->calibration.T_RC.p),
                      Text(y.cam0->calibration.T_RC.p));
   }
+}
+
+/// One recording twice would count as twice the evidence.
+void RequireAnother(const NamedRecording& a, const NamedRecording& b) {
+  const Recording &x = a.recording, &y = b.recording;
+  const auto same = [](const auto& of_a, const auto& of_b, auto value) {
+    if (!of_a || !of_b) return !of_a && !of_b;
+    const auto &s = value(*of_a), &t = value(*of_b);
+    return std::ranges::equal(s, t, [](const auto& one, const auto& other) {
+      return one.t_ns == other.t_ns && ValueOf(one.value) == ValueOf(other.value);
+    });
+  };
+  const auto samples = [](const auto& stream) -> const auto& { return stream.samples; };
+  const bool all =
+      same(x.wrist0, y.wrist0, samples) && same(x.em0, y.em0, samples) &&
+      same(
+          x.vision0, y.vision0, [](const auto& v) -> const auto& { return v.tips; }) &&
+      same(
+          x.strain0, y.strain0, [](const auto& s) -> const auto& { return s.moments_Nm; }) &&
+      same(
+          x.load0, y.load0, [](const auto& l) -> const auto& { return l.f_tip_N; });
+  if (!all) return;
+  throw InputError(fmt::format("{} and {} hold the same samples, expected different recordings",
+                               a.name, b.name));
 }
 
 /// One goes on where the one before ended.
@@ -158,6 +188,8 @@ Fleet::Fleet(const std::vector<NamedRecording>& recordings, const DiagnoseOption
   std::vector<SampleSet> all;
   for (const NamedRecording& one : recordings) {
     RequireAlike(recordings.front(), one);
+    for (const NamedRecording* other = recordings.data(); other != &one; ++other)
+      RequireAnother(*other, one);
     all.push_back(MakeSampleSet(one.recording, one.name));
   }
   ShareCentre(all);

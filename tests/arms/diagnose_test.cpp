@@ -146,5 +146,9 @@ TEST(DiagnoseArm, RefusesAnotherArm) {
   EXPECT_THROW(Diagnose({ArmData(SeenAtStops(1), "a"), ArmData(other, "b")}), InputError);
 }
 
+TEST(DiagnoseArm, RefusesOneRecordingTwice) {
+  EXPECT_THROW(Diagnose({ArmData(SeenAtStops(1), "a"), ArmData(SeenAtStops(1), "b")}), InputError);
+}
+
 }  // namespace
 }  // namespace flextip::arms

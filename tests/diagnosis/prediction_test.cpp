@@ -13,6 +13,7 @@ namespace flextip::diagnosis {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 std::vector<hidden::HiddenRecording> TwoMotions(const std::string& effect, bool with_load,
                                                 std::uint64_t seed) {
@@ -72,6 +73,18 @@ TEST(Prediction, AModelOfAnotherInstrumentGainsNothing) {
   // Chance gives a few per cent; the right model halves the error, at least.
   EXPECT_GT(predicted.gain.heldout_error_ratio, 0.9);
   EXPECT_EQ(JudgePrediction(predicted).grade, Grade::kBeware);
+}
+
+TEST(Prediction, SaysWhetherAModelHoldsGainsNothingOrMakesItWorse) {
+  const auto says = [](double ratio) {
+    Prediction prediction;
+    prediction.gain.measured = true;
+    prediction.gain.heldout_error_ratio = ratio;
+    return JudgePrediction(prediction).says;
+  };
+  EXPECT_THAT(says(0.5), HasSubstr("The model holds"));
+  EXPECT_THAT(says(1.0), HasSubstr("hardly gains"));
+  EXPECT_THAT(says(10.0), HasSubstr("makes the simulation of this recording worse"));
 }
 
 TEST(Prediction, AModelThatSaysNothingIsTheBase) {

@@ -175,6 +175,8 @@ TEST(Several, RefusesAnotherInstrument) {
   named[1].recording.instrument = named[0].recording.instrument;
   named[1].recording.tolerances["stiffness.scale"] = {0.05};
   EXPECT_THAT(message(), HasSubstr("tolerances is {}"));
+  named[1].recording = named[0].recording;
+  EXPECT_THAT(message(), HasSubstr("day_0 and day_1 hold the same samples"));
 }
 
 TEST(OneSession, IsRefusedWhereASensorSaysSomethingElseOrTheWristIsElsewhere) {
