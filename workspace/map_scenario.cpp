@@ -229,6 +229,8 @@ class Reader {
 
 AnyMapScenario ReadMapScenario(const std::filesystem::path& file) {
   const YamlMap top = YamlMap::Load(file);
+  if (!top.Has("arm") && top.Has("controllers"))
+    throw top.Error("controllers", "a map steers nothing: this is a scenario of flextip simulate");
   const std::size_t kind = OneOf(top.Map("arm"), "kind", kArms, "");
   if (kind == 0) return Reader<2>(top).Read();
   return Reader<3>(top).Read();

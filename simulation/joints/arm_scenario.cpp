@@ -37,6 +37,8 @@ class Reader {
   int Joints() const { return scenario_.arm.Size(); }
 
   void ReadTheArm() {
+    if (!top_.IsText("arm"))
+      throw top_.Error("arm", "found no file of an arm: this may be a scenario of flextip map");
     scenario_.arm = ReadArm(file_.parent_path() / top_.Text("arm"), log_);
     if (scenario_.arm.links.empty())
       throw top_.Error("arm", "the file states no masses of links: forces cannot move the arm");

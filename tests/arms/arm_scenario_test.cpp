@@ -104,6 +104,14 @@ TEST_F(ArmScenarioTest, RefusesWhatItCannotDo) {
   EXPECT_THAT(Complaint("effects: {joint_backlash: {width: [-1, 0, 0]}}\n"),
               HasSubstr("0 or more"));
   EXPECT_THAT(Complaint("speed: 3\n"), HasSubstr("speed"));
+  std::ofstream(folder_ / "map.yaml") << "arm: {kind: planar}\n";
+  ReadLog log;
+  try {
+    ReadArmScenario(folder_ / "map.yaml", log);
+    ADD_FAILURE() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("map.yaml:1: arm: found no file of an arm"));
+  }
   Arm light = SmallArm();
   light.links.clear();
   WriteArm(folder_ / "arm.yaml", light);

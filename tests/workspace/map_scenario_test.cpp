@@ -100,6 +100,7 @@ TEST_F(MapScenarioFile, ThatIsWrongIsRefusedWithItsLine) {
   const Wrong cases[] = {
       {"arm: {kind: snake}\n", ":1: ", "found 'snake', expected one of planar, three_joint"},
       {"arm: {kind: planar}\n", ":1: ", "instrument"},
+      {"seed: 1\ncontrollers: all\n", ":2: ", "a scenario of flextip simulate"},
       {kPlane + "gian: 1\n", ":4: ", "unknown key \"gian\""},
       {kPlane + "errors: {prot_m: [0, 0, 0]}\n", ":4: ", "unknown key \"errors.prot_m\""},
       {kPlane + "gain: 0\n", ":4: ", "gain"},
