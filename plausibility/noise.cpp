@@ -16,6 +16,7 @@ constexpr int kOrder = 6;
 constexpr std::array<double, kOrder + 1> kWeights{1, -6, 15, -20, 15, -6, 1};
 constexpr double kGain = 30.3974;  // root of the weights' squares
 constexpr double kFactor = 3.0;    // a noise is as stated, within
+constexpr double kMadeUp = 1e-3;   // of the stated noise: no sensor has so little
 constexpr double kMedianToSd = 1.0 / 0.6745;
 constexpr std::size_t kFewest = 30, kMany = 60;  // samples
 
@@ -31,6 +32,12 @@ double HighFrequencySd(const std::vector<double>& x, std::size_t step) {
 }
 
 using Components = std::vector<std::vector<double>>;
+
+bool NeverChanges(const Components& components) {
+  return std::all_of(components.begin(), components.end(), [](const std::vector<double>& x) {
+    return std::all_of(x.begin(), x.end(), [&x](double value) { return value == x.front(); });
+  });
+}
 
 template <class Vector>
 void Push(Components& components, const Vector& v) {
@@ -187,6 +194,14 @@ class NoiseCheck {
         std::sqrt(std::max(0.0, noise->least * noise->least - stated.motion * stated.motion));
     const bool more = own > kFactor * stated.sd;
     if (!more && !(noise->most < stated.sd / kFactor)) return;
+    if (NeverChanges(components)) {
+      findings.push_back(
+          {Severity::kDoubtful, id,
+           fmt::format("{}: its {} never change, the file states a noise of {:.3g} {}", stream,
+                       stated.of, 1e3 * stated.sd, stated.unit),
+           "look whether the sensor was stuck, or the values are made up"});
+      return;
+    }
     const double seen = more ? own : noise->most;
     const double times = more ? seen / stated.sd : stated.sd / std::max(seen, 1e-12 * stated.sd);
     findings.push_back(
@@ -195,7 +210,10 @@ class NoiseCheck {
                      "times {}",
                      stream, stated.of, 1e3 * seen, stated.unit, 1e3 * stated.sd, stated.unit,
                      times, more ? "more" : "less"),
-         fmt::format("{} in {}/sensor.yaml", fmt::format(fmt::runtime(stated.key), seen), stream)});
+         seen < kMadeUp * stated.sd
+             ? "look whether the values are made up, or smoothed"
+             : fmt::format("{} in {}/sensor.yaml", fmt::format(fmt::runtime(stated.key), seen),
+                           stream)});
   }
 
   const std::vector<std::string>& but_;

@@ -36,11 +36,11 @@ std::string AdviseLoad(StiffnessModelFit& chosen, bool for_taper, const Eigen::V
         VarianceWith(chosen.fit().information + rows.by_unknowns.transpose() *
                                                     Ldlt(rows.covariance).Solve(rows.by_unknowns),
                      unknown);
-    if (then >= best) continue;
+    if (!(then < best)) continue;
     best = then;
     words = next.words;
   }
-  if (best > 0.94 * now) return "";
+  if (!(best <= 0.94 * now)) return "";  // nor where nothing is known yet
   return fmt::format("{} (the {}'s standard deviation falls to {:.0f} %)", words,
                      for_taper ? "taper" : "stiffness", 100 * std::sqrt(best / now));
 }

@@ -51,11 +51,11 @@ std::string NextStrainLoad(const std::vector<StrainHoldResult>& holds, const Gag
     Eigen::Matrix4d S = fit.gains * stated->Covariance(candidate.hold) * fit.gains.transpose();
     S.diagonal() += reading_sd.cwiseAbs2();
     const double then = Uncertainty(information + J.transpose() * Ldlt(S).Solve(J), unit);
-    if (then >= best) continue;
+    if (!(then < best)) continue;
     best = then;
     words = candidate.words;
   }
-  if (best > (1 - kWorthwhile) * now) return "";
+  if (!(best <= (1 - kWorthwhile) * now)) return "";  // nor where nothing is known yet
   return fmt::format("{} (the gains' uncertainty falls to {:.0f} %)", words, 100 * best / now);
 }
 

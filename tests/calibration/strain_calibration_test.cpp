@@ -95,6 +95,16 @@ TEST(StrainCalibration, RefusesColumnsThatNoLoadExcites) {
   EXPECT_THAT(result.advice, ::testing::HasSubstr("y axis"));
 }
 
+TEST(StrainCalibration, LoadsOfZeroGiveNoAdviceInNumbersThatAreNone) {
+  const Bench bench = GageBench();
+  const auto masses = AllWays({-0.08, 0.0, 0.08}, {0.15, 0.3});
+  Recording recording = RecordBench(bench, masses, Hang(bench, masses), 3);
+  for (auto& sample : recording.load0->f_tip_N) sample.value.setZero();
+  const auto result = CalibrateStrain(recording, "bench");
+  EXPECT_FALSE(result.gages_known);
+  EXPECT_THAT(result.advice, ::testing::Not(::testing::HasSubstr("nan")));
+}
+
 TEST(StrainCalibration, OneInsertionDoesForStationsThatAreApart) {
   Bench bench = GageBench();
   bench.gains.topRightCorner<2, 2>().setZero();

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -84,6 +85,27 @@ TEST(Lookalikes, ATremblingCommandIsNoNoise) {
   EXPECT_THAT(Found(recording), IsEmpty());
   recording.command0 = Healthy(5020).command0;  // that nobody told it to
   EXPECT_THAT(Found(recording), ElementsAre("wrist0.noise"));
+}
+
+/// What to write for a noise that is not there would be taken for a noise.
+TEST(Lookalikes, ReadingsThatNeverChangeHaveNoNoiseToWrite) {
+  Recording recording = Healthy(5025);
+  const auto stand = [](auto& series) {
+    for (auto& sample : series) sample.value = series.front().value;
+  };
+  stand(recording.wrist0->samples);
+  stand(recording.command0->p_RW);
+  stand(recording.em0->samples);
+  stand(recording.em1->samples);
+  stand(recording.strain0->moments_Nm);
+  stand(recording.load0->f_tip_N);
+  stand(recording.vision0->tips);
+  const auto findings = plausibility::CheckRecording(recording).findings;
+  const auto found = std::find_if(findings.begin(), findings.end(),
+                                  [](const auto& f) { return f.id == "em0.noise"; });
+  ASSERT_NE(found, findings.end());
+  EXPECT_THAT(found->text, testing::HasSubstr("never change"));
+  EXPECT_THAT(found->mend, testing::Not(testing::HasSubstr("noise_m:")));
 }
 
 /// A sensor of 100 Hz that a loop of 120 Hz reads: steps of one or two ticks, the mean as stated.
