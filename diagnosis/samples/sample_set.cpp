@@ -1,5 +1,7 @@
 #include "diagnosis/samples/sample_set.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -114,6 +116,8 @@ class Builder {
     if (IsDead(em.samples, [](const EmSample& s) { return s.p_RS; })) {
       return Warn("em0 always says the same: left out");
     }
+    const bool placed = em.samples.front().value.p_RS != em.samples.back().value.p_RS;
+    if (placed && em.position_noise_m <= 0.0) Warn("em0 states no noise of its places: left out");
     set_.has_em = true;
     set_.em_from_tip_m = em.distance_from_tip_m;
     set_.noise.em_position_m = em.position_noise_m;
@@ -271,9 +275,10 @@ class Builder {
     if (spare < 2 * kMinSamples) {
       throw InputError(fmt::format(
           "{}: the sensors measure no more than {} (beside wrist0 it takes a load0 and one of "
-          "vision0, "
-          "em0 and strain0, or two of them): there is nothing to judge the simulation by",
-          name_, latent == 0 ? "a handful of values" : "the unknown load takes"));
+          "vision0, em0 and strain0, or two of them): there is nothing to judge the simulation "
+          "by{}{}",
+          name_, latent == 0 ? "a handful of values" : "the unknown load takes",
+          set_.warnings.empty() ? "" : "; ", fmt::join(set_.warnings, "; ")));
     }
   }
 

@@ -100,6 +100,15 @@ TEST_F(SampleSetTest, RefusesWithoutRedundancy) {
   ExpectRefused("nothing to judge the simulation by");
 }
 
+TEST_F(SampleSetTest, SaysThatSensorsStateNoNoise) {
+  recording_.load0.reset();
+  recording_.vision0.reset();
+  for (auto& sample : recording_.wrist0->samples) sample.value.q_RW.reset();
+  recording_.em0->position_noise_m = recording_.em0->orientation_noise_rad = 0.0;
+  recording_.strain0->moment_noise_Nm = 0.0;
+  ExpectRefused("em0 states no noise of its places: left out; strain0 states no noise: left out");
+}
+
 TEST_F(SampleSetTest, AKnownLoadMakesOneSensorEnough) {
   recording_.em0.reset();
   recording_.vision0.reset();
