@@ -210,7 +210,9 @@ Supervisor::Decision Supervisor::Decide(const SupervisedCycle& cycle) {
     // it should not leap once it listens again.
     const bool readable = cycle.p_RW && cycle.p_RW->allFinite();
     const Supervision& found = decision.supervision;
-    const bool stands = found.stop == Stop::kWristNotFollowing && found.chi2 > 0.0 &&
+    // In doubt it is the reading that may be wrong.
+    const bool stands = found.reaction >= Reaction::kHold &&
+                        found.stop == Stop::kWristNotFollowing && found.chi2 > 0.0 &&
                         found.chi2 <= found.chi2_limit;
     if (!p_held_) p_held_ = (moving_ && !stands) || !readable ? StopAt(cycle) : cycle.p_RW;
     // A person may have led the robot elsewhere.

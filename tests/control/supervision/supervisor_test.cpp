@@ -152,6 +152,22 @@ TEST(Supervisor, AReadingBesideTheCommandedWayIsADoubt) {
   }
 }
 
+// A reading that leaps by less than what holds: the robot must not be led to where it points.
+TEST(Supervisor, AReadingInDoubtIsNoPlaceToStop) {
+  Supervisor supervisor(Full());
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector3d wish = kWrist + Eigen::Vector3d(0.0005 * i, 0, 0);
+    const Eigen::Vector3d off(0.0, i == 20 ? 0.0009 : 0.0, 0.0);
+    SupervisedCycle cycle = Cycle(i / 30.0, wish - Eigen::Vector3d(0.001, 0, 0) + off, wish);
+    cycle.found.chi2 = 5.0;  // the sensors agree
+    cycle.found.chi2_limit = 50.0;
+    const auto decision = supervisor.Decide(cycle);
+    EXPECT_EQ(decision.supervision.stop == Stop::kWristNotFollowing, i == 20) << i;
+    ASSERT_TRUE(decision.p_RW_command);
+    EXPECT_EQ(decision.p_RW_command->y(), kWrist.y()) << i;
+  }
+}
+
 TEST(Supervisor, AWristWaitsForATipThatIsHidden) {
   Supervisor supervisor(Full());
   supervisor.Decide(Cycle(0.0, kWrist, kWrist));
