@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "arms/effects/effects.h"
@@ -46,6 +48,13 @@ std::set<std::string> Names(bool nuisances) {
   return names;
 }
 
+/// Other names could be read, and not be written so that they are read again.
+bool IsParameterName(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_';
+  });
+}
+
 std::vector<EffectFit> ReadSection(const YamlMap& top, const std::string& key, bool nuisances) {
   std::vector<EffectFit> effects;
   if (!top.Has(key)) return effects;
@@ -57,6 +66,8 @@ std::vector<EffectFit> ReadSection(const YamlMap& top, const std::string& key, b
     EffectFit fit{name, {}};
     const YamlMap map = section.Map(name);
     for (const std::string& parameter : map.Keys()) {
+      if (!IsParameterName(parameter))
+        throw map.Error(parameter, "expected a name of letters, digits and _");
       const auto values = map.IsList(parameter) ? map.Numbers(parameter)
                                                 : std::vector<double>{map.Number(parameter)};
       fit.parameters.push_back({parameter, values, std::vector<double>(values.size(), 0.0)});

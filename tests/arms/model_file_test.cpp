@@ -62,6 +62,8 @@ TEST_F(ArmModelFile, RefusesWhatIsUnknown) {
   EXPECT_THAT(Refusal("effects: {masses: {a: 1}}\n"), HasSubstr("unknown"));
   EXPECT_THAT(Refusal("nuisances: {joint_offset: {offset: [1, 2]}}\n"), HasSubstr("unknown"));
   EXPECT_THAT(Refusal("efects: {}\n"), HasSubstr("efects"));
+  EXPECT_THAT(Refusal("effects: {payload: {mass_kg: 1, \"a b\": 1}}\n"),
+              HasSubstr("letters, digits and _"));
 }
 
 TEST_F(ArmModelFile, RefusesListsOfAnotherArm) {
