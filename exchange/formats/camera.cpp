@@ -64,6 +64,7 @@ void TakeFrameRate(CameraStream& camera) {
   std::vector<TimeNs> steps;
   const auto add = [&](const auto& frames) {
     std::vector<TimeNs> times;
+    times.reserve(frames.size());
     for (const auto& frame : frames) times.push_back(frame.t_ns);
     RefuseLeaps("the pictures", times);
     for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
