@@ -116,8 +116,7 @@ class Builder {
     if (IsDead(em.samples, [](const EmSample& s) { return s.p_RS; })) {
       return Warn("em0 always says the same: left out");
     }
-    const bool placed = em.samples.front().value.p_RS != em.samples.back().value.p_RS;
-    if (placed && em.position_noise_m <= 0.0) Warn("em0 states no noise of its places: left out");
+    if (em.position_noise_m <= 0.0) Warn("em0 states no noise of its places: left out");
     set_.has_em = true;
     set_.em_from_tip_m = em.distance_from_tip_m;
     set_.noise.em_position_m = em.position_noise_m;

@@ -11,8 +11,10 @@
 namespace flextip::simulation {
 
 /// Returns the vector at `key`, or `fallback` where the map has none.
-Eigen::Vector3d VectorOr(const YamlMap& map, const std::string& key,
-                         const Eigen::Vector3d& fallback);
+inline Eigen::Vector3d VectorOr(const YamlMap& map, const std::string& key,
+                                const Eigen::Vector3d& fallback) {
+  return map.Has(key) ? map.Vector3(key) : fallback;
+}
 
 /// Reads the section `sensors` of a shaft of `length_m`. The sections in it are added to
 /// `sections`, to find the keys that nobody asked for. Throws InputError with file and line.

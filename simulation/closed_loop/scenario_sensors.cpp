@@ -55,11 +55,6 @@ void ReadTip(const YamlMap& map, TipSensorSetup& tip) {
 
 }  // namespace
 
-Eigen::Vector3d VectorOr(const YamlMap& map, const std::string& key,
-                         const Eigen::Vector3d& fallback) {
-  return map.Has(key) ? map.Vector3(key) : fallback;
-}
-
 SensorSetup ReadScenarioSensors(const YamlMap& map, double length_m,
                                 std::vector<YamlMap>& sections) {
   SensorSetup sensors;

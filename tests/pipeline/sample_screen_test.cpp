@@ -5,19 +5,13 @@
 
 #include "pipeline/guard/sample_screen.h"
 #include "pipeline/instrument_controller.h"
+#include "tests/pipeline/full_supervision.h"
 
 namespace flextip {
 namespace {
 
-constexpr std::uint8_t Bit(VotedSensor sensor) {
-  return static_cast<std::uint8_t>(1U << static_cast<int>(sensor));
-}
-
-SupervisorOptions Full() {
-  SupervisorOptions options;
-  options.kind = SupervisionKind::kFull;
-  return options;
-}
+using test_support::Bit;
+using test_support::Full;
 
 /// A straight shaft in figures: wrist, tip and em0 at 30 Hz.
 struct SampleScreening : testing::Test {

@@ -8,19 +8,13 @@
 #include "simulation/plant/plant.h"
 #include "simulation/sensors/sensors.h"
 #include "tests/control/allocation_counter.h"
+#include "tests/pipeline/full_supervision.h"
 
 namespace flextip {
 namespace {
 
-constexpr std::uint8_t Bit(VotedSensor sensor) {
-  return static_cast<std::uint8_t>(1U << static_cast<int>(sensor));
-}
-
-SupervisorOptions Full() {
-  SupervisorOptions options;
-  options.kind = SupervisionKind::kFull;
-  return options;
-}
+using test_support::Bit;
+using test_support::Full;
 
 /// A shaft that is pressed by a force, and its sensors' noise.
 struct PressedShaft {
