@@ -75,11 +75,13 @@ def smaller_camera(folder, width_px):
 class LiveRun:
     """Use it in a `with` block, which ends both programs. `address` is the page's, with its token;
     empty without a page. `recording` is the folder that control writes. `picture_width_px`: of the
-    laparoscope; empty: its own."""
+    laparoscope; empty: its own. `served`: where the robot writes its own recording; empty: nowhere.
+    """
 
-    def __init__(self, program, folder, page=True, options=(), picture_width_px=None, **session):
+    def __init__(self, program, folder, page=True, options=(), picture_width_px=None, served=None,
+                 **session):
         self.program, self.folder, self.page = str(program), pathlib.Path(folder), page
-        self.options, self.session = options, session
+        self.options, self.session, self.served = options, session, served
         self.recording = self.folder / "run"
         self.scenario = SCENARIO
         if picture_width_px:
@@ -97,9 +99,10 @@ class LiveRun:
     def _begin(self):
         camera, lockstep = (self.session.get(key, default)
                             for key, default in (("camera", True), ("lockstep", False)))
-        robot = self._start("simulate", self.scenario, "--serve", "0",
-                            *["--render"] * camera, *["--lockstep"] * lockstep)
-        port = self._wait_for(robot, r"serving on 127\.0\.0\.1:(\d+)")
+        self.robot = self._start("simulate", self.scenario, "--serve", "0",
+                                 *["--render"] * camera, *["--lockstep"] * lockstep,
+                                 *(["-o", self.served] if self.served else []))
+        port = self._wait_for(self.robot, r"serving on 127\.0\.0\.1:(\d+)")
         file = self.folder / "session.yaml"
         file.write_text(session_text(port, **self.session), encoding="utf-8")
         self.control = self._start("control", *["--page"] * self.page, file, "-o", self.recording,

@@ -20,16 +20,20 @@ std::optional<CameraDescription> CameraOf(const CameraInfoMessage& info, const s
   if (info.binning_x > 1 || info.binning_y > 1 || info.crops) {
     refuse("the pictures are binned or cut out, expected whole ones");
   }
+  const auto check = [&] {
+    if (const auto problem = ProblemOf(c); !problem.empty()) refuse(problem);
+    return camera;
+  };
   if (picture_topic.find("rect") != std::string::npos) {
     c.fu_px = info.P[0], c.cu_px = info.P[2], c.fv_px = info.P[5], c.cv_px = info.P[6];
-    return camera;
+    return check();
   }
   if (const auto problem = TakeIntrinsics(info.K, c); !problem.empty()) refuse("K: " + problem);
   const RosLens lens = RosLensOf(info.distortion_model, info.D);
   if (!lens.problem.empty()) refuse(fmt::format("{}: {}", lens.wrong_key, lens.problem));
   c.distortion = lens.distortion;
   c.distortion_coefficients = lens.coefficients;
-  return camera;
+  return check();
 }
 
 }  // namespace flextip::exchange

@@ -1,7 +1,5 @@
-// A URDF's chain of joints (wiki.ros.org/urdf/XML). Only elements and attributes are read; texts,
-// comments and declarations are passed over.
+// A URDF's chain of joints (wiki.ros.org/urdf/XML).
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 #include <sstream>
@@ -11,125 +9,13 @@
 #include "recording/arm/arm_file.h"
 #include "recording/text/bounds.h"
 #include "recording/text/text.h"
+#include "recording/text/xml.h"
 
 namespace flextip {
 namespace {
 
 constexpr std::size_t kMostUrdfJoints = 32;      // of the chain
 constexpr std::size_t kMostJointsInFile = 1000;  // a humanoid has some 100
-
-struct Element {
-  std::string name;
-  std::map<std::string, std::string> attributes;
-  std::vector<Element> children;
-  long line = 0;
-
-  const Element* Child(const std::string& child) const {
-    for (const Element& e : children)
-      if (e.name == child) return &e;
-    return nullptr;
-  }
-};
-
-class XmlReader {
- public:
-  XmlReader(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {}
-
-  Element Read() {
-    Element top;
-    ReadChildren(top, 0);
-    if (top.children.size() != 1) throw Error("expected one element at the top");
-    return top.children.front();
-  }
-
- private:
-  InputError Error(const std::string& what) const { return InputError::At(file_, Line(), what); }
-  /// The line of the place, counted on from where it was asked for last: once over the file.
-  long Line() const {
-    line_ += std::count(text_.begin() + std::ptrdiff_t(counted_),
-                        text_.begin() + std::ptrdiff_t(at_), '\n');
-    counted_ = at_;
-    return line_;
-  }
-
-  bool Skip(const std::string& begin, const std::string& end) {
-    if (text_.compare(at_, begin.size(), begin) != 0) return false;
-    const auto close = text_.find(end, at_ + begin.size());
-    if (close == std::string::npos) throw Error(fmt::format("{} without {}", begin, end));
-    at_ = close + end.size();
-    return true;
-  }
-
-  void ReadChildren(Element& parent, int depth) {
-    if (depth > 32) throw Error("elements nested more than 32 deep");
-    while (true) {
-      at_ = std::min(text_.find('<', at_), text_.size());
-      if (at_ == text_.size()) {
-        if (depth > 0) throw Error(fmt::format("<{}> is not closed", parent.name));
-        return;
-      }
-      if (Skip("<!--", "-->") || Skip("<?", "?>") || Skip("<!", ">")) continue;
-      if (text_.compare(at_, 2, "</") == 0) {
-        at_ += 2;
-        const std::string name = Name();
-        if (name != parent.name || depth == 0)
-          throw Error(fmt::format("</{}> closes nothing", name));
-        at_ = std::min(text_.find('>', at_), text_.size() - 1) + 1;
-        return;
-      }
-      ReadElement(parent, depth);
-    }
-  }
-
-  void ReadElement(Element& parent, int depth) {
-    Element element;
-    element.line = Line();
-    ++at_;
-    element.name = Name();
-    while (true) {
-      Blanks();
-      if (at_ >= text_.size()) throw Error(fmt::format("<{}> has no end", element.name));
-      if (text_[at_] == '>') {
-        ++at_;
-        ReadChildren(element, depth + 1);
-        break;
-      }
-      if (text_.compare(at_, 2, "/>") == 0) {
-        at_ += 2;
-        break;
-      }
-      const std::string key = Name();
-      Blanks();
-      if (at_ + 1 >= text_.size() || text_[at_] != '=') throw Error("expected =");
-      ++at_;
-      Blanks();
-      const char quote = at_ < text_.size() ? text_[at_] : ' ';
-      if (quote != '"' && quote != '\'') throw Error("expected a value in quotes");
-      const auto close = text_.find(quote, at_ + 1);
-      if (close == std::string::npos) throw Error("a quote is not closed");
-      element.attributes[key] = text_.substr(at_ + 1, close - at_ - 1);
-      at_ = close + 1;
-    }
-    parent.children.push_back(std::move(element));
-  }
-
-  void Blanks() {
-    while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
-  }
-  std::string Name() {
-    const std::size_t begin = at_;
-    while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_])) &&
-           text_[at_] != '>' && text_[at_] != '=' && text_[at_] != '/')
-      ++at_;
-    if (at_ == begin) throw Error("expected a name");
-    return text_.substr(begin, at_ - begin);
-  }
-
-  std::string file_, text_;
-  std::size_t at_ = 0;  ///< never goes back
-  mutable std::size_t counted_ = 0;
-  mutable long line_ = 1;
-};
 
 struct UrdfJoint {
   std::string name, type, parent, child;
@@ -141,9 +27,9 @@ struct UrdfJoint {
 class Urdf {
  public:
   explicit Urdf(const std::filesystem::path& file) : file_(file.string()) {
-    top_ = XmlReader(file_, ReadTextFile(file)).Read();
+    top_ = ReadXml(file);
     if (top_.name != "robot") throw Error(top_.line, "expected <robot>");
-    for (const Element& e : top_.children)
+    for (const XmlElement& e : top_.children)
       if (e.name == "joint") AddJoint(e);
     if (joints_.empty()) throw Error(top_.line, "found no joint");
   }
@@ -162,18 +48,18 @@ class Urdf {
   }
 
   std::optional<ArmLink> Link(const std::string& name) const {
-    for (const Element& e : top_.children) {
+    for (const XmlElement& e : top_.children) {
       if (e.name != "link" || Attribute(e, "name") != name) continue;
-      const Element* inertial = e.Child("inertial");
+      const XmlElement* inertial = e.Child("inertial");
       if (inertial == nullptr || inertial->Child("mass") == nullptr) return {};
-      const Element& mass = *inertial->Child("mass");
+      const XmlElement& mass = *inertial->Child("mass");
       ArmLink link{Numbers(mass, "value", 1)[0], Eigen::Vector3d::Zero()};
       const Bounds bounds = BoundsOf("mass_kg");
       if (link.mass_kg < 0.0 || link.mass_kg > bounds.most) {
         throw Error(mass.line, fmt::format("link {}: found a mass of {:g} kg, expected 0 to {:g}",
                                            name, link.mass_kg, bounds.most));
       }
-      if (const Element* origin = inertial->Child("origin")) link.com_m = Origin(*origin).p;
+      if (const XmlElement* origin = inertial->Child("origin")) link.com_m = Origin(*origin).p;
       return link;
     }
     return {};
@@ -189,14 +75,15 @@ class Urdf {
                              [](const UrdfJoint& joint) { return joint.type != "fixed"; }));
   }
 
-  std::string Attribute(const Element& e, const std::string& key) const {
+  std::string Attribute(const XmlElement& e, const std::string& key) const {
     const auto found = e.attributes.find(key);
     if (found == e.attributes.end())
       throw Error(e.line, fmt::format("<{}> has no {}", e.name, key));
     return found->second;
   }
 
-  std::vector<double> Numbers(const Element& e, const std::string& key, std::size_t count) const {
+  std::vector<double> Numbers(const XmlElement& e, const std::string& key,
+                              std::size_t count) const {
     std::istringstream stream(Attribute(e, key));
     std::vector<double> numbers;
     for (std::string word; stream >> word;) {
@@ -213,7 +100,7 @@ class Urdf {
     return numbers;
   }
 
-  Pose Origin(const Element& e) const {
+  Pose Origin(const XmlElement& e) const {
     Pose origin;
     if (e.attributes.contains("xyz")) origin.p = Eigen::Vector3d::Map(Numbers(e, "xyz", 3).data());
     if (e.attributes.contains("rpy")) {
@@ -224,7 +111,7 @@ class Urdf {
     return origin;
   }
 
-  void AddJoint(const Element& e) {
+  void AddJoint(const XmlElement& e) {
     static const std::set<std::string> known{"revolute", "continuous", "prismatic", "fixed"};
     UrdfJoint joint;
     joint.line = e.line;
@@ -239,8 +126,8 @@ class Urdf {
       throw Error(e.line, fmt::format("joint {} has no parent or no child", joint.name));
     joint.parent = Attribute(*e.Child("parent"), "link");
     joint.child = Attribute(*e.Child("child"), "link");
-    if (const Element* origin = e.Child("origin")) joint.origin = Origin(*origin);
-    if (const Element* axis = e.Child("axis"))
+    if (const XmlElement* origin = e.Child("origin")) joint.origin = Origin(*origin);
+    if (const XmlElement* axis = e.Child("axis"))
       joint.axis = Eigen::Vector3d::Map(Numbers(*axis, "xyz", 3).data());
     if (joint.axis.norm() < 1e-6) throw Error(e.line, fmt::format("joint {}: no axis", joint.name));
     joint.axis.normalize();
@@ -264,7 +151,7 @@ class Urdf {
   }
 
   std::string file_;
-  Element top_;
+  XmlElement top_;
   std::map<std::string, UrdfJoint> joints_;  ///< by their child
 };
 

@@ -31,28 +31,6 @@ std::string EurocText(const CameraDescription& d) {
   return text;
 }
 
-// What every reader has to find in a camera, whatever wrote it.
-void CheckNumbers(const std::filesystem::path& file, const CameraCalibration& c) {
-  const auto refuse = [&](const std::string& what) {
-    throw InputError::At(file.string(), 0, what);
-  };
-  if (c.width_px < 1 || c.height_px < 1) {
-    refuse(fmt::format("found a resolution of {} x {}, expected at least one pixel", c.width_px,
-                       c.height_px));
-  }
-  if (static_cast<double>(c.width_px) * c.height_px > kMostPixels) {
-    refuse(fmt::format("found a resolution of {} x {}, expected at most {:g} pixels", c.width_px,
-                       c.height_px, kMostPixels));
-  }
-  if (!(c.fu_px > 0 && c.fv_px > 0)) {
-    refuse(fmt::format("found focal lengths {} and {}, expected both above 0", c.fu_px, c.fv_px));
-  }
-  if (c.cu_px < 0 || c.cu_px > c.width_px || c.cv_px < 0 || c.cv_px > c.height_px) {
-    refuse(fmt::format("found the principal point {}, {}, expected it inside the image of {} x {}",
-                       c.cu_px, c.cv_px, c.width_px, c.height_px));
-  }
-}
-
 std::optional<CameraLoss> LensLoss(CameraFormat format, const CameraCalibration& c) {
   if (format == CameraFormat::kEuroc || format == CameraFormat::kOpenCv ||
       c.distortion == Distortion::kEquidistant) {
@@ -79,6 +57,36 @@ const char* Name(CameraFormat format) {
       return "ros";
     case CameraFormat::kOpenCv:
       return "opencv";
+  }
+  return "";
+}
+
+std::string ProblemOf(const CameraCalibration& c) {
+  if (c.width_px < 1 || c.height_px < 1) {
+    return fmt::format("found a resolution of {} x {}, expected at least one pixel", c.width_px,
+                       c.height_px);
+  }
+  if (static_cast<double>(c.width_px) * c.height_px > kMostPixels) {
+    return fmt::format("found a resolution of {} x {}, expected at most {:g} pixels", c.width_px,
+                       c.height_px, kMostPixels);
+  }
+  if (!(c.fu_px > 0 && c.fv_px > 0)) {
+    return fmt::format("found focal lengths {} and {}, expected both above 0", c.fu_px, c.fv_px);
+  }
+  if (!(c.cu_px >= 0 && c.cu_px <= c.width_px && c.cv_px >= 0 && c.cv_px <= c.height_px)) {
+    return fmt::format("found the principal point {}, {}, expected it inside the image of {} x {}",
+                       c.cu_px, c.cv_px, c.width_px, c.height_px);
+  }
+  const auto beyond = [](const char* name, double value) -> std::string {
+    const std::string expected = ExpectedWithin(BoundsOf(name), value);
+    return expected.empty() ? "" : fmt::format("{}: found {}, expected {}", name, value, expected);
+  };
+  for (const double focal_px : {c.fu_px, c.fv_px}) {
+    if (const auto problem = beyond("intrinsics", focal_px); !problem.empty()) return problem;
+  }
+  for (const double term : c.distortion_coefficients) {
+    if (const auto problem = beyond("distortion_coefficients", term); !problem.empty())
+      return problem;
   }
   return "";
 }
@@ -123,7 +131,8 @@ CameraDescription ReadCameraDescription(const std::filesystem::path& file, Camer
       d = ReadOpenCvCamera(file, choice);
       break;
   }
-  CheckNumbers(file, d.calibration);
+  if (const auto problem = ProblemOf(d.calibration); !problem.empty())
+    throw InputError::At(file.string(), 0, problem);
   return d;
 }
 

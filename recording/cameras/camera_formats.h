@@ -36,6 +36,10 @@ struct CameraDescription {
   std::vector<std::string> notes;  ///< what was left out and does not matter to a camera
 };
 
+/// Returns what no camera has, whatever file or message it is from, as "found ..., expected ...";
+/// empty where nothing is wrong. A recording of such a camera could not be read.
+std::string ProblemOf(const CameraCalibration& camera);
+
 /// By the file's content. Throws InputError where it looks like none of them.
 CameraFormat GuessCameraFormat(const std::filesystem::path& file);
 
@@ -44,9 +48,9 @@ struct CameraFileChoice {
   int width_px = 0, height_px = 0;  ///< for files that do not state their resolution
 };
 
-/// Throws InputError with file and key (and the line, but for OpenCV's) for what is missing or
-/// broken, a camera model that is no pinhole, a lens model there is no counterpart of (fov, skew,
-/// tilt), a camchain of several cameras of which none was chosen.
+/// Throws InputError with file, line and key for what is missing or broken, a camera model that is
+/// no pinhole, a lens model there is no counterpart of (fov, skew, tilt), a camchain of several
+/// cameras of which none was chosen.
 CameraDescription ReadCameraDescription(const std::filesystem::path& file, CameraFormat format,
                                         const CameraFileChoice& choice = {});
 

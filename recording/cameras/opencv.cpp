@@ -1,173 +1,130 @@
 // Cameras in OpenCV's FileStorage, with the keys of its own calibration program
 // (samples/cpp/tutorial_code/calib3d/camera_calibration).
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <initializer_list>
 #include <opencv2/core.hpp>
 #include <set>
+#include <sstream>
 
 #include "recording/cameras/format_parts.h"
-#include "recording/frames/frames.h"
-#include "recording/text/bounds.h"
 #include "recording/text/text.h"
+#include "recording/text/xml.h"
 
 namespace flextip {
 namespace {
 
 using Keys = std::initializer_list<const char*>;
-constexpr int kLargestMatrix = 100;
 constexpr Keys kMatrixKeys = {"camera_matrix", "cameraMatrix", "Camera_Matrix"};
 constexpr Keys kTermKeys = {"distortion_coefficients", "distCoeffs", "dist_coeffs",
                             "Distortion_Coefficients"};
 constexpr Keys kWidthKeys = {"image_width", "image_Width"};
 constexpr Keys kHeightKeys = {"image_height", "image_Height"};
 
-struct Reader {
-  std::string file;
-  cv::FileStorage storage;
+/// Adds an element's value in YAML's flow style, each at its own line, so that messages name it.
+void AddFlow(const XmlElement& e, long& line, std::string& text) {
+  for (; line < e.line; ++line) text += '\n';
+  if (!e.children.empty()) {
+    text += '{';
+    for (const XmlElement& child : e.children) {
+      for (; line < child.line; ++line) text += '\n';
+      text += YamlText(child.name) + ": ";
+      AddFlow(child, line, text);
+      text += ", ";
+    }
+    text += '}';
+  } else if (e.name == "data") {
+    std::istringstream numbers(e.text);
+    text += '[';
+    for (std::string number; numbers >> number;) text += YamlText(number) + ", ";
+    text += ']';
+  } else {
+    const auto first = e.text.find_first_not_of(" \t\r\n\""),
+               last = e.text.find_last_not_of(" \t\r\n\"");
+    text += YamlText(first == std::string::npos ? "" : e.text.substr(first, last + 1 - first));
+  }
+}
 
-  explicit Reader(const std::filesystem::path& path) : file(path.string()) {
-    (void)OpenFile(path);  // throws where it is no file
-    bool opened = false;
-    try {
-      const QuietStderr quiet;
-      opened = storage.open(file, cv::FileStorage::READ);
-    } catch (const std::exception&) {  // of OpenCV or the standard library; reported below
-    }
-    if (!opened) throw Error("cannot be read by OpenCV: it is cut off, damaged or of another kind");
+/// A storage's top mapping, of YAML, JSON (which YAML holds) or XML. OpenCV's own parsers end the
+/// program by a crash where a file is damaged or deeply nested.
+YamlMap StorageOf(const std::filesystem::path& file) {
+  std::string text = ReadTextFile(file);
+  if (Trim(text).starts_with('<')) {
+    text.clear();
+    long line = 1;
+    AddFlow(ReadXml(file), line, text);
+  } else if (const auto version = text.find("%YAML:1.0"); version < text.find("---")) {
+    text[version] = '#';  // a version that only OpenCV writes so
   }
-  InputError Error(const std::string& what) const { return InputError::At(file, 0, what); }
+  return YamlMap::OfText(file, text);
+}
 
-  cv::FileNode Find(Keys keys) const {
-    for (const char* key : keys) {
-      if (const auto node = storage[key]; !node.empty()) return node;
-    }
-    return {};
-  }
-  /// OpenCV asks for the memory of a matrix before it counts what is in it.
-  void RefuseLarge(const std::string& name, const cv::FileNode& node) const {
-    if (!node.isMap()) return;
-    if (!node["sizes"].empty() || !node["rows"].isInt() || !node["cols"].isInt())
-      throw Error(fmt::format("{}: expected a matrix of rows and columns", name));
-    const int rows = static_cast<int>(node["rows"]), cols = static_cast<int>(node["cols"]);
-    if (rows >= 0 && rows <= kLargestMatrix && cols >= 0 && cols <= kLargestMatrix) return;
-    throw Error(fmt::format("{}: found {} rows and {} columns, expected at most {}", name, rows,
-                            cols, kLargestMatrix));
-  }
-  std::vector<double> Matrix(Keys keys) const {
-    const std::string name = *keys.begin();
-    const auto node = Find(keys);
-    if (node.empty()) throw Error(fmt::format("key \"{}\" is missing", name));
-    RefuseLarge(name, node);
-    cv::Mat matrix;
-    try {
-      node >> matrix;
-      matrix.convertTo(matrix, CV_64F);
-    } catch (const std::exception&) {
-      throw Error(fmt::format("{}: expected a matrix", name));
-    }
-    const cv::Mat flat = matrix.clone().reshape(1, 1);
-    std::vector<double> values(flat.begin<double>(), flat.end<double>());
-    for (const double value : values) {
-      const std::string expected = ExpectedWithin(BoundsOf(name), value);
-      if (!expected.empty()) {
-        throw Error(fmt::format("{}: found {}, expected {}", name, value, expected));
-      }
-    }
-    return values;
-  }
-  int Whole(Keys keys, int fallback) const {
-    const auto node = Find(keys);
-    if (node.empty()) return fallback;
-    if (!node.isInt()) throw Error(fmt::format("{}: expected a whole number", *keys.begin()));
-    const int value = static_cast<int>(node);
-    const std::string expected = ExpectedWithin(BoundsOf(*keys.begin()), value);
-    if (expected.empty()) return value;
-    throw Error(fmt::format("{}: found {}, expected {}", *keys.begin(), value, expected));
-  }
-  std::string Text(const char* key) const {
-    const auto node = storage[key];
-    return node.isString() ? static_cast<std::string>(node) : "";
-  }
-};
+/// The first of the keys that is there, the first one where none is.
+std::string Named(const YamlMap& in, Keys keys) {
+  const auto found =
+      std::find_if(keys.begin(), keys.end(), [&](const char* key) { return in.Has(key); });
+  return found == keys.end() ? *keys.begin() : *found;
+}
 
-void ReadLens(const Reader& in, CameraCalibration& camera) {
-  camera.distortion_coefficients = in.Matrix(kTermKeys);
-  auto& k = camera.distortion_coefficients;
-  if (in.Whole({"fisheye_model"}, 0) != 0) {
+std::vector<double> Matrix(const YamlMap& in, Keys keys) {
+  const YamlMap matrix = in.Map(Named(in, keys));
+  const auto rows = static_cast<double>(matrix.Integer("rows"));
+  const auto cols = static_cast<double>(matrix.Integer("cols"));
+  std::vector<double> values = matrix.Numbers("data");
+  if (rows < 0 || cols < 0 || rows * cols != static_cast<double>(values.size())) {
+    throw matrix.Error("data", fmt::format("found {} numbers, expected {} rows and {} columns",
+                                           values.size(), rows, cols));
+  }
+  return values;
+}
+
+int Whole(const YamlMap& in, Keys keys, int fallback) {
+  const std::string key = Named(in, keys);
+  return in.Has(key) ? static_cast<int>(in.Integer(key)) : fallback;
+}
+
+void ReadLens(const YamlMap& in, CameraCalibration& camera) {
+  const std::string key = Named(in, kTermKeys);
+  auto& k = camera.distortion_coefficients = Matrix(in, kTermKeys);
+  if (Whole(in, {"fisheye_model"}, 0) != 0) {
     camera.distortion = Distortion::kEquidistant;
-    if (k.size() != 4) {
-      throw in.Error(fmt::format(
-          "distortion_coefficients: found {}, expected 4 for a fisheye_model", k.size()));
-    }
-    return;
+    if (k.size() == 4) return;
+    throw in.Error(key, fmt::format("found {}, expected 4 for a fisheye_model", k.size()));
   }
   if (k.empty()) k = {0, 0, 0, 0};
   if (k.size() == 14 && k[12] == 0 && k[13] == 0) k.resize(12);
   if (k.size() == 14) {
-    throw in.Error(
-        "distortion_coefficients: found a tilted sensor (the last two of 14), of which "
-        "there is no counterpart");
+    throw in.Error(key,
+                   "found a tilted sensor (the last two of 14), of which there is no counterpart");
   }
-  if (!std::set<std::size_t>{4, 5, 8, 12}.contains(k.size())) {
-    throw in.Error(
-        fmt::format("distortion_coefficients: found {}, expected 4, 5, 8, 12 or 14", k.size()));
-  }
+  if (!std::set<std::size_t>{4, 5, 8, 12}.contains(k.size()))
+    throw in.Error(key, fmt::format("found {}, expected 4, 5, 8, 12 or 14", k.size()));
   camera.distortion = k.size() == 4 ? Distortion::kRadialTangential : Distortion::kOpenCv;
-}
-
-void NoteOtherKeys(const Reader& in, CameraDescription& d) {
-  std::set<std::string> known = {"fisheye_model", "comment", "camera_name", "rostopic", "rate_hz"};
-  for (const Keys keys : {kMatrixKeys, kTermKeys, kWidthKeys, kHeightKeys}) {
-    known.insert(keys.begin(), keys.end());
-  }
-  std::string others;
-  for (const auto& node : in.storage.root()) {
-    if (!known.contains(node.name())) others += (others.empty() ? "" : ", ") + node.name();
-  }
-  if (!others.empty()) d.notes.push_back(others + ": of the calibration, not of the camera");
-}
-
-}  // namespace
-
-namespace {
-
-CameraDescription ReadOpened(const Reader& in, const CameraFileChoice& choice) {
-  CameraDescription d;
-  const auto problem = TakeIntrinsics(in.Matrix(kMatrixKeys), d.calibration);
-  if (!problem.empty()) throw in.Error(fmt::format("camera_matrix: {}", problem));
-  ReadLens(in, d.calibration);
-  d.calibration.width_px = in.Whole(kWidthKeys, choice.width_px);
-  d.calibration.height_px = in.Whole(kHeightKeys, choice.height_px);
-  if (d.calibration.width_px == 0 || d.calibration.height_px == 0) {
-    throw in.Error("does not state image_width and image_height, and no resolution was given");
-  }
-  d.comment = in.Text("comment");
-  d.camera_name = in.Text("camera_name");
-  d.rostopic = in.Text("rostopic");
-  if (const auto rate = in.storage["rate_hz"]; rate.isReal() || rate.isInt()) {
-    d.calibration.rate_hz = static_cast<double>(rate);
-    d.has_rate = true;
-    const std::string expected = ExpectedAbove(BoundsOf("rate_hz"), d.calibration.rate_hz, false);
-    if (!expected.empty()) {
-      throw in.Error(
-          fmt::format("rate_hz: found {}, expected {}", d.calibration.rate_hz, expected));
-    }
-  }
-  NoteOtherKeys(in, d);
-  return d;
 }
 
 }  // namespace
 
 CameraDescription ReadOpenCvCamera(const std::filesystem::path& file,
                                    const CameraFileChoice& choice) {
-  const Reader in(file);
-  try {
-    return ReadOpened(in, choice);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception&) {
-    throw in.Error("holds something else than a camera of OpenCV's");
+  const YamlMap in = StorageOf(file);
+  CameraDescription d;
+  const auto problem = TakeIntrinsics(Matrix(in, kMatrixKeys), d.calibration);
+  if (!problem.empty()) throw in.Error(Named(in, kMatrixKeys), problem);
+  ReadLens(in, d.calibration);
+  d.calibration.width_px = Whole(in, kWidthKeys, choice.width_px);
+  d.calibration.height_px = Whole(in, kHeightKeys, choice.height_px);
+  if (d.calibration.width_px == 0 || d.calibration.height_px == 0) {
+    throw in.Error("image_width",
+                   "does not state image_width and image_height, and no resolution was given");
   }
+  ReadLabels(in, d);
+  const auto others = in.Unasked();
+  if (!others.empty()) {
+    d.notes.push_back(
+        fmt::format("{}: of the calibration, not of the camera", fmt::join(others, ", ")));
+  }
+  return d;
 }
 
 void WriteOpenCvCamera(const std::filesystem::path& file, const CameraDescription& d) {

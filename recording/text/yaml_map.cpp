@@ -88,7 +88,10 @@ std::shared_ptr<YamlMap::Impl> YamlMap::Impl::Make(const std::string& file,
 }
 
 YamlMap YamlMap::Load(const std::filesystem::path& file) {
-  const std::string text = ReadTextFile(file);
+  return OfText(file, ReadTextFile(file));
+}
+
+YamlMap YamlMap::OfText(const std::filesystem::path& file, const std::string& text) {
   try {
     return YamlMap(Impl::Make(file.string(), "", YAML::Load(text)));
   } catch (const YAML::Exception& error) {

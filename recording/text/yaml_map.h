@@ -20,6 +20,8 @@ class YamlMap {
  public:
   /// The file's top mapping. Throws InputError for an unreadable file or broken YAML.
   static YamlMap Load(const std::filesystem::path& file);
+  /// The same of a text; messages name `file` and the text's lines.
+  static YamlMap OfText(const std::filesystem::path& file, const std::string& text);
 
   bool Has(const std::string& key) const;
   std::vector<std::string> Keys() const;

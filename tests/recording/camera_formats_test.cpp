@@ -89,7 +89,8 @@ TEST_F(CameraFormats, GuessesNothingElse) {
   EXPECT_THAT(Refusal("family: tag36h11\n"), HasSubstr("not a camera file"));
   EXPECT_THAT(Refusal("[3, 4]\n"), HasSubstr("in.yaml"));
   EXPECT_THAT(Refusal(""), HasSubstr("in.yaml"));
-  EXPECT_THAT(Refusal("%YAML:1.0\n---\n"), HasSubstr("camera_matrix"));
+  EXPECT_THAT(Refusal("%YAML:1.0\n---\n"), HasSubstr("in.yaml:3: expected a mapping"));
+  EXPECT_THAT(Refusal("%YAML:1.0\n---\na: 1\n"), HasSubstr("camera_matrix"));
   EXPECT_THAT(Refusal("<opencv_storage>\n"), HasSubstr("in.yaml"));
 }
 

@@ -1,6 +1,10 @@
 // OpenCV's camera files, beside OpenCV itself.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <opencv2/core.hpp>
 
+#include "recording/text/text.h"
 #include "tests/recording/camera_format_test.h"
 
 namespace flextip {
@@ -54,6 +58,27 @@ TEST_F(CameraFormats, ReadsWhatOpenCvsProgramWrites) {
               HasSubstr("camera_matrix"));
 }
 
+TEST_F(CameraFormats, XmlHasItsLinesAndTexts) {
+  auto d = Awkward(Distortion::kRadialTangential, 4);
+  d.comment = "a < b & \"c\" > 'd'";
+  const auto file = folder / "in.xml";
+  WriteCameraDescription(file, CameraFormat::kOpenCv, d);
+  EXPECT_EQ(ReadCameraDescription(file, CameraFormat::kOpenCv).comment, d.comment);
+  const std::string written = ReadTextFile(file);
+  const auto line =
+      std::count(written.begin(), written.begin() + std::ptrdiff_t(written.find("<data>")), '\n') +
+      1;
+  WriteTextFile(file, With(written, "<data>", "<data>nothing "));
+  try {
+    ReadCameraDescription(file, CameraFormat::kOpenCv);
+    ADD_FAILURE() << "read without an error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(fmt::format("in.xml:{}: camera_matrix.data: found "
+                                                    "\"nothing\"",
+                                                    line)));
+  }
+}
+
 // cv::FileStorage is the other party here: it reads what was written and writes what is read.
 TEST_F(CameraFormats, OpenCvItselfReadsAndWritesTheSameNumbers) {
   for (const char* name : {"a.yml", "a.xml", "a.json"}) {
@@ -88,15 +113,14 @@ TEST_F(CameraFormats, OpenCvItselfReadsAndWritesTheSameNumbers) {
   EXPECT_THROW(read(), InputError);
 }
 
-TEST_F(CameraFormats, AMatrixOfAbsurdSizeIsRefusedBeforeItsMemoryIsAskedFor) {
+TEST_F(CameraFormats, AMatrixWithoutItsNumbersIsRefused) {
   for (const auto& [size, says] :
        {std::pair("rows: 30000\n   cols: 30000",
-                  "camera_matrix: found 30000 rows and 30000 columns"),
-        std::pair("rows: 3\n   cols: -3", "camera_matrix: found 3 rows and -3 columns"),
-        std::pair("sizes: [ 30000, 30000 ]", "camera_matrix: expected a matrix of rows"),
-        // OpenCV takes a text for the largest whole number, and rounds a fraction.
-        std::pair("rows: 1\n   cols: many", "camera_matrix: expected a matrix of rows"),
-        std::pair("rows: 30000.\n   cols: 30000.", "camera_matrix: expected a matrix of rows")}) {
+                  "in.yaml:9: camera_matrix.data: found 1 numbers, expected 30000 rows and 30000"),
+        std::pair("rows: -1\n   cols: -1", "found 1 numbers, expected -1 rows and -1 columns"),
+        std::pair("sizes: [ 30000, 30000 ]", "key \"camera_matrix.rows\" is missing"),
+        std::pair("rows: 1\n   cols: many", "camera_matrix.cols: found \"many\""),
+        std::pair("rows: 1.\n   cols: 1.", "camera_matrix.rows: found \"1.\"")}) {
     const std::string matrix =
         fmt::format("camera_matrix: !!opencv-matrix\n   {}\n   dt: d\n   data: [ 1. ]\n", size);
     EXPECT_THAT(Refusal("%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\n" + matrix),
@@ -104,12 +128,22 @@ TEST_F(CameraFormats, AMatrixOfAbsurdSizeIsRefusedBeforeItsMemoryIsAskedFor) {
   }
 }
 
-// OpenCV's parser throws more than its own exceptions.
-TEST_F(CameraFormats, ABrokenKeyIsRefused) {
-  EXPECT_THAT(Refusal("%YAML:1.0\n---\nimage\x8a_width: 640\nimage_height: 480\n"
-                      "cameraWmatrix: !!opencv-matrix\n   rows: 100000\n   cols: 100000\n"
-                      "   :dt d\n   data: [ 1. ]\n"),
-              HasSubstr("in.yaml: "));
+// OpenCV's parsers end a program on the first two, and on elements nested without end.
+TEST_F(CameraFormats, BrokenFilesAreRefused) {
+  for (const auto& [text, says] :
+       {std::pair<std::string, std::string>("<?xml n=", "in.yaml:1: <? without ?>"),
+        {"<?xml version=\"1.0\"?>\n<opencv_storage>\n<a b=", "in.yaml:3: expected ="},
+        {"<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width~640</image_width>",
+         "in.yaml:3: "},
+        {"%YAML:1.0\n---\nimage\x8a_width: 640\n   :dt d\n",
+         "in.yaml:3: key \"camera_matrix\" is missing"},
+        {"%YAML:1.0\n---\na: " + std::string(100'000, '['), "in.yaml:3: is not YAML from here"},
+        {"{\"a\": " + std::string(100'000, '['), "in.yaml:1: is not YAML from here"}}) {
+    EXPECT_THAT(Refusal(text), HasSubstr(says)) << text.substr(0, 200);
+  }
+  std::string deep = "<?xml version=\"1.0\"?>\n";
+  for (int i = 0; i < 100'000; ++i) deep += "<a>";
+  EXPECT_THAT(Refusal(deep), HasSubstr("in.yaml:2: elements nested more than 32 deep"));
 }
 
 }  // namespace
