@@ -125,6 +125,7 @@ class InstrumentController {
   void ControlDirection(const Eigen::Vector3d& d_RE_desired, ControllerCommand& command);
   bool MayPointWrong(ControllerCommand& command);
   Limited Corrected(const ControllerCommand& command);
+  Limited KeptToWay(const ControllerCommand& command, const Limited& wish);
   bool LosesItsLoad(const ControllerCommand& command) const;
   Eigen::Vector3d WayOfTip(const Eigen::Vector3d& p_RW);
   void Supervise(const ControllerInputs& inputs, ControllerCommand& command);

@@ -168,6 +168,8 @@ void RunServe(const ServeCommand& options, bool quiet) {
   live::ServeResult result = live::Serve(scenario, laparoscope ? &*laparoscope : nullptr, serve);
 
   if (output) {
+    if (result.truth.empty())
+      throw WorkError("nothing to write: it was served for less than a cycle");
     if (frames) frames->Finish(result.recording);
     WriteRecording(output->folder(), result.recording);
     WriteTruth(output->folder(), result.truth);

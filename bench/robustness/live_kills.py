@@ -18,7 +18,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-from live_run import LiveRun  # noqa: E402
+from live_run import LiveRun, round_and_round  # noqa: E402
 
 LEAST_CYCLES = 3  # of a recording that says something
 
@@ -54,7 +54,7 @@ def end(process):
 class Trial:
     def __init__(self, options):
         self.options, self.random = options, random.Random(options.seed)
-        self.wrong, self.short, self.none = [], 0, 0
+        self.wrong, self.short = [], 0
 
     def blame(self, turn, what):
         self.wrong.append(what)
@@ -71,7 +71,8 @@ class Trial:
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
         with LiveRun(self.options.program, out, page=False, options=["-q"], served=out / "served",
-                     camera=False, lockstep=lockstep, rate_hz=30 if lockstep else 120) as run:
+                     camera=False, lockstep=lockstep, rate_hz=30 if lockstep else 120,
+                     waypoints=round_and_round(50)) as run:
             time.sleep(self.random.uniform(0.0, self.options.seconds))
             victim, other = (run.control, run.robot) if kills_control else (run.robot, run.control)
             if victim.poll() is not None:
@@ -80,7 +81,8 @@ class Trial:
             victim.communicate()
             time.sleep(0.5)  # it may notice by itself
             code = end(other)
-        if code not in (0, 1, 2):
+        young = code == -signal.SIGINT and cycles_of(run.recording) == 0  # it just began
+        if code not in (0, 1, 2) and not young:
             self.blame(turn, f"{other.args[1]} ended by {code}")
         if kills_control:
             self.after_control(turn, run, code)
@@ -89,7 +91,6 @@ class Trial:
 
     def after_control(self, turn, run, code):
         if code != 0 or not (run.served / "summary.json").exists():
-            self.none += 1  # nothing came before the kill
             if cycles_of(run.recording) > LEAST_CYCLES:
                 self.blame(turn, f"the robot ended by {code} and left no recording")
         else:

@@ -22,6 +22,7 @@ constexpr double kNoise = 4.0;                 // deviations of a motion that is
 constexpr double kOtherPart = 0.77;
 constexpr double kCertain = 2.0;            // deviations of the tip
 constexpr double kAstray = 3.0;             // the same, for a hold: until then the wrist waits
+constexpr double kRoom = 0.8;               // of what it may be astray, for where a step leads
 constexpr double kModel = 0.3;              // of a motion may be otherwise than the model says
 constexpr double kOtherMotion_m_s = 0.003;  // tissue, breath
 constexpr TimeNs kGone_ns = 300'000'000;    // without a tip, and the filter begins again
@@ -39,21 +40,22 @@ void PathWatch::Note(TimeNs t_ns, const Eigen::Vector3d& p_wish) {
   count_ = std::min(count_ + 1, kSize);
 }
 
-/// The place nearest to the tip.
-Eigen::Vector3d PathWatch::NearestOnWay(TimeNs t_ns, const Eigen::Vector3d& p_wish) const {
-  Eigen::Vector3d ahead = p_wish;
-  if (count_ > 0) {
-    // The way goes on: a tip that is ahead is not beside it.
-    const Wish& newest = wishes_[(next_ + kSize - 1) % kSize];
-    const double part = static_cast<double>(kAhead_ns) /
-                        static_cast<double>(std::max<TimeNs>(t_ns - newest.t_ns, kStep_ns));
-    ahead += part * (p_wish - newest.p);
-  }
-  Eigen::Vector3d nearest = NearestOnSegment(p_wish, ahead, tip_.p), later = p_wish;
+/// Where the way goes on to: a tip that is ahead is not beside it.
+Eigen::Vector3d PathWatch::Ahead(TimeNs t_ns, const Eigen::Vector3d& p_wish) const {
+  if (count_ == 0) return p_wish;
+  const Wish& newest = wishes_[(next_ + kSize - 1) % kSize];
+  const double part = static_cast<double>(kAhead_ns) /
+                      static_cast<double>(std::max<TimeNs>(t_ns - newest.t_ns, kStep_ns));
+  return p_wish + part * (p_wish - newest.p);
+}
+
+/// The place of the way nearest to `p_RE`.
+Eigen::Vector3d PathWatch::NearestOnWay(const Eigen::Vector3d& p_RE) const {
+  Eigen::Vector3d nearest = NearestOnSegment(p_wish_, p_ahead_, p_RE), later = p_wish_;
   for (std::size_t i = 1; i <= count_; ++i) {
     const Wish& wish = wishes_[(next_ + kSize - i) % kSize];
-    const Eigen::Vector3d place = NearestOnSegment(wish.p, later, tip_.p);
-    if ((tip_.p - place).norm() < (tip_.p - nearest).norm()) nearest = place;
+    const Eigen::Vector3d place = NearestOnSegment(wish.p, later, p_RE);
+    if ((p_RE - place).norm() < (p_RE - nearest).norm()) nearest = place;
     later = wish.p;
   }
   return nearest;
@@ -98,7 +100,9 @@ bool PathWatch::IsAstray(TimeNs t_ns, const PlaceKnown& tip, const Eigen::Vector
       !p_wish.allFinite())
     return false;
   Follow(t_ns, tip, dp_RE);
-  const Eigen::Vector3d beside = tip_.p - NearestOnWay(t_ns, p_wish);
+  p_wish_ = p_wish;
+  p_ahead_ = Ahead(t_ns, p_wish);
+  const Eigen::Vector3d beside = tip_.p - NearestOnWay(tip_.p);
   Note(t_ns, p_wish);
   deviation_m_ = beside.norm();
   const double sd_m = std::sqrt(std::max(0.0, beside.dot(tip_.covariance_m2 * beside))) /
@@ -136,6 +140,18 @@ bool PathWatch::MovesOtherwise(TimeNs t_ns) const {
     if (beside_m > kNoise * sd_m + kOtherPart * led.norm()) return true;
   }
   return false;
+}
+
+Eigen::Vector3d PathWatch::Kept(const Eigen::Vector3d& before, const Eigen::Vector3d& step) const {
+  const auto beside = [&](double part) {
+    const Eigen::Vector3d p_RE = tip_.p + before + part * step;
+    return Eigen::Vector3d(p_RE - NearestOnWay(p_RE));
+  };
+  const double room_m = std::max(kRoom * max_deviation_m_, beside(0.0).norm());
+  for (double part = 1.0; part > 0.0; part -= 0.25)
+    if (!(beside(part).norm() > room_m)) return part * step;
+  const Eigen::Vector3d to = beside(1.0);
+  return step - (1.0 - room_m / to.norm()) * to;
 }
 
 void PathWatch::TryOnce(TimeNs t_ns) {

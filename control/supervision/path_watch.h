@@ -47,6 +47,12 @@ class PathWatch {
   /// astray. A caught tip does, and one that is thrown.
   bool MovesOtherwise(TimeNs t_ns) const;
 
+  /// Returns what of a `step` (m) of the tip keeps it within nine tenths of what it may be beside
+  /// its way, or as near as it is before the step: quarters of it; where not even one does, all but
+  /// what leads away from the way. The tip is that which IsAstray was given last, moved by `before`
+  /// (m): by what was commanded already.
+  Eigen::Vector3d Kept(const Eigen::Vector3d& before, const Eigen::Vector3d& step) const;
+
   /// Lets the tip come back from where it is now: for half a second it need only get no farther.
   void ComeBack(TimeNs t_ns) {
     from_ns_ = t_ns;
@@ -86,7 +92,8 @@ class PathWatch {
 
   void Follow(TimeNs t_ns, const PlaceKnown& seen, const Eigen::Vector3d& dp_RE);
   void Note(TimeNs t_ns, const Eigen::Vector3d& p_wish);
-  Eigen::Vector3d NearestOnWay(TimeNs t_ns, const Eigen::Vector3d& p_wish) const;
+  Eigen::Vector3d Ahead(TimeNs t_ns, const Eigen::Vector3d& p_wish) const;
+  Eigen::Vector3d NearestOnWay(const Eigen::Vector3d& p_RE) const;
 
   double max_deviation_m_, tolerance_m_;
   std::array<Wish, kSize> wishes_;  // a ring, the newest before next_
@@ -95,6 +102,7 @@ class PathWatch {
   Step newest_;
   std::size_t next_step_ = 0, steps_kept_ = 0;
   PlaceKnown tip_;
+  Eigen::Vector3d p_wish_ = Eigen::Vector3d::Zero(), p_ahead_ = Eigen::Vector3d::Zero();  // now
   TimeNs tip_ns_ = 0;  // 0: never seen
   double deviation_m_ = 0.0;
   TimeNs from_ns_ = 0;    // of ComeBack

@@ -153,6 +153,21 @@ Limited InstrumentController::Corrected(const ControllerCommand& command) {
   return limited;
 }
 
+/// The wish, with so little of it across the way that the tip keeps to it: a controller may know
+/// the shaft worse than the rod of all sensors does.
+Limited InstrumentController::KeptToWay(const ControllerCommand& command, const Limited& wish) {
+  const auto J = motion_guard_.Jacobian();
+  const auto& p_last = supervisor_.LastCommand();
+  if (options_.supervision.max_tip_deviation_m <= 0.0 || !by_all_ || !J || !p_last) return wish;
+  const Eigen::Vector3d step = wish.p - *p_last, step_RE = *J * step;
+  const Eigen::Vector3d before = *J * (*p_last - command.measurements.p_RW);
+  const Eigen::Vector3d kept = path_watch_.Kept(before, step_RE);
+  if (kept == step_RE) return wish;
+  const Eigen::Vector3d less = J->fullPivLu().solve(kept);
+  const bool is_less = less.allFinite() && less.norm() <= step.norm();
+  return {*p_last + (is_less ? less : Eigen::Vector3d(Eigen::Vector3d::Zero())), true};
+}
+
 /// The last word over the command.
 void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerCommand& command) {
   const SupervisorOptions& options = options_.supervision;
@@ -197,7 +212,7 @@ void InstrumentController::Supervise(const ControllerInputs& inputs, ControllerC
     const bool moves = acts && !command.J_tip_wrist.isZero(0.0) && found.reaction < Reaction::kHold;
     if (moves) {
       cycle.may_point_wrong = MayPointWrong(command);
-      const Limited corrected = Corrected(command);
+      const Limited corrected = KeptToWay(command, Corrected(command));
       cycle.p_wish = corrected.p;
       if (corrected.limited && found.reaction == Reaction::kNone) {
         found.stop = Stop::kStep;

@@ -81,6 +81,9 @@ std::string ProblemOf(const CameraCalibration& c) {
     const std::string expected = ExpectedWithin(BoundsOf(name), value);
     return expected.empty() ? "" : fmt::format("{}: found {}, expected {}", name, value, expected);
   };
+  for (const int side_px : {c.width_px, c.height_px}) {
+    if (const auto problem = beyond("resolution", side_px); !problem.empty()) return problem;
+  }
   for (const double focal_px : {c.fu_px, c.fv_px}) {
     if (const auto problem = beyond("intrinsics", focal_px); !problem.empty()) return problem;
   }

@@ -82,6 +82,19 @@ TEST(FaultRuns, TheFullSupervisorKeepsMostHazardsAway) {
   EXPECT_EQ(figures[1].jumps_found, figures[1].jumps);
 }
 
+/// Runs of the seed 421, each with a wrist that lies for a moment. A straight shaft's model points
+/// up to 47 degrees beside: after the hold two steps led the tip 2 to 2.6 mm off.
+TEST(FaultRuns, AControllerThatKnowsTheShaftBadlyIsKeptToItsWay) {
+  Twins twins;
+  for (const int number : {2623, 2660, 3940, 7383, 7480}) {
+    const FaultRecord record =
+        RunFault(DrawRun(421, number), {SupervisionKind::kFull}, twins).at(0);
+    EXPECT_EQ(record.controller, "straight-track");
+    EXPECT_EQ(record.hazard, "none") << number << ": " << record.hazard_deviation_m;
+    EXPECT_NE(record.going_on, "no") << number;
+  }
+}
+
 /// What a supervisor said, made by hand: a hold in the third cycle of the fault, gone again.
 LoopResult Said(Reaction reaction, Stop stop, std::uint8_t voted_out, bool goes_on) {
   LoopResult result;

@@ -49,6 +49,28 @@ TEST(PathWatch, ATipThatMayBeBeyondTheLimitIsInDoubt) {
   }
 }
 
+// May be 1.8 mm beside its way: a step leads it to 1.44 mm at most.
+TEST(PathWatch, AStepKeepsTheTipToItsWay) {
+  using Eigen::Vector3d;
+  const auto beside = [](double beside_m) {
+    Walk walk;
+    for (int i = 0; i < 20; ++i) walk.Next(beside_m, 0.002);
+    return walk.watch;
+  };
+  const auto near = [](const Vector3d& kept, const Vector3d& expected) {
+    EXPECT_LT((kept - expected).norm(), 2e-5) << kept.transpose();  // the filter's noise
+  };
+  const Vector3d none = Vector3d::Zero();
+  const PathWatch inside = beside(0.001), edge = beside(0.0014), outside = beside(0.0022);
+  near(inside.Kept(none, {0.001, 0.0004, 0}), {0.001, 0.0004, 0});
+  near(inside.Kept(none, {0.0016, 0.0016, 0}), {0.0004, 0.0004, 0});            // to 1.4, not 1.8
+  near(inside.Kept({0, 0.0003, 0}, {0.001, 0.0004, 0}), {0.00025, 0.0001, 0});  // from 1.3 on
+  near(edge.Kept(none, {0.001, 0.002, 0}), {0.001, 0.00004, 0});  // along it all, across to 1.44
+  near(edge.Kept(none, {0.001, -0.002, 0}), {0.001, -0.002, 0});
+  near(outside.Kept(none, {0.001, 0.001, 0}), {0.001, 0.0, 0});  // not farther than it is
+  near(outside.Kept(none, {0.001, -0.001, 0}), {0.001, -0.001, 0});
+}
+
 TEST(PathWatch, LaggingBehindIsNotLeaving) {
   Walk walk;
   for (int i = 0; i < 60; ++i) EXPECT_FALSE(walk.Next(0.0, std::min(walk.x_m, 0.006)));

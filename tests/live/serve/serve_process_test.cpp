@@ -256,6 +256,16 @@ TEST(ServedRobot, InLockstepSetPointsOfARobotThatIsNotEnabledOnlyLetTimeGoOn) {
   EXPECT_THAT(session.out, HasSubstr("(59 not followed)"));
 }
 
+TEST(ServedRobot, InLockstepWithoutAClientLeavesNothing) {
+  const fs::path folder = fs::path(testing::TempDir()) / "flextip_no_client";
+  fs::remove_all(folder);
+  ServedProgram program({kScenario, "--serve", "0", "--lockstep", "-o", folder.string()});
+  ASSERT_GT(program.port(), 0);
+  program.Interrupt();
+  EXPECT_EQ(program.Wait(), 1);
+  EXPECT_FALSE(fs::exists(folder));
+}
+
 TEST(ServedRobot, EndsAfterItsDuration) {
   ServedProgram program({kScenario, "--serve", "0", "--duration", "0.3"});
   ASSERT_GT(program.port(), 0);
