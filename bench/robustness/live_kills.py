@@ -63,7 +63,7 @@ class Trial:
     def look(self, turn, recording, name):
         for verb in ("check", "replay") if name == "control" else ("check",):
             says = opens(self.options.program, recording, self.options.out / "looked", verb)
-            if says:
+            if says and "has no command to replay" not in says:  # it had only watched
                 self.blame(turn, f"{name}'s recording ({cycles_of(recording)} cycles): {says}")
 
     def turn(self, turn, kills_control, lockstep):

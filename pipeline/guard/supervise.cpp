@@ -163,9 +163,10 @@ Limited InstrumentController::KeptToWay(const ControllerCommand& command, const 
   const Eigen::Vector3d before = *J * (*p_last - command.measurements.p_RW);
   const Eigen::Vector3d kept = path_watch_.Kept(before, step_RE);
   if (kept == step_RE) return wish;
+  // A wrist that would have to go farther for that goes a part of it.
   const Eigen::Vector3d less = J->fullPivLu().solve(kept);
-  const bool is_less = less.allFinite() && less.norm() <= step.norm();
-  return {*p_last + (is_less ? less : Eigen::Vector3d(Eigen::Vector3d::Zero())), true};
+  if (!less.allFinite()) return {*p_last, true};
+  return {*p_last + std::min(1.0, step.norm() / less.norm()) * less, true};
 }
 
 /// The last word over the command.
