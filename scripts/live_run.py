@@ -72,6 +72,18 @@ def smaller_camera(folder, width_px):
     return camera, scenario
 
 
+def end(program):
+    """Ends a program by Ctrl-C; returns its exit code, -SIGKILL where it had to be killed."""
+    if program.poll() is None:
+        program.send_signal(signal.SIGINT)
+    try:
+        program.communicate(timeout=60)
+    except subprocess.TimeoutExpired:
+        program.kill()
+        program.communicate(timeout=60)
+    return program.returncode
+
+
 class LiveRun:
     """Use it in a `with` block, which ends both programs. `address` is the page's, with its token;
     empty without a page. `recording` is the folder that control writes. `picture_width_px`: of the
@@ -112,13 +124,7 @@ class LiveRun:
 
     def __exit__(self, *_):
         for program in reversed(self.programs):
-            if program.poll() is None:
-                program.send_signal(signal.SIGINT)
-            try:
-                program.communicate(timeout=60)
-            except subprocess.TimeoutExpired:
-                program.kill()
-                program.communicate(timeout=60)
+            end(program)
 
     def wait(self, seconds):
         """Waits until control has ended; returns its exit code. `said` is what it printed."""

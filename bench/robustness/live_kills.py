@@ -18,7 +18,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-from live_run import LiveRun, round_and_round  # noqa: E402
+from live_run import LiveRun, end, round_and_round  # noqa: E402
 
 LEAST_CYCLES = 3  # of a recording that says something
 
@@ -36,19 +36,6 @@ def opens(program, recording, out, verb):
 def cycles_of(recording):
     table = recording / "session0/cycles.csv"
     return len(table.read_text().splitlines()) - 1 if table.exists() else 0
-
-
-def end(process):
-    """Ends a program by Ctrl-C; returns its exit code, or nothing where it does not end."""
-    if process.poll() is None:
-        process.send_signal(signal.SIGINT)
-    try:
-        process.communicate(timeout=60)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
-        return None
-    return process.returncode
 
 
 class Trial:

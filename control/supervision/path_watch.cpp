@@ -168,6 +168,8 @@ void PathWatch::VisitState(StateText& state) {
   for (std::size_t i = 1; i <= steps_kept_; ++i) state(steps_[(next_step_ + kSize - i) % kSize]);
   state(newest_);
   state(tip_);
+  state(p_wish_);
+  state(p_ahead_);
   for (TimeNs* time : {&tip_ns_, &from_ns_, &astray_ns_, &span_ns_}) state(*time);
   state(tried_);
   state(may_be_astray_);

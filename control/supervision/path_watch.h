@@ -47,7 +47,7 @@ class PathWatch {
   /// astray. A caught tip does, and one that is thrown.
   bool MovesOtherwise(TimeNs t_ns) const;
 
-  /// Returns what of a `step` (m) of the tip keeps it within nine tenths of what it may be beside
+  /// Returns what of a `step` (m) of the tip keeps it within four fifths of what it may be beside
   /// its way, or as near as it is before the step: quarters of it; where not even one does, all but
   /// what leads away from the way. The tip is that which IsAstray was given last, moved by `before`
   /// (m): by what was commanded already.

@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 #include "recording/cameras/format_parts.h"
 #include "recording/text/text.h"
@@ -21,6 +22,15 @@ constexpr Keys kTermKeys = {"distortion_coefficients", "distCoeffs", "dist_coeff
                             "Distortion_Coefficients"};
 constexpr Keys kWidthKeys = {"image_width", "image_Width"};
 constexpr Keys kHeightKeys = {"image_height", "image_Height"};
+
+/// A text as OpenCV writes it: in quotes where it has blanks, a quote of its own as an entity.
+std::string ScalarOf(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+  text.remove_suffix(text.size() - (text.find_last_not_of(kBlanks) + 1));
+  const bool is_quoted = text.size() > 1 && text.front() == '"' && text.back() == '"';
+  return ResolvedEntities(is_quoted ? text.substr(1, text.size() - 2) : text);
+}
 
 /// Adds an element's value in YAML's flow style, each at its own line, so that messages name it.
 void AddFlow(const XmlElement& e, long& line, std::string& text) {
@@ -40,9 +50,7 @@ void AddFlow(const XmlElement& e, long& line, std::string& text) {
     for (std::string number; numbers >> number;) text += YamlText(number) + ", ";
     text += ']';
   } else {
-    const auto first = e.text.find_first_not_of(" \t\r\n\""),
-               last = e.text.find_last_not_of(" \t\r\n\"");
-    text += YamlText(first == std::string::npos ? "" : e.text.substr(first, last + 1 - first));
+    text += YamlText(ScalarOf(e.text));
   }
 }
 

@@ -16,21 +16,6 @@ namespace {
 
 constexpr int kDeepest = 32;
 
-/// The text with &lt; and the other four as what they stand for; others stay as they are.
-std::string Resolved(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, char>, 5> kEntities = {
-      {{"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}, {"&apos;", '\''}, {"&quot;", '"'}}};
-  std::string resolved;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto entity = std::find_if(kEntities.begin(), kEntities.end(), [&](const auto& one) {
-      return text.substr(i, one.first.size()) == one.first;
-    });
-    resolved += entity == kEntities.end() ? text[i] : entity->second;
-    i += entity == kEntities.end() ? 1 : entity->first.size();
-  }
-  return resolved;
-}
-
 class XmlReader {
  public:
   XmlReader(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {}
@@ -64,7 +49,7 @@ class XmlReader {
     if (depth > kDeepest) throw Error(fmt::format("elements nested more than {} deep", kDeepest));
     while (true) {
       const std::size_t next = std::min(text_.find('<', at_), text_.size());
-      parent.text += Resolved(std::string_view(text_).substr(at_, next - at_));
+      parent.text.append(text_, at_, next - at_);
       at_ = next;
       if (at_ == text_.size()) {
         if (depth > 0) throw Error(fmt::format("<{}> is not closed", parent.name));
@@ -134,6 +119,20 @@ class XmlReader {
 };
 
 }  // namespace
+
+std::string ResolvedEntities(std::string_view text) {
+  static constexpr std::array<std::pair<std::string_view, char>, 5> kEntities = {
+      {{"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}, {"&apos;", '\''}, {"&quot;", '"'}}};
+  std::string resolved;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto entity = std::find_if(kEntities.begin(), kEntities.end(), [&](const auto& one) {
+      return text.substr(i, one.first.size()) == one.first;
+    });
+    resolved += entity == kEntities.end() ? text[i] : entity->second;
+    i += entity == kEntities.end() ? 1 : entity->first.size();
+  }
+  return resolved;
+}
 
 const XmlElement* XmlElement::Child(const std::string& child) const {
   const auto found = std::find_if(children.begin(), children.end(),

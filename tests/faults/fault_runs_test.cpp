@@ -95,6 +95,15 @@ TEST(FaultRuns, AControllerThatKnowsTheShaftBadlyIsKeptToItsWay) {
   }
 }
 
+/// A loop that stood where none of its step keeps to the way, while its goal went on, cut the next
+/// corner by 10 mm.
+TEST(FaultRuns, ALoopThatIsKeptToItsWayGoesOnWithItsGoal) {
+  Twins twins;
+  const FaultRecord record = RunFault(DrawRun(431, 2575), {SupervisionKind::kFull}, twins).at(0);
+  EXPECT_EQ(record.controller, "flex-calculate");
+  EXPECT_LT(record.deviation_m, 0.003);
+}
+
 /// What a supervisor said, made by hand: a hold in the third cycle of the fault, gone again.
 LoopResult Said(Reaction reaction, Stop stop, std::uint8_t voted_out, bool goes_on) {
   LoopResult result;
