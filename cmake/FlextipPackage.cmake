@@ -13,7 +13,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME flextip)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libflextip-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libeigen3-dev, libfmt-dev, libopencv-dev, libapriltag-dev, libyaml-cpp-dev, nlohmann-json3-dev, libtbb-dev, libceres-dev")
+  "libeigen3-dev, libfmt-dev, libopencv-dev, libavformat-dev, libswscale-dev, libapriltag-dev, libyaml-cpp-dev, nlohmann-json3-dev, libtbb-dev, libceres-dev")
 if(FLEXTIP_BUILD_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-flextip)

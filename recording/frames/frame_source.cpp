@@ -4,12 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <opencv2/videoio.hpp>
-#include <opencv2/videoio/registry.hpp>
 #include <thread>
 #include <utility>
 
 #include "core/error.h"
 #include "recording/frames/video_info.h"
+#include "recording/frames/video_reader.h"
 #include "recording/text/text.h"
 
 namespace flextip {
@@ -36,22 +36,9 @@ void CheckSize(const std::string& what, const Image& image, const CameraCalibrat
 }
 
 /// Returns the rate that the file states; the camera's where it states none that can be.
-double RateOf(const cv::VideoCapture& video, const CameraCalibration& camera) {
-  const double own_hz = PossibleRate(video.get(cv::CAP_PROP_FPS));
+double RateOf(const VideoReader& video, const CameraCalibration& camera) {
+  const double own_hz = PossibleRate(video.StatedRate());
   return own_hz > 0 ? own_hz : camera.rate_hz;
-}
-
-bool OpenVideo(cv::VideoCapture& video, const std::string& name) {
-  std::error_code error;
-  if (fs::is_regular_file(name, error) && !IsVideo(name)) return false;
-  const QuietStderr quiet;
-  try {
-    // Asked for any of its readers, OpenCV complains of each that refuses the file.
-    const bool ffmpeg = cv::videoio_registry::hasBackend(cv::CAP_FFMPEG);
-    return video.open(name, ffmpeg ? cv::CAP_FFMPEG : cv::CAP_ANY);
-  } catch (const cv::Exception&) {
-    return false;
-  }
 }
 
 class PictureFrames : public FrameSource {
@@ -83,38 +70,35 @@ class PictureFrames : public FrameSource {
 class VideoFrames : public FrameSource {
  public:
   VideoFrames(const fs::path& file, const CameraCalibration& camera, Series<int> numbers)
-      : file_(file.string()), camera_(camera), numbers_(std::move(numbers)) {
-    if (!OpenVideo(video_, file_)) {
-      throw InputError::At(file_, 0, "the video cannot be opened");
-    }
-    RefuseHugeVideo(file_, video_.get(cv::CAP_PROP_FRAME_WIDTH),
-                    video_.get(cv::CAP_PROP_FRAME_HEIGHT));
+      : file_(file.string()),
+        camera_(camera),
+        numbers_(std::move(numbers)),
+        video_(VideoReader::Open(file_)) {
+    if (!video_) throw InputError::At(file_, 0, "the video cannot be opened");
   }
 
-  double OwnRate() const { return RateOf(video_, camera_); }
+  double OwnRate() const { return RateOf(*video_, camera_); }
   void SetRate(double rate_hz) { rate_hz_ = rate_hz; }
 
   std::size_t Count() const override {
     if (!numbers_.empty()) return numbers_.size();
     // Made of the duration that the file states, which may be anything.
-    return static_cast<std::size_t>(
-        std::min(kMostFrames, std::max(0.0, video_.get(cv::CAP_PROP_FRAME_COUNT))));
+    return static_cast<std::size_t>(std::min(kMostFrames, video_->StatedFrames()));
   }
   void Skip(std::size_t frames) override { next_ += frames; }
   std::optional<Frame> Next() override {
     if (!numbers_.empty() && next_ >= numbers_.size()) return {};
     const std::size_t wanted =
         numbers_.empty() ? next_ : static_cast<std::size_t>(numbers_[next_].value);
-    for (; position_ < wanted; ++position_) {
-      if (!video_.grab()) return {};
+    for (; position_ <= wanted; ++position_) {
+      if (!video_->Advance()) return {};
     }
-    cv::Mat picture;
-    if (!video_.read(picture) || picture.empty()) return {};
-    ++position_;
+    auto picture = video_->Picture();
+    if (!picture) return {};
     const TimeNs t_ns = numbers_.empty() ? std::llround(1e9 * static_cast<double>(next_) / rate_hz_)
                                          : numbers_[next_].t_ns;
     ++next_;
-    Frame frame{t_ns, FromMat(picture)};
+    Frame frame{t_ns, std::move(*picture)};
     CheckSize(file_, frame.image, camera_);
     return frame;
   }
@@ -123,7 +107,7 @@ class VideoFrames : public FrameSource {
   std::string file_;
   CameraCalibration camera_;
   Series<int> numbers_;
-  cv::VideoCapture video_;
+  std::unique_ptr<VideoReader> video_;
   double rate_hz_ = 30.0;
   std::size_t next_ = 0, position_ = 0;  // the next frame to give, and the one the video gives next
 };
@@ -134,27 +118,25 @@ class LiveFrames : public FrameSource {
       : source_(source), camera_(camera) {
     const bool device = std::all_of(source.begin(), source.end(),
                                     [](unsigned char c) { return c >= '0' && c <= '9'; });
-    if (source.empty() || !Open(device)) {
+    if (source.empty() || !(device ? OpenDevice() : OpenVideo())) {
       throw InputError(fmt::format("live source {}: cannot be opened", Quoted(source)));
     }
-    if (fs::is_regular_file(source))
-      period_ = std::chrono::nanoseconds(std::llround(1e9 / RateOf(video_, camera)));
   }
 
   std::size_t Count() const override { return 0; }
   void Skip(std::size_t frames) override {
-    for (std::size_t i = 0; i < frames; ++i) (void)video_.grab();
+    for (std::size_t i = 0; i < frames; ++i) (void)Grab();
   }
   std::optional<Frame> Next() override {
     AwaitTurn();
-    if (!video_.grab()) return {};
+    if (!Grab()) return {};
     using std::chrono::nanoseconds;
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     // A clock that was set back must not turn time around.
     last_ns_ = std::max(last_ns_ + 1, std::chrono::duration_cast<nanoseconds>(now).count());
-    cv::Mat picture;
-    if (!video_.retrieve(picture) || picture.empty()) return {};
-    Frame frame{last_ns_, FromMat(picture)};
+    auto picture = Retrieve();
+    if (!picture) return {};
+    Frame frame{last_ns_, std::move(*picture)};
     CheckSize(source_, frame.image, camera_);
     return frame;
   }
@@ -169,26 +151,45 @@ class LiveFrames : public FrameSource {
     next_ = (keeps_up ? next_ : now) + period_;
   }
 
-  bool Open(bool device) {
-    if (!device) return OpenVideo(video_, source_);
+  bool Grab() { return video_ ? video_->Advance() : device_.grab(); }
+
+  std::optional<Image> Retrieve() {
+    if (video_) return video_->Picture();
+    cv::Mat picture;
+    if (!device_.retrieve(picture) || picture.empty()) return {};
+    return FromMat(picture);
+  }
+
+  bool OpenVideo() {
+    std::error_code error;
+    const bool file = fs::is_regular_file(source_, error);
+    video_ =
+        VideoReader::Open(source_, file ? VideoReader::Kind::kFile : VideoReader::Kind::kStream);
+    if (video_ && file)
+      period_ = std::chrono::nanoseconds(std::llround(1e9 / RateOf(*video_, camera_)));
+    return video_ != nullptr;
+  }
+
+  bool OpenDevice() {
     const auto number = ParseInteger(source_);
     if (!number || *number > 1000) return false;
     const QuietStderr quiet;
     try {
-      if (!video_.open(static_cast<int>(*number))) return false;
+      if (!device_.open(static_cast<int>(*number))) return false;
     } catch (const cv::Exception&) {
       return false;
     }
     // A device gives its own size unless asked; the newest frame counts, not a queue of old ones.
-    video_.set(cv::CAP_PROP_FRAME_WIDTH, camera_.width_px);
-    video_.set(cv::CAP_PROP_FRAME_HEIGHT, camera_.height_px);
-    video_.set(cv::CAP_PROP_BUFFERSIZE, 1);
+    device_.set(cv::CAP_PROP_FRAME_WIDTH, camera_.width_px);
+    device_.set(cv::CAP_PROP_FRAME_HEIGHT, camera_.height_px);
+    device_.set(cv::CAP_PROP_BUFFERSIZE, 1);
     return true;
   }
 
   std::string source_;
   CameraCalibration camera_;
-  cv::VideoCapture video_;
+  std::unique_ptr<VideoReader> video_;  // or, where the source is a number:
+  cv::VideoCapture device_;
   TimeNs last_ns_ = 0;
   std::chrono::nanoseconds period_{0};  // 0: the source has a pace of its own
   std::chrono::steady_clock::time_point next_{};

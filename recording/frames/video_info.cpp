@@ -2,13 +2,11 @@
 
 #include <array>
 #include <fstream>
-#include <opencv2/videoio.hpp>
-#include <opencv2/videoio/registry.hpp>
 #include <string_view>
 #include <system_error>
 
 #include "core/error.h"
-#include "recording/frames/frames.h"
+#include "recording/frames/video_reader.h"
 #include "recording/text/bounds.h"
 
 namespace flextip {
@@ -55,22 +53,12 @@ VideoInfo ReadVideoInfo(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file, error)) {
     throw InputError::At(file.string(), 0, "no such file, expected a video");
   }
-  if (!IsVideo(file)) throw InputError::At(file.string(), 0, "is not a video that can be read");
-  const QuietStderr quiet;
-  cv::VideoCapture video;
-  try {
-    const bool ffmpeg = cv::videoio_registry::hasBackend(cv::CAP_FFMPEG);
-    video.open(file.string(), ffmpeg ? cv::CAP_FFMPEG : cv::CAP_ANY);
-  } catch (const cv::Exception&) {
-    video.release();
-  }
   VideoInfo info;
-  if (video.isOpened()) {
-    info.width_px = static_cast<int>(video.get(cv::CAP_PROP_FRAME_WIDTH));
-    info.height_px = static_cast<int>(video.get(cv::CAP_PROP_FRAME_HEIGHT));
-    RefuseHugeVideo(file.string(), info.width_px, info.height_px);
-    info.rate_hz = PossibleRate(video.get(cv::CAP_PROP_FPS));
-    while (video.grab()) ++info.frames;
+  if (const auto video = VideoReader::Open(file.string())) {
+    info.width_px = video->width_px();
+    info.height_px = video->height_px();
+    info.rate_hz = PossibleRate(video->StatedRate());
+    while (video->Advance()) ++info.frames;
   }
   if (info.frames == 0) {
     throw InputError::At(file.string(), 0, "is not a video that can be read");

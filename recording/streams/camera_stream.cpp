@@ -1,14 +1,12 @@
 // cam0 and cam1: the calibration, and which frame was taken when.
 #include <algorithm>
 #include <cmath>
-#include <opencv2/videoio.hpp>
-#include <opencv2/videoio/registry.hpp>
 #include <system_error>
 
 #include "core/median.h"
 #include "recording/cameras/yaml.h"
 #include "recording/frames/image_head.h"
-#include "recording/frames/video_info.h"
+#include "recording/frames/video_reader.h"
 #include "recording/streams/sensor_head.h"
 #include "recording/streams/sensor_streams.h"
 #include "recording/streams/series_file.h"
@@ -88,10 +86,10 @@ void ReadImages(const std::filesystem::path& folder, bool check, CameraStream& s
 
 // Containers state how many frames they hold by their duration, which may be off; they are counted
 // only where that says that frames are missing.
-long CountFrames(cv::VideoCapture& video, long needed) {
-  if (video.get(cv::CAP_PROP_FRAME_COUNT) >= static_cast<double>(needed)) return needed;
+long CountFrames(VideoReader& video, long needed) {
+  if (video.StatedFrames() >= static_cast<double>(needed)) return needed;
   long count = 0;
-  while (count < needed && video.grab()) ++count;
+  while (count < needed && video.Advance()) ++count;
   return count;
 }
 
@@ -102,27 +100,16 @@ long CheckVideo(const YamlMap& yaml, const std::filesystem::path& file,
   if (!std::filesystem::is_regular_file(file, error)) {
     throw yaml.Error("video", fmt::format("{} is missing", file.string()));
   }
-  cv::VideoCapture video;
-  if (!IsVideo(file)) {
+  const auto video = VideoReader::Open(file.string());
+  if (!video) {
     throw yaml.Error("video", fmt::format("{} is not a video that can be read", file.string()));
   }
-  try {
-    // Asked for any of its readers, OpenCV prints a complaint of each that refuses the file.
-    const bool ffmpeg = cv::videoio_registry::hasBackend(cv::CAP_FFMPEG);
-    video.open(file.string(), ffmpeg ? cv::CAP_FFMPEG : cv::CAP_ANY);
-  } catch (const cv::Exception&) {
-    video.release();
+  if (video->width_px() != camera.width_px || video->height_px() != camera.height_px) {
+    throw yaml.Error(
+        "video", fmt::format("{} is {} x {}, expected {} x {}", file.string(), video->width_px(),
+                             video->height_px(), camera.width_px, camera.height_px));
   }
-  if (!video.isOpened()) {
-    throw yaml.Error("video", fmt::format("{} is not a video that can be read", file.string()));
-  }
-  const int width = static_cast<int>(video.get(cv::CAP_PROP_FRAME_WIDTH));
-  const int height = static_cast<int>(video.get(cv::CAP_PROP_FRAME_HEIGHT));
-  if (width != camera.width_px || height != camera.height_px) {
-    throw yaml.Error("video", fmt::format("{} is {} x {}, expected {} x {}", file.string(), width,
-                                          height, camera.width_px, camera.height_px));
-  }
-  return CountFrames(video, needed);
+  return CountFrames(*video, needed);
 }
 
 void ReadVideo(const std::filesystem::path& folder, const YamlMap& yaml, bool check,
