@@ -13,7 +13,7 @@ namespace flextip::bench {
 std::vector<JudgedParameter> JudgeParameters(const hidden::HiddenRecording& hidden,
                                              const diagnosis::DiagnosisResult& result);
 
-/// The numbers' bounds, where `bounds` (matrix_bound.h) has them.
+/// The numbers' bounds, where `bounds` (bound.h) has them.
 void SetBounds(const std::vector<diagnosis::EffectFit>& bounds,
                std::vector<JudgedParameter>& parameters);
 

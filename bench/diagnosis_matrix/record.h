@@ -18,7 +18,7 @@ struct JudgedParameter {
   std::string effect, parameter;
   int entry = 0;
   double truth = 0.0, value = 0.0, sd = 0.0;
-  /// On sd (matrix_bound.h). 0 where not measured as the verdict was wrong, or where the number
+  /// On sd (bound.h). 0 where not measured as the verdict was wrong, or where the number
   /// does not change to first order (an axis along itself).
   double bound = 0.0;
 };
@@ -30,8 +30,9 @@ struct MatrixRecord {
   int attempt = 0;           ///< draws that had no equilibrium
   EffectNames label;         ///< right answer, sorted: effects, or none, or unknown
   std::string form;          ///< where unknown: which
-  /// Of a single effect, a pair or three from their nearest rival (matrix_rival.h), of a form
-  /// outside the catalogue from all that is in it (matrix_form.h).
+  /// Of a single effect, a pair or three from their nearest rival (rival.h), of a form
+  /// outside the catalogue from all that is in it (form.h), of an effect that was left out
+  /// from up to three of the others together.
   double separation = 0.0;
   std::string rival;  ///< empty where that was not measured
   std::string error;  ///< a refusal's message; the members below are empty then

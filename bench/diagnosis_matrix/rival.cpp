@@ -69,6 +69,20 @@ Separation Nearest(const Explanations& explanations,
   return nearest;
 }
 
+/// Of the signal of `present`.
+Separation NearestTo(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
+                     const diagnosis::ParameterLayout& layout, const std::vector<int>& present,
+                     const std::vector<diagnosis::Hypothesis>& rivals) {
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(theta.size());
+  for (const int b : present) {
+    const auto& block = layout.Blocks()[b];
+    truth.segment(block.first, block.size) = theta.segment(block.first, block.size);
+  }
+  const Eigen::VectorXd g = H * truth;
+  const Explanations explanations(H, g, truth.dot(g), layout);
+  return Nearest(explanations, rivals, explanations.CostOf(present), layout);
+}
+
 }  // namespace
 
 Eigen::VectorXd WidePrior(const diagnosis::ParameterLayout& layout,
@@ -90,14 +104,17 @@ Separation NearestRival(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
                         const diagnosis::ParameterLayout& layout, const std::vector<int>& present) {
   auto rivals = diagnosis::KnownHypotheses(layout.EffectCount(), present.size());
   std::erase(rivals, diagnosis::Hypothesis{present, false});
-  Eigen::VectorXd truth = Eigen::VectorXd::Zero(theta.size());
-  for (const int b : present) {
-    const auto& block = layout.Blocks()[b];
-    truth.segment(block.first, block.size) = theta.segment(block.first, block.size);
-  }
-  const Eigen::VectorXd g = H * truth;
-  const Explanations explanations(H, g, truth.dot(g), layout);
-  return Nearest(explanations, rivals, explanations.CostOf(present), layout);
+  return NearestTo(H, theta, layout, present, rivals);
+}
+
+Separation NearestWithout(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
+                          const diagnosis::ParameterLayout& layout,
+                          const std::vector<int>& present) {
+  auto rivals = diagnosis::KnownHypotheses(layout.EffectCount(), 3);
+  std::erase_if(rivals, [&](const diagnosis::Hypothesis& rival) {
+    return std::ranges::find_first_of(rival.effects, present) != rival.effects.end();
+  });
+  return NearestTo(H, theta, layout, present, rivals);
 }
 
 Separation NearestKnown(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, double c,

@@ -43,6 +43,12 @@ Eigen::MatrixXd WithoutGeneric(const diagnosis::LinearProblem& problem,
 Separation NearestRival(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
                         const diagnosis::ParameterLayout& layout, const std::vector<int>& present);
 
+/// Of the same signal, where the catalogue lacks the effects that make it: rivals are none and one
+/// to three of all others.
+Separation NearestWithout(const Eigen::MatrixXd& H, const Eigen::VectorXd& theta,
+                          const diagnosis::ParameterLayout& layout,
+                          const std::vector<int>& present);
+
 /// Of a signal z that nothing of the catalogue makes, given by X^T z and z^T z: what the hypothesis
 /// that explains most of it leaves. None, single effects and pairs are rivals.
 Separation NearestKnown(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, double c,

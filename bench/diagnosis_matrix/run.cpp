@@ -98,8 +98,7 @@ void SetResult(const diagnosis::DiagnosisResult& result, MatrixRecord& record) {
   record.warnings = result.warnings;
 }
 
-void SetSeparation(TrueModel& truth, MatrixRecord& record) {
-  const Separation separation = MeasureSeparation(truth);
+void SetSeparation(const Separation& separation, MatrixRecord& record) {
   record.separation = separation.value;
   record.rival = separation.rival;
 }
@@ -151,12 +150,12 @@ MatrixRecord RunMatrixCase(const MatrixCase& one) {
     std::optional<TrueModel> truth;
     if (one.part == "singles" || one.part == "pairs" || one.part == "triples") {
       truth.emplace(recording, hidden);
-      SetSeparation(*truth, record);
+      SetSeparation(MeasureSeparation(*truth), record);
+    } else if (one.part == "leave_effect") {
+      TrueModel whole(recording, hidden);
+      SetSeparation(MeasureDeleted(whole), record);
     } else if (one.part == "unknown") {
-      const Separation separation =
-          MeasureForm(recording, hidden.attempt, HiddenOptionsOf(one), one.seed);
-      record.separation = separation.value;
-      record.rival = separation.rival;
+      SetSeparation(MeasureForm(recording, hidden.attempt, HiddenOptionsOf(one), one.seed), record);
     }
     record = Judge(recording, hidden, truth, record);
   } catch (const InputError& error) {

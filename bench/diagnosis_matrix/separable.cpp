@@ -6,6 +6,18 @@
 #include "diagnosis/search/hypothesis_fit.h"
 
 namespace flextip::bench {
+namespace {
+
+template <class Nearest>
+Separation Apart(TrueModel& truth, const Nearest& nearest) {
+  if (!truth.not_shown.empty())
+    return {0.0, diagnosis::Joined(diagnosis::VerdictOf({truth.present, false}, truth.layout))};
+  const auto information = InformationAtTruth(truth);
+  if (!information) return {0.0, ""};
+  return nearest(*information, truth.parameters.theta, truth.layout, truth.present);
+}
+
+}  // namespace
 
 std::optional<Eigen::MatrixXd> InformationAtTruth(TrueModel& truth) {
   diagnosis::Replay& replay = truth.replay;
@@ -22,12 +34,8 @@ std::optional<Eigen::MatrixXd> InformationAtTruth(TrueModel& truth) {
   return WithoutGeneric(problem, diagnosis::GenericSd(problem, may_miss));
 }
 
-Separation MeasureSeparation(TrueModel& truth) {
-  if (!truth.not_shown.empty())
-    return {0.0, diagnosis::Joined(diagnosis::VerdictOf({truth.present, false}, truth.layout))};
-  const auto information = InformationAtTruth(truth);
-  if (!information) return {0.0, ""};
-  return NearestRival(*information, truth.parameters.theta, truth.layout, truth.present);
-}
+Separation MeasureSeparation(TrueModel& truth) { return Apart(truth, NearestRival); }
+
+Separation MeasureDeleted(TrueModel& truth) { return Apart(truth, NearestWithout); }
 
 }  // namespace flextip::bench

@@ -14,6 +14,9 @@ namespace flextip::bench {
 /// the model has no equilibrium.
 Separation MeasureSeparation(TrueModel& truth);
 
+/// The same of what the present effects leave where the catalogue lacks them.
+Separation MeasureDeleted(TrueModel& truth);
+
 /// The parameters' normal matrix about the label's true parameters, generic terms at their best.
 /// Empty where the model has no equilibrium.
 std::optional<Eigen::MatrixXd> InformationAtTruth(TrueModel& truth);

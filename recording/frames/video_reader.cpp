@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -17,7 +18,6 @@ extern "C" {
 }
 
 #include "recording/frames/video_info.h"
-#include "recording/text/bounds.h"
 
 namespace flextip {
 namespace {
@@ -65,6 +65,7 @@ Image Turned(const cv::Mat& picture, int quarter_turns) {
 
 struct VideoReader::Impl {
   Kind kind = Kind::kFile;
+  double most_pixels = kMostPixels;
   Clock::time_point deadline;
   Owned<AVFormatContext> container;
   Owned<AVCodecContext> decoder;
@@ -89,7 +90,17 @@ struct VideoReader::Impl {
     av_dict_free(&options);
     if (error < 0) return false;  // `opened` is freed then
     container.reset(opened);
-    return avformat_find_stream_info(opened, nullptr) >= 0 && OpenDecoder();
+    return LookAtStreams() && OpenDecoder();
+  }
+
+  /// Decodes the first pictures of all streams for what the container does not state.
+  bool LookAtStreams() {
+    std::vector<AVDictionary*> of_streams(container->nb_streams, nullptr);
+    for (AVDictionary*& one : of_streams)
+      av_dict_set_int(&one, "max_pixels", static_cast<std::int64_t>(most_pixels), 0);
+    const int error = avformat_find_stream_info(container.get(), of_streams.data());
+    for (AVDictionary*& one : of_streams) av_dict_free(&one);
+    return error >= 0;
   }
 
   bool OpenDecoder() {
@@ -104,7 +115,7 @@ struct VideoReader::Impl {
     if (!decoder || avcodec_parameters_to_context(decoder.get(), stream->codecpar) < 0)
       return false;
     decoder->thread_count = 0;  // as many as there are cores
-    decoder->max_pixels = static_cast<std::int64_t>(kMostPixels);
+    decoder->max_pixels = static_cast<std::int64_t>(most_pixels);
     quarter_turns = QuarterTurns(*stream);
     return avcodec_open2(decoder.get(), codec, nullptr) >= 0;
   }
@@ -157,12 +168,14 @@ struct VideoReader::Impl {
 VideoReader::VideoReader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 VideoReader::~VideoReader() = default;
 
-std::unique_ptr<VideoReader> VideoReader::Open(const std::string& source, Kind kind) {
+std::unique_ptr<VideoReader> VideoReader::Open(const std::string& source, Kind kind,
+                                               double most_pixels) {
   std::error_code error;
   if (std::filesystem::is_regular_file(source, error) && !IsVideo(source)) return nullptr;
   av_log_set_level(AV_LOG_QUIET);
   auto impl = std::make_unique<Impl>();
   impl->kind = kind;
+  impl->most_pixels = most_pixels;
   if (!impl->Open(source)) return nullptr;
   std::unique_ptr<VideoReader> reader(new VideoReader(std::move(impl)));
   if (reader->width_px() <= 0 || reader->height_px() <= 0) return nullptr;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/image.h"
+#include "recording/text/bounds.h"
 
 namespace flextip {
 
@@ -18,9 +19,10 @@ class VideoReader {
   enum class Kind { kFile, kStream };
 
   /// Opens `source`. Returns nothing where it is no video that can be read, or a list of other
-  /// files. Throws InputError where it states more pixels than any camera has. FFmpeg's libraries
-  /// print nothing from then on.
-  static std::unique_ptr<VideoReader> Open(const std::string& source, Kind kind = Kind::kFile);
+  /// files. Throws InputError where it states more pixels than any camera has. Pictures of more
+  /// than `most_pixels` are not decoded. FFmpeg's libraries print nothing from then on.
+  static std::unique_ptr<VideoReader> Open(const std::string& source, Kind kind = Kind::kFile,
+                                           double most_pixels = kMostPixels);
   ~VideoReader();
   VideoReader(const VideoReader&) = delete;
   VideoReader& operator=(const VideoReader&) = delete;
