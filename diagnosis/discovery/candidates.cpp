@@ -53,10 +53,20 @@ class WaveWalk {
   int count_ = 0;
 };
 
+/// Whether neighbouring samples differ as much as in a sine of 28 samples or less: what a noise
+/// that is measured from differences could hold.
+bool IsFast(const TermSeries& series) {
+  constexpr double kLeast = 0.05;
+  const Eigen::Index n = series.rows();
+  const auto steps = series.bottomRows(n - 1) - series.topRows(n - 1);
+  const auto apart = series.rowwise() - series.colwise().mean();
+  return steps.squaredNorm() > kLeast * apart.squaredNorm();
+}
+
 /// The best of each kind, of one target.
 std::vector<Candidate> BestOfKinds(const TargetScan& scan, TermTarget target,
                                    const std::vector<TermState>& states, const SampleSet& set,
-                                   bool waves_only) {
+                                   bool fast_waves_only) {
   struct Rough {
     Term term;
     double gain;
@@ -64,9 +74,10 @@ std::vector<Candidate> BestOfKinds(const TargetScan& scan, TermTarget target,
   std::map<std::pair<TermShape, TermVariable>, std::vector<Rough>> kinds;
   WaveWalk walk;
   for (Term& term : Library(target, states, set)) {
-    if (waves_only && term.shape != TermShape::kPeriodic) continue;
+    if (fast_waves_only && term.shape != TermShape::kPeriodic) continue;
     const TermSeries series =
         term.shape == TermShape::kPeriodic ? walk.Next(term, states) : SeriesOf(term, states);
+    if (fast_waves_only && !IsFast(series)) continue;
     auto& kind = kinds[{term.shape, term.variable}];
     kind.push_back({std::move(term), 0.0});
     kind.back().gain = scan.LeastGain(kind.back().term, series);
@@ -162,7 +173,7 @@ double Criterion(const Candidate& candidate, double variance, double samples) {
 }
 
 std::vector<Candidate> FindCandidates(const WeightedProblem& weighted, const StatesByTarget& states,
-                                      bool waves_only) {
+                                      bool fast_waves_only) {
   std::vector<TermTarget> targets;
   for (const auto& [target, of_target] : states) targets.push_back(target);
   std::vector<std::unique_ptr<TargetScan>> scans(targets.size());
@@ -170,7 +181,7 @@ std::vector<Candidate> FindCandidates(const WeightedProblem& weighted, const Sta
   tbb::parallel_for(std::size_t{0}, targets.size(), [&](std::size_t i) {
     scans[i] = std::make_unique<TargetScan>(weighted, targets[i]);
     by_target[i] = BestOfKinds(*scans[i], targets[i], states.at(targets[i]),
-                               weighted.problem.Of().Set(), waves_only);
+                               weighted.problem.Of().Set(), fast_waves_only);
   });
   std::vector<Candidate> all;
   for (auto& some : by_target)

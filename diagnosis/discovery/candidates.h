@@ -20,9 +20,9 @@ using StatesByTarget = std::map<TermTarget, std::vector<TermState>>;
 /// Returns one candidate of each target, shape and variable that may matter, best first. A gain
 /// counts in the variance that the best candidate leaves, at least the noise's; each number found
 /// costs the logarithm of the samples.
-/// `waves_only`: periodic ones alone.
+/// `fast_waves_only`: periodic ones alone, and only those as fast as noise.
 std::vector<Candidate> FindCandidates(const WeightedProblem& weighted, const StatesByTarget& states,
-                                      bool waves_only = false);
+                                      bool fast_waves_only = false);
 
 /// The variance (of whitened rows) that the best leaves, at least one.
 double VarianceLeft(const WeightedProblem& weighted, double gain);

@@ -21,12 +21,12 @@ std::vector<double> Weights(int blocks, int parity) {
 /// Twice the smaller of two probabilities: that what is chosen on one half holds on the other by
 /// chance, and the other way round (Bonferroni: of two looks the luckier counts double).
 double CertifyByHalves(const ResidualProblem& problem, const StatesByTarget& states,
-                       bool waves_only) {
+                       bool fast_waves_only) {
   double least = 0.5;
   for (const int seen : {0, 1}) {
     const auto weight = Weights(problem.Blocks(), seen);
     const WeightedProblem half(problem, weight);
-    const std::vector<Candidate> chosen = FindCandidates(half, states, waves_only);
+    const std::vector<Candidate> chosen = FindCandidates(half, states, fast_waves_only);
     if (chosen.empty() || chosen.front().criterion <= 0.0) continue;
     least = std::min(least, FalseDiscovery(problem, chosen.front().term, weight,
                                            Weights(problem.Blocks(), 1 - seen)));
@@ -114,7 +114,7 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     search.rows = all.rows;
     if (i == 0) search.complexity = Llt(all.information).LogDeterminant();
     if (int(search.terms.size()) >= most) break;
-    const std::vector<Candidate> candidates = FindCandidates(all, states, options.waves_only);
+    const std::vector<Candidate> candidates = FindCandidates(all, states, options.fast_waves_only);
     if (candidates.empty()) break;
     Candidate best = candidates.front();
     const double least = std::max(options.least_part * base, options.least_left * all.cost);
@@ -130,7 +130,7 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     if (options.certify) {
       const double as_one = SamplesAsOne(problem, best.term, states);
       if (Criterion(best, variance * as_one, all.samples) < options.worth) break;
-      found.false_discovery = CertifyByHalves(problem, states, options.waves_only);
+      found.false_discovery = CertifyByHalves(problem, states, options.fast_waves_only);
       if (found.false_discovery > options.most_false) break;
       found.stability = Stability(problem, candidates, states, options.bags);
       found.rivals = RivalsOf(candidates, options.alike);

@@ -11,14 +11,14 @@ namespace flextip::diagnosis {
 struct DiscoverOptions {
   int blocks = 20;
   int most_terms = 3;
-  double most_false = 0.005;  ///< of a term: the probability that it is none
-  double worth = 12.0;        ///< twice the log odds of the best form against no term
+  double most_false = 0.01;  ///< of a term: the probability that it is none
+  double worth = 12.0;       ///< twice the log odds of the best form against no term
   /// Of what the base within its tolerances leaves, squared: less does not matter.
   double least_part = 0.01;
   /// Of what the model leaves, noise included, squared: two hundredths of the error.
   double least_left = 0.04;
   double least_tolerances = 3.0;  ///< half of a term's range, in the target's tolerances
-  bool waves_only = false;        ///< periodic terms alone
+  bool fast_waves_only = false;   ///< periodic terms as fast as noise, alone
   double alike = 9.0;             ///< twice the log odds within which forms cannot be told apart
   int bags = 8;
   bool certify = true;  ///< off: all terms that are worth their numbers, whether they hold or not

@@ -181,7 +181,8 @@ std::vector<FoundTerm> FindFast(Replay& best, const Eigen::VectorXd& prior_sd) {
   std::array<double, kChannelCount> stated;
   stated.fill(1.0);
   best.SetNoiseScale(stated);
-  const TermSearch search = SearchTerms(best, prior_sd, {}, {.most_terms = 2, .waves_only = true});
+  const TermSearch search =
+      SearchTerms(best, prior_sd, {}, {.most_terms = 2, .fast_waves_only = true});
   best.SetNoiseScale(measured);
   return search.terms;
 }
