@@ -91,6 +91,18 @@ NormalSums JointEvidence::Range(const Wide& wide, std::size_t begin, std::size_t
   return range;
 }
 
+NormalSums JointEvidence::From(std::size_t begin, const JointWeighed& weighed) const {
+  std::set<std::size_t> ends{fleet_.Size()};
+  for (const Change& change : weighed.hypothesis.changes) ends.insert(std::size_t(change.first));
+  NormalSums sums(Eigen::Index(fleet_.Shared().size()));
+  for (const std::size_t end : ends) {
+    if (end <= begin) continue;
+    sums.Add(Range(WideIn(begin, weighed), begin, end));
+    begin = end;
+  }
+  return sums;
+}
+
 JointEvidence::Joint JointEvidence::Assemble(const JointWeighed& weighed) const {
   const JointHypothesis& h = weighed.hypothesis;
   const ParameterLayout& layout = fleet_.Layout();
@@ -197,9 +209,7 @@ std::vector<JointEvidence::AddedChange> JointEvidence::WithChanges(
   std::vector<AddedChange> added;
   for (int first = 1; first < int(fleet_.Size()); ++first) {
     const std::vector<Change>& changes = weighed.hypothesis.changes;
-    const auto from = [&](int begin) {
-      return Range(WideIn(std::size_t(begin), weighed), std::size_t(begin), fleet_.Size());
-    };
+    const auto from = [&](int begin) { return From(std::size_t(begin), weighed); };
     const NormalSums after = from(first);
     std::vector<NormalSums> after_both;
     for (const Change& change : changes) after_both.push_back(from(std::max(first, change.first)));

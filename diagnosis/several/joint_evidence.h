@@ -73,6 +73,8 @@ class JointEvidence {
   /// Sums over the first 0, 1, 2 ... members.
   const std::vector<NormalSums>& Cumulated(const Wide& wide) const;
   NormalSums Range(const Wide& wide, std::size_t begin, std::size_t end) const;
+  /// Sums over the members from `begin` on, each with what is wide in it.
+  NormalSums From(std::size_t begin, const JointWeighed& weighed) const;
   Joint Assemble(const JointWeighed& weighed) const;
   double LogEvidence(const Joint& joint) const;
 

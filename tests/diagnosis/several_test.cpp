@@ -110,6 +110,26 @@ TEST(JointEvidence, AChangeIsWeighedTheSameInBothWays) {
   EXPECT_GE(compared, 6);
 }
 
+/// The change that is there already has a parameter of each recording's own, wide from the last
+/// recording on alone.
+TEST(JointEvidence, AChangeBesideOneOfOwnParametersIsWeighedTheSame) {
+  const auto named = Series({}, {"strain_drift"}, 2, 3, 48);
+  Fleet fleet(named, {});
+  StandAtBase(fleet, {});
+  const JointEvidence evidence = EvidenceHere(fleet);
+  JointHypothesis drift;
+  drift.changes = {{fleet.Layout().Find("strain_drift"), 2}};
+  const JointWeighed beside = evidence.Weigh(drift);
+  for (const auto& added : evidence.WithChanges(beside)) {
+    if (added.change.effect > 5) continue;
+    JointHypothesis both = drift;
+    both.changes.push_back(added.change);
+    // One way is at the drift's best width, the other averages over three: log 3 at most.
+    EXPECT_NEAR(beside.log_evidence + added.log_gain, evidence.Weigh(both).log_evidence, 1.15)
+        << added.change.effect << " from " << added.change.first;
+  }
+}
+
 TEST(Several, WhatAllShareIsKnownBetterThanInOne) {
   const auto named = Series({"stiffness"}, {}, 1, 3, 43);
   const SeveralResult several = DiagnoseSeveral(named);
