@@ -12,8 +12,10 @@ constexpr std::size_t kLeaders = 4;   // fitted from the base simulation
 constexpr double kClearly = 60.0;     // log odds, seen from there, that a leader is ahead by
 constexpr double kClearlyPart = 0.1;  // or that part of what it gains
 constexpr int kFirstRounds = 6, kFitRounds = 4;
+constexpr int kMostRounds = 24;       // of the best one: where a play stood is found slowly
 constexpr double kNearLeader = 10.0;  // log odds behind the best leader that may still be right
 constexpr int kMostFits = 14;
+constexpr double kSettled = 1.0;      // log odds that are still promised
 constexpr double kRival = 2.0;        // log odds below the best that are worth a fit
 constexpr std::size_t kBesides = 10;  // hypotheses beside which changes are weighed, with singles
 constexpr std::size_t kMostEffects = 2;  // in any recording: three at once are not weighed
@@ -95,7 +97,7 @@ class Search {
     GoTo(fleet_, best_.place);
     FindCorrections();
     selection_.best = best_;
-    selection_.converged = best_.promised < 1.0 && !rivals_left_;
+    selection_.converged = best_.promised < kSettled && !rivals_left_;
     return std::move(selection_);
   }
 
@@ -142,10 +144,19 @@ class Search {
     Keep(FitJointly(fleet_, h, kFirstRounds, best_.log_posterior, options_));
   }
 
+  /// The best one is fitted until it is at rest: a rival that is fitted from its place would gain
+  /// what it has not yet gained itself.
+  void Settle() {
+    GoTo(fleet_, best_.place);
+    if (best_.promised < kSettled) return;
+    Keep(FitJointly(fleet_, best_.weighed.hypothesis, kMostRounds, best_.log_posterior, options_));
+    GoTo(fleet_, best_.place);
+  }
+
   /// Whatever looks better from the best place than the best itself is fitted from there.
   void FitRivals() {
     for (rivals_left_ = true; selection_.fits < kMostFits;) {
-      GoTo(fleet_, best_.place);
+      Settle();
       const auto scored =
           WeighAll(EvidenceHere(fleet_), fleet_, best_.weighed.hypothesis, options_);
       const JointScored* rival = nullptr;
@@ -186,9 +197,12 @@ class Search {
   double Shortfall(const JointScored& s, const std::vector<JointScored>& scored) const {
     if (const JointFit* own = Tried(s.weighed.hypothesis))
       return own->log_posterior - s.log_posterior;
+    std::vector<JointHypothesis> parts;
+    for (const int effect : s.weighed.hypothesis.effects) parts.push_back({{effect}, {}, false});
+    for (const Change& change : s.weighed.hypothesis.changes)
+      parts.push_back({{}, {change}, false});
     double worst = 0.0;
-    for (const int effect : s.weighed.hypothesis.effects) {
-      const JointHypothesis part{{effect}, {}, false};
+    for (const JointHypothesis& part : parts) {
       const JointFit* fit = Tried(part);
       if (fit == nullptr || part == best_.weighed.hypothesis) continue;
       for (const JointScored& single : scored)
