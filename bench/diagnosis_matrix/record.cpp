@@ -19,7 +19,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedParameter, effect, parameter, entry, tr
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MatrixRecord, made, key, motion, load, attempt, label, form,
                                    separation, rival, error, verdict, probabilities, p_verdict,
                                    p_truth, truth_in_credible_set, credible_set_size,
-                                   indistinguishable, full_verdict, full_indistinguishable,
+                                   indistinguishable, terms, full_verdict, full_indistinguishable,
                                    parameters, gain_measured, heldout_error_ratio, tip_error_ratio,
                                    extended_weighted_rms, heldout_over_true, base_chi2_per_dof,
                                    extended_chi2_per_dof, fits, converged, seconds, warnings)

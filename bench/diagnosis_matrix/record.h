@@ -43,6 +43,7 @@ struct MatrixRecord {
   bool truth_in_credible_set = false;
   int credible_set_size = 0;
   std::vector<EffectNames> indistinguishable;  ///< one group for each verdict
+  int terms = 0;                               ///< without a name, found in the residuals
   /// Where an effect was left out of the catalogue: what the full one says of the same recording.
   EffectNames full_verdict;
   std::vector<EffectNames> full_indistinguishable;

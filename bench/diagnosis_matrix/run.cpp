@@ -87,6 +87,7 @@ void SetResult(const diagnosis::DiagnosisResult& result, MatrixRecord& record) {
   record.verdict = Sorted(result.verdict);
   SetProbabilities(result, record);
   record.indistinguishable = result.indistinguishable;
+  record.terms = int(result.discovered.size());
   record.gain_measured = result.gain.measured;
   record.heldout_error_ratio = result.gain.heldout_error_ratio;
   record.tip_error_ratio = result.gain.tip_error_ratio;

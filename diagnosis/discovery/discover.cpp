@@ -119,8 +119,19 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     Candidate best = candidates.front();
     const double least = std::max(options.least_part * base, options.least_left * all.cost);
     if (best.criterion < options.worth || best.gain < least) break;
+    const auto matters = [&](const Candidate& one) {
+      return one.criterion >= options.worth && one.gain >= least &&
+             HalfRange(one.term, states.at(one.term.target)) >= options.least_tolerances;
+    };
+    // What varies too little may stand beside a constant that does not.
+    if (!matters(best)) {
+      const auto constant = std::ranges::find_if(candidates, [&](const Candidate& one) {
+        return one.term.target == best.term.target && one.term.shape == TermShape::kConstant;
+      });
+      if (constant != candidates.end() && matters(*constant)) best = *constant;
+    }
     const double variance = VarianceLeft(all, best.gain);
-    if (HalfRange(best.term, states.at(best.term.target)) < options.least_tolerances) {
+    if (!matters(best)) {
       if (++quiet > kMostQuiet) break;
       search.complexity += best.gain / variance - best.criterion;
       free(best.term);  // within tolerance: there, and no matter

@@ -156,6 +156,9 @@ std::vector<TermName> NamesOf(const std::vector<Candidate>& rivals) {
 constexpr double kNoisier = 1.15;  // times the data sheets' noise: something fast may be in it
 constexpr double kBetter = 20.0;   // twice the log odds by which terms alone must beat the effects
 constexpr double kMostOf = 0.7;    // of what several effects explain: terms that are worth a fit
+/// The same, fitted in full, where several effects take the part: each of the many combinations of
+/// effects is less likely beforehand than terms.
+constexpr double kBetterThanSeveral = 0.0;
 /// Where nothing is named no effect's form can be a little off: a weaker term counts.
 constexpr double kLeastBesideNone = 0.01;
 
@@ -252,7 +255,7 @@ std::unique_ptr<TermModel> FindTerms(const Replay& base, Replay& best, const Sel
       const double nothing = CostHere(bare_base, none);
       if (nothing - bare.cost < kMostOf * (nothing - search.cost)) return false;
       const auto fit = FitTerms(base, bare_base, selection, {}, Joined(fast, bare.terms), options);
-      return fit && LogOdds(AtFit(*fit, best), search) > kBetter;
+      return fit && LogOdds(AtFit(*fit, best), search) > kBetterThanSeveral;
     };
     // Terms that need not hold explain more than those that do, and are found in a third of the
     // time: mostly they say already that the effects are better.

@@ -214,6 +214,10 @@ class FigureMaker {
     const Group apart = Separable(group);
     Add("unknown or a declared alias, apart from three of the others", name,
         Share(apart, right_or_alias), apart, ">= 0.90");
+    const auto seen = [&](auto& r) { return right_or_alias(r) || r.terms > 0; };
+    Add("unknown, a term or a declared alias", name, Share(group, seen), group, ">= 0.90");
+    Add("unknown, a term or a declared alias, apart from three of the others", name,
+        Share(apart, seen), apart, ">= 0.90");
   }
 
   void Overall() {
