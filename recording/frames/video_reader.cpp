@@ -114,7 +114,10 @@ struct VideoReader::Impl {
     decoder.reset(avcodec_alloc_context3(codec));
     if (!decoder || avcodec_parameters_to_context(decoder.get(), stream->codecpar) < 0)
       return false;
-    decoder->thread_count = 0;  // as many as there are cores
+    constexpr int kWorthThreads_px = 100'000;
+    const bool large =
+        stream->codecpar->width * std::int64_t{stream->codecpar->height} > kWorthThreads_px;
+    decoder->thread_count = large ? 0 : 1;  // 0: as many as there are cores
     decoder->max_pixels = static_cast<std::int64_t>(most_pixels);
     quarter_turns = QuarterTurns(*stream);
     return avcodec_open2(decoder.get(), codec, nullptr) >= 0;
