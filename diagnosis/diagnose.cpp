@@ -4,7 +4,8 @@
 
 #include "core/error.h"
 #include "diagnosis/describe.h"
-#include "diagnosis/discovery/refit.h"
+#include "diagnosis/discovery/describe_terms.h"
+#include "diagnosis/discovery/find_terms.h"
 #include "diagnosis/evidence/probabilities.h"
 #include "diagnosis/heldout.h"
 #include "diagnosis/model/catalogue.h"

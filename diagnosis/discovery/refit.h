@@ -28,21 +28,11 @@ struct TermModel {
   TermModel& operator=(const TermModel&) = delete;
 };
 
-/// The terms that no effect explains: beside the effects of `known`, the catalogue's best, or,
-/// where that leaves less to explain, beside none. `base` stands at the base simulation, `best`
-/// where `known` fits. Null where there is no such term.
-std::unique_ptr<TermModel> FindTerms(const Replay& base, Replay& best, const Selection& selection,
-                                     const WeighedHypothesis& known,
-                                     const DiagnoseOptions& options);
-
 /// Fits `effects` (blocks of `from`'s layout) and `found` from where `from` stands; `base` stands
 /// at the base simulation. Null where the instrument has no equilibrium there.
 std::unique_ptr<TermModel> FitTerms(const Replay& base, const Replay& from,
                                     const Selection& selection, const std::vector<int>& effects,
                                     const std::vector<FoundTerm>& found,
                                     const DiagnoseOptions& options);
-
-/// The terms as results; with `measure_gain` each one's gain over the model without it.
-std::vector<Discovered> DescribeTerms(const TermModel& model, bool measure_gain);
 
 }  // namespace flextip::diagnosis
