@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 #include <ostream>
+#include <tuple>
 
 #include "diagnosis/diagnose.h"
 #include "recording/recording_reader.h"
@@ -179,6 +180,24 @@ TEST(StrongFriction, IsNamedThoughItsFormIsAnother) {
   const DiagnosisResult result = Diagnose(hidden::MakeHidden(options, 1106347176).recording,
                                           "friction", {.without = {}, .measure_gain = false});
   EXPECT_EQ(result.verdict, Verdict{"port_friction"}) << Answers(result);
+}
+
+/// Two or four other causes together take the part of one that the catalogue lacks. A term without
+/// a name says it as well, and is simpler.
+TEST(WithoutTheTrueCause, ATermIsLikelierThanSeveralOthers) {
+  for (const auto& [effect, seed, is] :
+       {std::tuple("stiffness", 7048983, "the stiffness (its logarithm) is off by"),
+        std::tuple("stiffness", 1565267856, "the stiffness (its logarithm) is off by"),
+        std::tuple("port_offset", 1985022978, "the port is off by")}) {
+    hidden::HiddenOptions options{.effects = {effect}, .size = kPlain};
+    options.scene.family = hidden::MotionFamily::kHeldOut;
+    const DiagnosisResult result =
+        Diagnose(hidden::MakeHidden(options, std::uint64_t(seed)).recording, "deleted",
+                 {.without = {effect}, .measure_gain = false});
+    EXPECT_EQ(result.verdict, Verdict{"unknown"}) << seed << ": " << Answers(result);
+    ASSERT_EQ(result.discovered.size(), 1U) << seed;
+    EXPECT_THAT(result.discovered[0].text, testing::HasSubstr(is));
+  }
 }
 
 /// Of a form that the catalogue lacks one draw says little: two of these seven are called something
