@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "diagnosis/samples/noise_level.h"
 
@@ -55,71 +56,90 @@ TermSearch Standing(const Replay& replay, const Eigen::VectorXd& prior_sd) {
   return SearchTerms(replay, prior_sd, {}, {.most_terms = 0});
 }
 
-double CostHere(const Replay& replay, const Eigen::VectorXd& prior_sd) {
-  return Standing(replay, prior_sd).cost;
-}
+/// Terms beside the catalogue's answer, or in its place.
+class TermChoice {
+ public:
+  /// Measures the noise anew where something fast passed for noise.
+  TermChoice(const Replay& base, Replay& best, const Selection& selection,
+             const WeighedHypothesis& known, const DiagnoseOptions& options)
+      : base_(base),
+        bare_(base),
+        best_(best),
+        selection_(selection),
+        known_(known),
+        options_(options) {
+    bare_.Evaluate(base.Theta());  // with the frequencies that were found since
+    fast_ = FindFast(best, KnownSd());
+    if (fast_.empty()) return;
+    const auto model = FitTerms(base, best, selection, Effects(), fast_, options);
+    if (!model) {
+      fast_.clear();
+      return;
+    }
+    best_.SetNoiseScale(model->extended.NoiseScales());
+    bare_.SetNoiseScale(model->extended.NoiseScales());
+  }
 
-/// A fit of terms in the noise of `best`: from the base, terms of something large are only nearly
-/// right, as effects are.
-TermSearch AtFit(TermModel& fit, const Replay& best) {
-  fit.extended.Use(best.SettingsNow());
-  return Standing(fit.extended,
-                  fit.layout.Widened(fit.weighed.hypothesis.effects, fit.weighed.scales));
-}
+  std::unique_ptr<TermModel> Make() {
+    DiscoverOptions options;
+    if (Effects().empty()) options.least_left = kLeastBesideNone;
+    beside_ = SearchTerms(best_, KnownSd(), fast_, options);
+    if (const auto alone = InPlaceOfEffects())
+      return FitTerms(base_, bare_, selection_, {}, Joined(fast_, alone->terms), options_);
+    const std::vector<FoundTerm> found = Joined(fast_, beside_.terms);
+    if (found.empty()) return {};
+    return FitTerms(base_, best_, selection_, Effects(), found, options_);
+  }
+
+ private:
+  const std::vector<int>& Effects() const { return known_.hypothesis.effects; }
+  Eigen::VectorXd KnownSd() const { return best_.Layout().Widened(Effects(), known_.scales); }
+  Eigen::VectorXd NoneSd() const { return best_.Layout().Widened({}, {}); }
+
+  std::optional<TermSearch> InPlaceOfEffects() {
+    if (Effects().empty()) return {};
+    // Terms that need not hold explain more than those that do, and are found in a third of the
+    // time: mostly they say already that the effects are better.
+    if (!IsBetter(SearchTerms(bare_, NoneSd(), fast_, {.certify = false}))) return {};
+    TermSearch alone = SearchTerms(bare_, NoneSd(), fast_);
+    if (!IsBetter(alone) || IsSaidBy(best_.Layout(), Effects(), alone)) return {};
+    return alone;
+  }
+
+  bool IsBetter(const TermSearch& alone) {
+    if (alone.terms.empty()) return false;
+    return LogOdds(alone, beside_) > kBetter || (Effects().size() > 1 && IsBetterFitted(alone));
+  }
+
+  /// From the base, terms of something large are only nearly right, as effects are: fitted in full,
+  /// as the effects were, where they explain about as much.
+  bool IsBetterFitted(const TermSearch& alone) {
+    const double nothing = Standing(bare_, NoneSd()).cost;
+    if (nothing - alone.cost < kMostOf * (nothing - beside_.cost)) return false;
+    const auto fit = FitTerms(base_, bare_, selection_, {}, Joined(fast_, alone.terms), options_);
+    if (!fit) return false;
+    fit->extended.Use(best_.SettingsNow());  // in the same noise
+    const Eigen::VectorXd sd =
+        fit->layout.Widened(fit->weighed.hypothesis.effects, fit->weighed.scales);
+    return LogOdds(Standing(fit->extended, sd), beside_) > kBetterThanSeveral;
+  }
+
+  const Replay& base_;
+  Replay bare_;  // the base, in the noise of the best
+  Replay& best_;
+  const Selection& selection_;
+  const WeighedHypothesis& known_;
+  const DiagnoseOptions& options_;
+  std::vector<FoundTerm> fast_;
+  TermSearch beside_;
+};
 
 }  // namespace
 
 std::unique_ptr<TermModel> FindTerms(const Replay& base, Replay& best, const Selection& selection,
                                      const WeighedHypothesis& known,
                                      const DiagnoseOptions& options) {
-  const ParameterLayout& layout = best.Layout();
-  const auto sd = [&](const WeighedHypothesis& weighed) {
-    return layout.Widened(weighed.hypothesis.effects, weighed.scales);
-  };
-  std::vector<FoundTerm> fast = FindFast(best, sd(known));
-  Replay bare_base = base;
-  bare_base.Evaluate(base.Theta());  // with the frequencies that were found since
-  if (!fast.empty()) {
-    const auto model = FitTerms(base, best, selection, known.hypothesis.effects, fast, options);
-    if (model) {
-      best.SetNoiseScale(model->extended.NoiseScales());
-      bare_base.SetNoiseScale(model->extended.NoiseScales());
-    } else {
-      fast.clear();
-    }
-  }
-  std::vector<int> effects = known.hypothesis.effects;
-  DiscoverOptions beside;
-  if (effects.empty()) beside.least_left = kLeastBesideNone;
-  TermSearch search = SearchTerms(best, sd(known), fast, beside);
-  const Replay* from = &best;
-  if (!effects.empty()) {
-    const Eigen::VectorXd none = sd({});
-    const auto is_better = [&](const TermSearch& bare) {
-      return !bare.terms.empty() && LogOdds(bare, search) > kBetter;
-    };
-    const auto fits_better = [&](const TermSearch& bare) {
-      if (effects.size() < 2 || bare.terms.empty()) return false;
-      const double nothing = CostHere(bare_base, none);
-      if (nothing - bare.cost < kMostOf * (nothing - search.cost)) return false;
-      const auto fit = FitTerms(base, bare_base, selection, {}, Joined(fast, bare.terms), options);
-      return fit && LogOdds(AtFit(*fit, best), search) > kBetterThanSeveral;
-    };
-    // Terms that need not hold explain more than those that do, and are found in a third of the
-    // time: mostly they say already that the effects are better.
-    const TermSearch perhaps = SearchTerms(bare_base, none, fast, {.certify = false});
-    if (is_better(perhaps) || fits_better(perhaps)) {
-      const TermSearch bare = SearchTerms(bare_base, none, fast);
-      if ((is_better(bare) || fits_better(bare)) && !IsSaidBy(layout, effects, bare)) {
-        search = bare;
-        effects.clear();
-        from = &bare_base;
-      }
-    }
-  }
-  const std::vector<FoundTerm> found = Joined(fast, search.terms);
-  if (found.empty()) return {};
-  return FitTerms(base, *from, selection, effects, found, options);
+  return TermChoice(base, best, selection, known, options).Make();
 }
 
 }  // namespace flextip::diagnosis
