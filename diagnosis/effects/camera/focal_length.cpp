@@ -22,6 +22,8 @@ class FocalLength : public Effect {
     change.Linear(0, sample_input::kLogFocal, 1.0);
     change.Linear(1, sample_input::kFocalTurn, 1.0);
   }
+  /// Each motion is seen from elsewhere.
+  std::vector<int> OwnParameters() const override { return {1}; }
   std::vector<ReportedParameter> Report(const Eigen::VectorXd& theta,
                                         const Eigen::MatrixXd& covariance) const override {
     const double scale = std::exp(theta[0]);

@@ -24,6 +24,8 @@ class LensRadial : public DirectEffect {
     change.Linear(1, sample_input::kLensDepth, 1.0);
     change.Linear(2, sample_input::kLensTurn, 1.0);
   }
+  /// Each motion is seen from elsewhere.
+  std::vector<int> OwnParameters() const override { return {1, 2}; }
 
  protected:
   static constexpr double kTypical = 0.08;
