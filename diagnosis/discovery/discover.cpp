@@ -121,7 +121,8 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     if (best.criterion < options.worth || best.gain < least) break;
     const auto matters = [&](const Candidate& one) {
       return one.criterion >= options.worth && one.gain >= least &&
-             HalfRange(one.term, states.at(one.term.target)) >= options.least_tolerances;
+             (one.gain >= options.much_left * all.cost ||
+              HalfRange(one.term, states.at(one.term.target)) >= options.least_tolerances);
     };
     // What varies too little may stand beside a constant that does not.
     if (!matters(best)) {

@@ -18,6 +18,7 @@ struct DiscoverOptions {
   /// Of what the model leaves, noise included, squared: two hundredths of the error.
   double least_left = 0.04;
   double least_tolerances = 3.0;  ///< half of a term's range, in the target's tolerances
+  double much_left = 0.1;         ///< of what the model leaves: more matters within tolerance, too
   bool fast_waves_only = false;   ///< periodic terms as fast as noise, alone
   double alike = 9.0;             ///< twice the log odds within which forms cannot be told apart
   int bags = 8;
