@@ -148,8 +148,9 @@ class Search {
   /// what it has not yet gained itself.
   void Settle() {
     GoTo(fleet_, best_.place);
-    if (best_.promised < kSettled) return;
+    if (best_.promised < kSettled || best_.log_posterior == settled_at_) return;
     Keep(FitJointly(fleet_, best_.weighed.hypothesis, kMostRounds, best_.log_posterior, options_));
+    settled_at_ = best_.log_posterior;
     GoTo(fleet_, best_.place);
   }
 
@@ -228,6 +229,7 @@ class Search {
   const SelectionOptions& options_;
   std::vector<JointFit> tried_;
   JointFit best_;
+  double settled_at_ = 0.0;  // the best one's log odds when it was fitted last for that
   bool rivals_left_ = false;
   JointSelection selection_;
 };
