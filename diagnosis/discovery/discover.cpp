@@ -119,18 +119,19 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     Candidate best = candidates.front();
     const double least = std::max(options.least_part * base, options.least_left * all.cost);
     if (best.criterion < options.worth || best.gain < least) break;
+    const auto constant = std::ranges::find_if(candidates, [&](const Candidate& one) {
+      return one.term.target == best.term.target && one.term.shape == TermShape::kConstant;
+    });
+    const double of_constant = constant == candidates.end() ? 0.0 : constant->gain;
     const auto matters = [&](const Candidate& one) {
+      const bool varies = one.term.shape != TermShape::kConstant;
+      const bool is_much = varies && one.gain - of_constant >= options.much_left * all.cost;
       return one.criterion >= options.worth && one.gain >= least &&
-             (one.gain >= options.much_left * all.cost ||
+             (is_much ||
               HalfRange(one.term, states.at(one.term.target)) >= options.least_tolerances);
     };
     // What varies too little may stand beside a constant that does not.
-    if (!matters(best)) {
-      const auto constant = std::ranges::find_if(candidates, [&](const Candidate& one) {
-        return one.term.target == best.term.target && one.term.shape == TermShape::kConstant;
-      });
-      if (constant != candidates.end() && matters(*constant)) best = *constant;
-    }
+    if (!matters(best) && constant != candidates.end() && matters(*constant)) best = *constant;
     const double variance = VarianceLeft(all, best.gain);
     if (!matters(best)) {
       if (++quiet > kMostQuiet) break;

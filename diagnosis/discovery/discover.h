@@ -18,9 +18,9 @@ struct DiscoverOptions {
   /// Of what the model leaves, noise included, squared: two hundredths of the error.
   double least_left = 0.04;
   double least_tolerances = 3.0;  ///< half of a term's range, in the target's tolerances
-  double much_left = 0.1;         ///< of what the model leaves: more matters within tolerance, too
-  bool fast_waves_only = false;   ///< periodic terms as fast as noise, alone
-  double alike = 9.0;             ///< twice the log odds within which forms cannot be told apart
+  double much_left = 0.1;  ///< of what the model leaves: what varies so much matters at any size
+  bool fast_waves_only = false;  ///< periodic terms as fast as noise, alone
+  double alike = 9.0;            ///< twice the log odds within which forms cannot be told apart
   int bags = 8;
   bool certify = true;  ///< off: all terms that are worth their numbers, whether they hold or not
 };

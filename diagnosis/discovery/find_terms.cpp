@@ -16,7 +16,7 @@ constexpr double kMostOf = 0.7;    // of what several effects explain: terms tha
 /// effects is less likely beforehand than terms.
 constexpr double kBetterThanSeveral = 0.0;
 /// Where nothing is named no effect's form can be a little off: a weaker term counts.
-constexpr double kLeastBesideNone = 0.01;
+constexpr double kLeastBesideNone = 0.025;
 
 /// Whether a term is what one of `effects` says already: friction by a hysteresis of the depth is
 /// that of a bristle (Dahl), which sticks.
@@ -80,7 +80,17 @@ class TermChoice {
     bare_.SetNoiseScale(model->extended.NoiseScales());
   }
 
+  /// Nothing where a term far from small was right only as long as it is small: fitted, it leaves
+  /// more than before.
   std::unique_ptr<TermModel> Make() {
+    constexpr double kWorse = 1.5;  // the noise is taken anew with the terms
+    auto model = Found();
+    if (model && model->extended.ChiSquaredPerDof() > kWorse * best_.ChiSquaredPerDof()) return {};
+    return model;
+  }
+
+ private:
+  std::unique_ptr<TermModel> Found() {
     DiscoverOptions options;
     if (Effects().empty()) options.least_left = kLeastBesideNone;
     beside_ = SearchTerms(best_, KnownSd(), fast_, options);
@@ -91,7 +101,6 @@ class TermChoice {
     return FitTerms(base_, best_, selection_, Effects(), found, options_);
   }
 
- private:
   const std::vector<int>& Effects() const { return known_.hypothesis.effects; }
   Eigen::VectorXd KnownSd() const { return best_.Layout().Widened(Effects(), known_.scales); }
   Eigen::VectorXd NoneSd() const { return best_.Layout().Widened({}, {}); }

@@ -63,7 +63,11 @@ Eigen::VectorXd ParametersOf(const ExtendedModel& model, const ParameterLayout& 
     for (const ReportedParameter& parameter : fit.parameters) values.push_back(parameter.value);
     theta.segment(block.first, block.size) = block.effect->FromReported(values);
     if (present) return;
-    for (const int own : block.effect->OwnParameters()) theta[block.first + own] = 0.0;
+    // What hangs on how a pose was found (a part of its effect) is rather as it was than zero.
+    const std::vector<int> all = block.effect->OwnParameters();
+    const bool is_whole = int(all.size()) == block.size;
+    for (const int own : is_whole ? all : block.effect->StateParameters())
+      theta[block.first + own] = 0.0;
   };
   for (const EffectFit& fit : model.effects) set(fit, true);
   for (const EffectFit& fit : model.within_tolerance) set(fit, false);

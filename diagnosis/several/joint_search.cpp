@@ -91,7 +91,7 @@ class Search {
     tried_.clear();
     best_ = {};
     for (const JointHypothesis& leader : near)
-      Keep(FitJointly(fleet_, leader, kFitRounds, best_.log_posterior, options_));
+      Keep(FitJointly(fleet_, leader, kMostRounds, best_.log_posterior, options_));
     FitRivals();
     FitPartsOfBest();
     GoTo(fleet_, best_.place);
