@@ -55,8 +55,8 @@ VideoInfo ReadVideoInfo(const std::filesystem::path& file) {
   }
   VideoInfo info;
   if (const auto video = VideoReader::Open(file.string())) {
-    info.width_px = video->width_px();
-    info.height_px = video->height_px();
+    info.width_px = video->Width_px();
+    info.height_px = video->Height_px();
     info.rate_hz = PossibleRate(video->StatedRate());
     while (video->Advance()) ++info.frames;
   }

@@ -181,17 +181,17 @@ std::unique_ptr<VideoReader> VideoReader::Open(const std::string& source, Kind k
   impl->most_pixels = most_pixels;
   if (!impl->Open(source)) return nullptr;
   std::unique_ptr<VideoReader> reader(new VideoReader(std::move(impl)));
-  if (reader->width_px() <= 0 || reader->height_px() <= 0) return nullptr;
-  RefuseHugeVideo(source, reader->width_px(), reader->height_px());
+  if (reader->Width_px() <= 0 || reader->Height_px() <= 0) return nullptr;
+  RefuseHugeVideo(source, reader->Width_px(), reader->Height_px());
   return reader;
 }
 
-int VideoReader::width_px() const {
+int VideoReader::Width_px() const {
   const auto& size = *impl_->stream->codecpar;
   return impl_->quarter_turns % 2 == 1 ? size.height : size.width;
 }
 
-int VideoReader::height_px() const {
+int VideoReader::Height_px() const {
   const auto& size = *impl_->stream->codecpar;
   return impl_->quarter_turns % 2 == 1 ? size.width : size.height;
 }

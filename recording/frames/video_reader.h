@@ -28,8 +28,8 @@ class VideoReader {
   VideoReader& operator=(const VideoReader&) = delete;
 
   /// Return the size as it is shown, by the container.
-  int width_px() const;
-  int height_px() const;
+  int Width_px() const;
+  int Height_px() const;
   /// Returns the frames per second that the container states; 0 where it states none.
   double StatedRate() const;
   /// Returns the number of frames that the container states, often made of its duration.

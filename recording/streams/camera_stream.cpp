@@ -104,10 +104,10 @@ long CheckVideo(const YamlMap& yaml, const std::filesystem::path& file,
   if (!video) {
     throw yaml.Error("video", fmt::format("{} is not a video that can be read", file.string()));
   }
-  if (video->width_px() != camera.width_px || video->height_px() != camera.height_px) {
+  if (video->Width_px() != camera.width_px || video->Height_px() != camera.height_px) {
     throw yaml.Error(
-        "video", fmt::format("{} is {} x {}, expected {} x {}", file.string(), video->width_px(),
-                             video->height_px(), camera.width_px, camera.height_px));
+        "video", fmt::format("{} is {} x {}, expected {} x {}", file.string(), video->Width_px(),
+                             video->Height_px(), camera.width_px, camera.height_px));
   }
   return CountFrames(*video, needed);
 }

@@ -65,8 +65,8 @@ void ExpectAsOpenCv(const std::filesystem::path& file) {
   cv::VideoCapture peer(file.string(), cv::CAP_FFMPEG);
   const auto video = VideoReader::Open(file.string());
   ASSERT_TRUE(peer.isOpened() && video);
-  EXPECT_EQ(video->width_px(), peer.get(cv::CAP_PROP_FRAME_WIDTH));
-  EXPECT_EQ(video->height_px(), peer.get(cv::CAP_PROP_FRAME_HEIGHT));
+  EXPECT_EQ(video->Width_px(), peer.get(cv::CAP_PROP_FRAME_WIDTH));
+  EXPECT_EQ(video->Height_px(), peer.get(cv::CAP_PROP_FRAME_HEIGHT));
   EXPECT_EQ(video->StatedRate(), peer.get(cv::CAP_PROP_FPS));
   EXPECT_EQ(video->StatedFrames(), peer.get(cv::CAP_PROP_FRAME_COUNT));
   const auto pictures = Pictures(*video);
@@ -125,7 +125,7 @@ TEST(VideoReader, SetsPicturesUpright) {
     const auto video = VideoReader::Open(file.string());
     ASSERT_TRUE(video);
     const Image upright = Pictures(*video).at(3);
-    EXPECT_EQ(video->width_px(), upright.width_px);
+    EXPECT_EQ(video->Width_px(), upright.width_px);
     cv::Mat wanted;
     cv::rotate(View(lying), wanted, turn);
     ASSERT_EQ(wanted.size(), cv::Size(upright.width_px, upright.height_px));

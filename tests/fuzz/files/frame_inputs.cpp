@@ -45,7 +45,7 @@ int CheckVideoInput(std::span<const std::uint8_t> input) {
     // A few bytes may stand for many large pictures, which take their time and show nothing more.
     constexpr double kLargest = 1e5;
     const auto video = VideoReader::Open(file.string(), VideoReader::Kind::kFile, kLargest);
-    is_small = video && double(video->width_px()) * video->height_px() <= kLargest;
+    is_small = video && double(video->Width_px()) * video->Height_px() <= kLargest;
     if (is_small) info = ReadVideoInfo(file);
   });
   if (!read || !is_small) return 0;
