@@ -212,6 +212,7 @@ std::vector<JointEvidence::AddedChange> JointEvidence::WithChanges(
     const auto from = [&](int begin) { return From(std::size_t(begin), weighed); };
     const NormalSums after = from(first);
     std::vector<NormalSums> after_both;
+    after_both.reserve(changes.size());
     for (const Change& change : changes) after_both.push_back(from(std::max(first, change.first)));
     for (int e = 0; e < fleet_.EffectCount(); ++e) {
       const std::vector<int>& own = fleet_.SharedOf(e);
