@@ -112,7 +112,8 @@ class Effect {
   virtual void SetScanCentre(double /*value*/) {}
 
   /// Returns the fitted parameters that are each recording's own: a rate of drift, a phase, where
-  /// a play stood. All others are the instrument's and the room's.
+  /// a play stood, what hangs on how its motion was seen. All others are the instrument's and the
+  /// room's.
   virtual std::vector<int> OwnParameters() const { return {}; }
   /// Returns those of them that are a state, which a prediction finds again.
   virtual std::vector<int> StateParameters() const { return {}; }

@@ -175,7 +175,8 @@ class Search {
     }
   }
 
-  /// The best less one of its effects or changes, fitted by itself.
+  /// The best less one of its effects or changes, fitted by itself; again, from here, where it was
+  /// not at rest.
   void FitPartsOfBest() {
     const JointHypothesis whole = best_.weighed.hypothesis;
     const JointPlace place = best_.place;
@@ -188,8 +189,10 @@ class Search {
       parts.push_back(whole);
       parts.back().changes.erase(parts.back().changes.begin() + std::ptrdiff_t(i));
     }
-    for (const JointHypothesis& part : parts)
-      if (Tried(part) == nullptr) FitFrom(place, part);
+    for (const JointHypothesis& part : parts) {
+      const JointFit* fit = Tried(part);
+      if (fit == nullptr || fit->promised >= kSettled) FitFrom(place, part);
+    }
     FitRivals();
   }
 

@@ -183,7 +183,8 @@ TEST(StrongFriction, IsNamedThoughItsFormIsAnother) {
 }
 
 /// Two or four other causes together take the part of one that the catalogue lacks, or none does. A
-/// term without a name says it as well, and is simpler.
+/// term without a name says it as well, and is simpler. These are the recordings on which it was
+/// found to be otherwise.
 TEST(WithoutTheTrueCause, ATermIsLikelierThanSeveralOthersOrNone) {
   for (const auto& [effect, seed, is] :
        {std::tuple("stiffness", 7048983, "the stiffness (its logarithm) is off by"),

@@ -82,11 +82,15 @@ void ExpectAsOpenCv(const std::filesystem::path& file) {
 
 TEST(VideoReader, GivesThePicturesThatOpenCvGives) {
   const TemporaryFolder folder;
+  int compared = 0;
   for (const auto& [name, code] : {std::pair("v.avi", "MJPG"), std::pair("v.mp4", "mp4v"),
                                    std::pair("h.mp4", "avc1"), std::pair("v.mkv", "XVID")}) {
     SCOPED_TRACE(code);
-    if (Write(folder / name, code)) ExpectAsOpenCv(folder / name);
+    if (!Write(folder / name, code)) continue;  // an encoder that is not there
+    ExpectAsOpenCv(folder / name);
+    ++compared;
   }
+  EXPECT_GE(compared, 3);
 }
 
 std::string BigEndian(std::uint32_t value) {
