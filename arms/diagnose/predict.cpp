@@ -1,6 +1,7 @@
 #include "arms/diagnose/predict.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "arms/diagnose/curves.h"
 #include "arms/diagnose/heldout.h"
@@ -10,6 +11,8 @@ namespace flextip::arms {
 namespace {
 
 using diagnosis::EffectFit;
+
+constexpr Eigen::Index kFirstRows = 20;
 
 const EffectFit* FindFit(const std::vector<EffectFit>& fits, const std::string& effect) {
   for (const EffectFit& fit : fits)
@@ -23,13 +26,29 @@ std::vector<ArmParameter> Parameters(const EffectFit& fit) {
   return parameters;
 }
 
-/// The settings of a history: its windows, else its widths, and what is carried.
-Eigen::VectorXd WindowsOf(const EffectFit& fit) {
+/// How plays are replayed: through windows, else through widths, with what they carry.
+PlayHistory HistoryOf(const EffectFit& fit) {
   std::map<std::string, std::vector<double>> lists;
   for (const auto& p : fit.parameters) lists[p.name] = p.value;
-  std::vector<double> settings = lists.contains("window") ? lists["window"] : lists["width"];
-  settings.insert(settings.end(), lists["carried"].begin(), lists["carried"].end());
-  return Eigen::Map<const Eigen::VectorXd>(settings.data(), Eigen::Index(settings.size()));
+  const std::vector<double>& windows = lists.contains("window") ? lists["window"] : lists["width"];
+  const std::vector<double>& carried = lists["carried"];
+  const auto n = Eigen::Index(windows.size());
+  PlayHistory history{Eigen::Map<const Eigen::VectorXd>(windows.data(), n), {}};
+  if (!carried.empty()) {
+    history.carried =
+        Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(carried.data(), n, n);
+  }
+  return history;
+}
+
+/// Of each channel its first twentieth alone, of 20 rows or more.
+Noise FirstRows(Noise noise) {
+  for (ChannelNoise& own : noise) {
+    const Eigen::Index rows = own.keep.rows();
+    const Eigen::Index kept = std::min(rows, std::max(kFirstRows, rows / 20));
+    own.keep.bottomRows(rows - kept).setConstant(false);
+  }
+  return noise;
 }
 
 /// A payload's block is that of its place.
@@ -65,7 +84,7 @@ ArmPrediction Predict(const ArmData& data, const ArmModel& model) {
     if (fit != nullptr && IsOfPlace(layout, block, *fit)) {
       theta.segment(block.first, block.size) = block.effect->FromReported(data, Parameters(*fit));
       if (!nuisance && !block.effect->OfWindow(data, 0).empty())
-        block.effect->SetWindows(WindowsOf(*fit));
+        block.effect->SetHistory(HistoryOf(*fit));
     }
     const EffectFit* base = FindFit(model.base_nuisances, block.effect->Name());
     if (nuisance && base != nullptr)
@@ -80,12 +99,15 @@ ArmPrediction Predict(const ArmData& data, const ArmModel& model) {
     replay.Evaluate(here);
     Noise noise = MeasureNoise(replay, false);
     for (ChannelNoise& own : noise) own.sd = own.floor;  // what is left here is error, not noise
-    // Only what is each recording's own is found again.
+    // Only what is each recording's own is found again: how it begins from its first rows.
+    const Noise first = FirstRows(noise);
     for (int round = 0; round < 5; ++round) {
-      const Eigen::VectorXd moved = FitOwn(replay, noise);
-      for (const Layout::Block& block : layout.Blocks())
-        if (!block.effect->IsAnswer() && block.effect->OwnInEach())
-          here.segment(block.first, block.size) = moved.segment(block.first, block.size);
+      const Eigen::VectorXd moved = FitOwn(replay, noise), begun = FitOwn(replay, first);
+      for (const Layout::Block& block : layout.Blocks()) {
+        if (block.effect->IsAnswer() || !block.effect->OwnInEach()) continue;
+        here.segment(block.first, block.size) =
+            (std::isfinite(block.effect->Bound()) ? begun : moved).segment(block.first, block.size);
+      }
       replay.Evaluate(here);
     }
     Residuals all;

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "arms/data/arm_data.h"
+#include "arms/effects/play.h"
 #include "diagnosis/evidence/priors.h"
 
 namespace flextip::arms {
@@ -41,12 +43,21 @@ class JointStage {
   void Derivative(int parameter, int joint, const Eigen::VectorXd& shape) {
     if (columns_ != nullptr) columns_->push_back({first_ + parameter, joint, shape});
   }
+  /// The same for one of the parameters of all effects.
+  void DerivativeOfAny(int parameter, int joint, Eigen::VectorXd shape) {
+    if (columns_ != nullptr) columns_->push_back({parameter, joint, std::move(shape)});
+  }
   bool WantsDerivatives() const { return columns_ != nullptr; }
+  int First() const { return first_; }
   void SetFirst(int first) { first_ = first; }
 
   const Track& input;             ///< as measured or commanded
   const Eigen::MatrixXd& effort;  ///< known efforts on the same rows
   Eigen::MatrixXd& output;        ///< starts as the input
+  /// Where plays stand at the first row, in widths (PlayState); empty: in the middle. And the first
+  /// of their parameters among those of all effects.
+  Eigen::VectorXd play_start;
+  int first_play_start = 0;
 
  private:
   int first_ = 0;
@@ -102,6 +113,9 @@ class ArmEffect {
 
   /// Acts on commands: what a perfect servo would make of them.
   virtual void ActOnCommand(const ArmData&, const double*, JointStage&) const {}
+  /// Says how plays stand when a recording begins, before any effect acts between encoders and
+  /// joints.
+  virtual void StartPlay(const ArmData&, const double*, JointStage&) const {}
   /// Acts between encoders and true joints.
   virtual void ActOnJoints(const ArmData&, const double*, JointStage&) const {}
   virtual void ActOnPose(const ArmData&, const double*, PoseStage&) const {}
@@ -113,15 +127,16 @@ class ArmEffect {
   virtual Eigen::VectorXd FromReported(const ArmData& data,
                                        const std::vector<ArmParameter>& reported) const = 0;
 
-  /// Returns the widths of windows that a history is replayed through, one a joint; empty where
-  /// there are none. They are searched for, not fitted: with parameters of zero they do nothing.
-  virtual Eigen::VectorXd Windows() const { return {}; }
-  virtual void SetWindows(const Eigen::VectorXd& /*widths*/) {}
+  /// Returns how plays are replayed: nothing set where there are none. With parameters of zero it
+  /// does nothing.
+  virtual PlayHistory History() const { return {}; }
+  virtual void SetHistory(const PlayHistory& /*history*/) {}
   /// Returns the parameters that a joint's window carries: its own width first.
   virtual std::vector<int> OfWindow(const ArmData&, int /*joint*/) const { return {}; }
-  /// Returns the windows with what the parameters say each joint carries of the others' play.
-  virtual Eigen::VectorXd Carrying(const ArmData&, const Eigen::VectorXd& /*theta*/) const {
-    return Windows();
+  /// Returns the history in which joints drag each other as the parameters say. Gives `theta` a
+  /// width where a joint that is dragged has none.
+  virtual PlayHistory Carrying(const ArmData&, Eigen::VectorXd& /*theta*/) const {
+    return History();
   }
 
   /// Returns whether one recording may have the effect where one before had none.
@@ -132,6 +147,9 @@ class ArmEffect {
   virtual bool ComesAndGoes() const { return false; }
   /// Returns whether it is an answer, not a nuisance that is always there.
   virtual bool IsAnswer() const { return true; }
+  /// Returns how far from zero its numbers may be. At a bound they stay, and nothing moves with
+  /// them.
+  virtual double Bound() const { return std::numeric_limits<double>::infinity(); }
   /// Returns whether each recording has its own values.
   virtual bool OwnInEach() const { return false; }
 

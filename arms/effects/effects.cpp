@@ -29,6 +29,7 @@ Effects MakeNuisances() {
   nuisances.push_back(MakeMasses());
   nuisances.push_back(MakeEffortShape());
   nuisances.push_back(MakeServoInertia());
+  nuisances.push_back(MakePlayStart());
   return nuisances;
 }
 

@@ -24,13 +24,14 @@ std::unique_ptr<ArmEffect> MakeTorqueDrift();
 /// At the arm's place of that index.
 std::unique_ptr<ArmEffect> MakePayload(const Arm& arm, int place);
 
-/// Nuisances: the tracker's and the marker's place where they are unknown, and all that efforts
-/// and servos need that no file states.
+/// Nuisances: the tracker's and the marker's place where they are unknown, all that efforts and
+/// servos need that no file states, and where plays stand when a recording begins.
 std::unique_ptr<ArmEffect> MakeTrackerPlace();
 std::unique_ptr<ArmEffect> MakeMarkerPlace();
 std::unique_ptr<ArmEffect> MakeMasses();
 std::unique_ptr<ArmEffect> MakeEffortShape();
 std::unique_ptr<ArmEffect> MakeServoInertia();
+std::unique_ptr<ArmEffect> MakePlayStart();
 
 /// Effects of the catalogue, payloads at each place of `arm`.
 Effects MakeEffects(const Arm& arm);

@@ -3,12 +3,17 @@
 //   true_i = measured_i + sum over j of moved_ij s_j,
 // width_j = moved_jj, drag_ij = moved_ij / moved_jj. Without play all is zero whatever the window.
 // What is dragged may pass through the play of the joint that it drags (CarriedStates), as where
-// one cable pulls on another joint's: then the settings carry how far.
+// one cable pulls on another joint's. Then moved_ij says when joint i moves, too.
 #include "arms/effects/effects.h"
 #include "arms/effects/play.h"
 
 namespace flextip::arms {
 namespace {
+
+constexpr double kLost = 0.05;  // of a window
+constexpr double kGuess = 0.5;  // of a drag
+constexpr double kShows = 6.0;  // tolerances
+constexpr double kStep = 1e-4;  // of a state, or in rad
 
 class JointBacklash : public ArmEffect {
  public:
@@ -28,21 +33,26 @@ class JointBacklash : public ArmEffect {
   }
 
   void ActOnJoints(const ArmData& data, const double* theta, JointStage& stage) const override {
+    const Eigen::MatrixXd& x = stage.input.values;
+    const Eigen::MatrixXd moved = Moved(data, theta);
+    Eigen::VectorXd start = Eigen::VectorXd::Zero(x.cols());
+    for (int j = 0; j < data.Size() && stage.play_start.size() > 0; ++j)
+      if (Begins(data, moved, j)) start[j] = stage.play_start[j];
+    const PlayHistory history = HistoryAt(data, moved);
+    const Eigen::MatrixXd states = States(x, history, start);
     const int n = data.Size();
-    const Eigen::MatrixXd states = States(stage.input.values);
     for (int j = 0; j < n; ++j) {
       const Eigen::VectorXd state = states.col(j);
       if (state.isZero(0.0)) continue;
-      stage.Linear(j, j, theta[j], state);
-      for (int m = 0; m < n * n - n; ++m) {
-        const Entry entry = OffDiagonal(n, m);
-        if (entry.column == j) stage.Linear(n + m, entry.row, theta[n + m], state);
-      }
+      for (int i = 0; i < n; ++i) stage.Linear(IndexOf(n, i, j), i, moved(i, j), state);
     }
+    if (!stage.WantsDerivatives()) return;
+    if (stage.play_start.size() > 0) DeriveByStart(data, x, history, start, moved, stage);
+    if (history.by_parameters) DeriveByHistory(data, x, start, moved, stage);
   }
 
-  Eigen::VectorXd Windows() const override { return windows_; }
-  void SetWindows(const Eigen::VectorXd& widths) override { windows_ = widths; }
+  PlayHistory History() const override { return history_; }
+  void SetHistory(const PlayHistory& history) override { history_ = history; }
   std::vector<int> OfWindow(const ArmData& data, int joint) const override {
     const int n = data.Size();
     std::vector<int> own{joint};
@@ -51,17 +61,20 @@ class JointBacklash : public ArmEffect {
     return own;
   }
 
-  Eigen::VectorXd Carrying(const ArmData& data, const Eigen::VectorXd& theta) const override {
+  PlayHistory Carrying(const ArmData& data, Eigen::VectorXd& theta) const override {
     const int n = data.Size();
-    Eigen::VectorXd settings = Eigen::VectorXd::Zero(n + n * n);
-    if (windows_.size() >= n) settings.head(n) = windows_.head(n);
-    for (int m = 0; m < n * n - n; ++m) {
-      const Entry entry = OffDiagonal(n, m);
-      // A drag that is lost in the play of what it drags carries nothing.
-      if (std::abs(theta[n + m]) > 0.05 * settings[entry.row])
-        settings[n + entry.row * n + entry.column] = theta[n + m];
-    }
-    return settings;
+    const Eigen::MatrixXd moved = Moved(data, theta.data());
+    PlayHistory history = history_;
+    if (history.windows.size() != n) history.windows = Eigen::VectorXd::Zero(n);
+    history.carried.setZero(n, n);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        if (i == j || !Drags(data, moved(i, j), i, history.windows[i])) continue;
+        history.carried(i, j) = moved(i, j);
+        // A joint that nobody commands shows its own play where it is dragged: a guess to begin at.
+        if (theta[i] <= 0.0) theta[i] = kGuess * std::abs(moved(i, j));
+      }
+    return history;
   }
 
   std::vector<ArmParameter> Report(const ArmData& data, const Eigen::VectorXd& theta,
@@ -69,10 +82,11 @@ class JointBacklash : public ArmEffect {
     const int n = data.Size();
     ArmParameter width{"width", {}, {}}, drag{"drag", {}, {}}, window{"window", {}, {}};
     const auto sd = [&](int j) { return std::sqrt(std::max(0.0, covariance(j, j))); };
+    const PlayHistory history = HistoryAt(data, Moved(data, theta.data()));
     for (int j = 0; j < n; ++j) {
       width.value.push_back(theta[j]);
       width.sd.push_back(sd(j));
-      window.value.push_back(windows_.size() >= n ? windows_[j] : theta[j]);
+      window.value.push_back(history.windows.size() == n ? history.windows[j] : theta[j]);
       window.sd.push_back(0.0);
     }
     for (int m = 0; m < n * n - n; ++m) {
@@ -80,9 +94,9 @@ class JointBacklash : public ArmEffect {
       drag.value.push_back(theta[n + m] / by);
       drag.sd.push_back(sd(n + m) / by);
     }
-    if (windows_.size() != n + n * n) return {width, drag, window};
+    if (history.carried.size() == 0) return {width, drag, window};
     ArmParameter carried{"carried", {}, std::vector<double>(std::size_t(n * n), 0.0)};
-    for (int m = 0; m < n * n; ++m) carried.value.push_back(windows_[n + m]);
+    for (int m = 0; m < n * n; ++m) carried.value.push_back(history.carried(m / n, m % n));
     return {width, drag, window, carried};
   }
 
@@ -95,7 +109,7 @@ class JointBacklash : public ArmEffect {
     theta.head(n) = Eigen::Map<const Eigen::VectorXd>(width.data(), n);
     for (int m = 0; m < n * n - n; ++m)
       theta[n + m] = drag[m] * Divisor(data, theta, OffDiagonal(n, m).column);
-    // What SetWindows takes: they may be absent.
+    // What the history is made of: they may be absent.
     for (const ArmParameter& p : reported) {
       if (p.name == "window") ListOf(Name(), reported, p.name, n);
       if (p.name == "carried") ListOf(Name(), reported, p.name, n * n);
@@ -104,19 +118,91 @@ class JointBacklash : public ArmEffect {
   }
 
  private:
-  /// The settings are windows alone, or windows and what each joint carries of each, row by row.
-  Eigen::MatrixXd States(const Eigen::MatrixXd& x) const {
-    const Eigen::Index n = x.cols();
-    if (windows_.size() == n + n * n) {
-      Eigen::MatrixXd carried(n, n);
-      for (Eigen::Index i = 0; i < n; ++i)
-        carried.row(i) = windows_.segment(n + i * n, n).transpose();
-      return CarriedStates(x, windows_.head(n), carried);
+  static int IndexOf(int n, int row, int column) {
+    return row == column ? row : n + row * (n - 1) + column - (column > row ? 1 : 0);
+  }
+
+  /// How far joint i moves while joint j crosses its play.
+  static Eigen::MatrixXd Moved(const ArmData& data, const double* theta) {
+    const int n = data.Size();
+    Eigen::MatrixXd moved(n, n);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) moved(i, j) = theta[IndexOf(n, i, j)];
+    return moved;
+  }
+
+  /// Whether it counts where the play begins. Within tolerance it is in the middle: anywhere else
+  /// it would be one more offset.
+  static bool Begins(const ArmData& data, const Eigen::MatrixXd& moved, int j) {
+    return std::abs(moved(j, j)) > kShows * data.TypicalOf(j, 0.0005, 0.0002);
+  }
+
+  /// A drag that is lost in the play of what it drags carries nothing.
+  static bool Drags(const ArmData& data, double moved, int i, double window) {
+    return std::abs(moved) > kLost * window &&
+           std::abs(moved) > kShows * data.TypicalOf(i, 0.0005, 0.0002);
+  }
+
+  static bool IsTied(const Eigen::MatrixXd& carried, int j) {
+    return !carried.row(j).isZero(0.0) || !carried.col(j).isZero(0.0);
+  }
+
+  /// The history with what it takes from the parameters.
+  PlayHistory HistoryAt(const ArmData& data, const Eigen::MatrixXd& moved) const {
+    PlayHistory history = history_;
+    if (!history.by_parameters) return history;
+    for (int i = 0; i < data.Size(); ++i) {
+      if (IsTied(history_.carried, i))
+        history.windows[i] = std::max(moved(i, i), data.TypicalOf(i, 0.0005, 0.0002));
+      for (int j = 0; j < data.Size(); ++j)
+        if (history_.carried(i, j) != 0.0) history.carried(i, j) = moved(i, j);
     }
+    return history;
+  }
+
+  static Eigen::MatrixXd States(const Eigen::MatrixXd& x, const PlayHistory& history,
+                                const Eigen::VectorXd& start) {
+    const Eigen::Index n = x.cols();
+    if (history.carried.size() > 0)
+      return CarriedStates(x, history.windows, history.carried, start);
     Eigen::MatrixXd states(x.rows(), n);
     for (Eigen::Index j = 0; j < n; ++j)
-      states.col(j) = PlayState(x.col(j), windows_.size() == n ? windows_[j] : 0.0);
+      states.col(j) =
+          PlayState(x.col(j), history.windows.size() == n ? history.windows[j] : 0.0, start[j]);
     return states;
+  }
+
+  static void DeriveByStart(const ArmData& data, const Eigen::MatrixXd& x,
+                            const PlayHistory& history, const Eigen::VectorXd& start,
+                            const Eigen::MatrixXd& moved, JointStage& stage) {
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+      if (!Begins(data, moved, int(j)) || std::abs(start[j]) >= 0.5) continue;
+      Eigen::VectorXd up = start, down = start;
+      up[j] += kStep;
+      down[j] -= kStep;
+      const Eigen::MatrixXd by =
+          (States(x, history, up) - States(x, history, down)) / (2.0 * kStep) * moved.transpose();
+      for (Eigen::Index i = 0; i < x.cols(); ++i)
+        stage.DerivativeOfAny(stage.first_play_start + int(j), int(i), by.col(i));
+    }
+  }
+
+  /// What tied parameters change by changing when a joint moves.
+  void DeriveByHistory(const ArmData& data, const Eigen::MatrixXd& x, const Eigen::VectorXd& start,
+                       const Eigen::MatrixXd& moved, JointStage& stage) const {
+    const int n = data.Size();
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        if (i == j ? !IsTied(history_.carried, i) : history_.carried(i, j) == 0.0) continue;
+        const double h = kStep * data.TypicalOf(i, 1.0, 0.1);
+        Eigen::MatrixXd up = moved, down = moved;
+        up(i, j) += h;
+        down(i, j) -= h;
+        const Eigen::MatrixXd by =
+            (States(x, HistoryAt(data, up), start) - States(x, HistoryAt(data, down), start)) /
+            (2.0 * h) * moved.transpose();
+        for (int row = 0; row < n; ++row) stage.Derivative(IndexOf(n, i, j), row, by.col(row));
+      }
   }
 
   /// A width to divide by: joints without play of their own keep a sliver.
@@ -124,7 +210,7 @@ class JointBacklash : public ArmEffect {
     return std::max(std::abs(theta[j]), data.TypicalOf(j, 0.0005, 0.0002));
   }
 
-  Eigen::VectorXd windows_;
+  PlayHistory history_;
 };
 
 }  // namespace

@@ -1,11 +1,20 @@
 #include "arms/effects/play.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace flextip::arms {
+namespace {
 
-Eigen::VectorXd PlayState(const Eigen::VectorXd& x, double width) {
-  Eigen::VectorXd state = Eigen::VectorXd::Zero(x.size());
+constexpr double kPartsOfAWindow = 4.0;
+constexpr int kMostParts = 8;
+constexpr int kMostSweeps = 60;
+constexpr double kAtRest = 1e-9;  // widths
+
+}  // namespace
+
+Eigen::VectorXd PlayState(const Eigen::VectorXd& x, double width, double start) {
+  Eigen::VectorXd state = Eigen::VectorXd::Constant(x.size(), std::clamp(start, -0.5, 0.5));
   for (Eigen::Index k = 1; k < x.size(); ++k) {
     const double step = x[k] - x[k - 1];
     if (step == 0.0) {
@@ -20,23 +29,39 @@ Eigen::VectorXd PlayState(const Eigen::VectorXd& x, double width) {
 }
 
 Eigen::MatrixXd CarriedStates(const Eigen::MatrixXd& x, const Eigen::VectorXd& widths,
-                              const Eigen::MatrixXd& carried) {
-  constexpr int kParts = 4;
+                              const Eigen::MatrixXd& carried, const Eigen::VectorXd& start) {
   const Eigen::Index n = x.cols();
-  Eigen::MatrixXd states = Eigen::MatrixXd::Zero(x.rows(), n);
-  Eigen::VectorXd state = Eigen::VectorXd::Zero(n), leader = x.row(0).transpose();
+  Eigen::MatrixXd states(x.rows(), n);
+  Eigen::VectorXd state = start.cwiseMax(-0.5).cwiseMin(0.5);
+  states.row(0) = state.transpose();
+  Eigen::VectorXd leader = x.row(0).transpose() + carried * state;
   for (Eigen::Index k = 1; k < x.rows(); ++k) {
-    for (int part = 1; part <= kParts; ++part) {
-      const double u = double(part) / kParts;
-      for (Eigen::Index i = n; i-- > 0;) {
-        const double at = (1.0 - u) * x(k - 1, i) + u * x(k, i) + carried.row(i).dot(state);
-        const double step = at - leader[i];
-        leader[i] = at;
-        if (step == 0.0) continue;
-        state[i] = widths[i] > 0.0 ? std::clamp(state[i] - step / widths[i], -0.5, 0.5)
-                   : step > 0.0    ? -0.5
-                                   : 0.5;
+    // Joints that move far together are moved together.
+    const Eigen::VectorXd step = (x.row(k) - x.row(k - 1)).transpose();
+    double windows = 0.0;  // crossed by the fastest
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (widths[i] > 0.0) windows = std::max(windows, std::abs(step[i]) / widths[i]);
+    const int parts =
+        int(std::clamp(std::ceil(kPartsOfAWindow * windows), 1.0, double(kMostParts)));
+    for (int part = 1; part <= parts; ++part) {
+      const Eigen::VectorXd at = x.row(k - 1).transpose() + double(part) / parts * step;
+      const Eigen::VectorXd before = leader, follower = leader + widths.cwiseProduct(state);
+      for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+        double moved = 0.0;
+        for (Eigen::Index i = n; i-- > 0;) {
+          leader[i] = at[i] + carried.row(i).dot(state);
+          double now = state[i];
+          if (widths[i] > 0.0) {
+            now = std::clamp((follower[i] - leader[i]) / widths[i], -0.5, 0.5);
+          } else if (leader[i] != before[i]) {
+            now = leader[i] > before[i] ? -0.5 : 0.5;
+          }
+          moved = std::max(moved, std::abs(now - state[i]));
+          state[i] = now;
+        }
+        if (moved < kAtRest) break;
       }
+      leader = at + carried * state;
     }
     states.row(k) = state.transpose();
   }

@@ -5,15 +5,26 @@
 
 namespace flextip::arms {
 
-/// Where in its play a follower stands behind `x`, in widths: -1/2 after a motion up, 1/2 after one
-/// down, between them while the play is crossed. Rows are a history; it starts in the middle.
-/// A width of zero is crossed at once.
-Eigen::VectorXd PlayState(const Eigen::VectorXd& x, double width);
+/// How plays are replayed. Searched for, not fitted.
+struct PlayHistory {
+  Eigen::VectorXd windows;  ///< whole widths, one a joint; empty: none were set
+  /// Joints x joints: by how much the leader of joint i moves while joint j crosses its window.
+  /// Empty: what is dragged does not pass through the play of what it drags.
+  Eigen::MatrixXd carried;
+  /// Windows of joints that `carried` ties, and its entries that are not zero, are the parameters.
+  bool by_parameters = false;
+};
 
-/// The same of all joints at once (rows x joints), where what one drags passes through the play of
-/// the other: joint i follows x_i + sum over j of carried_ij state_j. Steps are parted, so that
-/// joints that move together are dragged together.
+/// Where in its play a follower stands behind `x`, in widths: -1/2 after a motion up, 1/2 after one
+/// down, between them while the play is crossed. Rows are a history; it begins at `start`.
+/// A width of zero is crossed at once.
+Eigen::VectorXd PlayState(const Eigen::VectorXd& x, double width, double start = 0.0);
+
+/// The same of all joints at once (rows x joints), where joints drag each other through their
+/// plays: joint i stays while it can, and x_i + sum over j of carried_ij state_j leads it. That is
+/// friction in each joint and cables that give way (a sweeping process, found row by row by
+/// projected Gauss-Seidel). `start`: states at the first row.
 Eigen::MatrixXd CarriedStates(const Eigen::MatrixXd& x, const Eigen::VectorXd& widths,
-                              const Eigen::MatrixXd& carried);
+                              const Eigen::MatrixXd& carried, const Eigen::VectorXd& start);
 
 }  // namespace flextip::arms

@@ -1,6 +1,7 @@
 #include "arms/replay/layout.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "arms/effects/effects.h"
 
@@ -46,6 +47,21 @@ Layout::Layout(const std::vector<ArmData>& recordings, const std::vector<std::st
       if (in[r]) Add(*nuisance, alone, false);
     }
   }
+}
+
+Eigen::VectorXd Layout::WithinBounds(const Eigen::VectorXd& from, Eigen::VectorXd to) const {
+  for (const Block& block : blocks_) {
+    const double bound = block.effect->Bound();
+    for (int j = block.first; j < block.first + block.size; ++j)
+      to[j] = std::abs(from[j]) >= bound ? from[j] : std::clamp(to[j], -bound, bound);
+  }
+  return to;
+}
+
+Eigen::VectorXd Layout::InTheMiddle(Eigen::VectorXd theta) const {
+  for (const Block& block : blocks_)
+    if (std::isfinite(block.effect->Bound())) theta.segment(block.first, block.size).setZero();
+  return theta;
 }
 
 void Layout::Add(ArmEffect& effect, const std::vector<bool>& in, bool change) {

@@ -29,6 +29,10 @@ class Layout {
   const std::vector<ArmData>& Recordings() const { return recordings_; }
   /// Recording by which a block's parameters are described.
   const ArmData& DataOf(const Block& block) const { return recordings_[block.first_in]; }
+  /// Returns `to` with what left its bound brought back to it; what was there in `from` stays.
+  Eigen::VectorXd WithinBounds(const Eigen::VectorXd& from, Eigen::VectorXd to) const;
+  /// Returns `theta` with what is bounded at zero, away from its bounds.
+  Eigen::VectorXd InTheMiddle(Eigen::VectorXd theta) const;
   /// Effects with a window (ArmEffect::Windows) by their block; -1: none.
   int WindowBlock() const { return window_block_; }
 

@@ -156,9 +156,13 @@ Replay::Stage Replay::JointOutput(int r, const Track& input, const Eigen::Vector
                                   bool with_derivatives) const {
   const ArmData& data = layout_.Recordings()[r];
   Stage result{input.values, {}};
+  JointStage stage(input, data.effort_at_joints, result.output,
+                   with_derivatives ? &result.columns : nullptr);
   EachEffect(r, [&](const Layout::Block& block) {
-    JointStage stage(input, data.effort_at_joints, result.output,
-                     with_derivatives ? &result.columns : nullptr);
+    stage.SetFirst(block.first);
+    block.effect->StartPlay(data, theta.data() + block.first, stage);
+  });
+  EachEffect(r, [&](const Layout::Block& block) {
     stage.SetFirst(block.first);
     block.effect->ActOnJoints(data, theta.data() + block.first, stage);
   });

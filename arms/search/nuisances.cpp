@@ -30,7 +30,7 @@ Eigen::VectorXd FitSome(const Replay& replay, const Noise& noise, const std::vec
   }
   Eigen::VectorXd theta = replay.Theta();
   theta(free) = sd.cwiseProduct(Llt(H).Solve(g));
-  return theta;
+  return replay.GetLayout().WithinBounds(replay.Theta(), theta);
 }
 
 std::vector<int> Nuisances(const Layout& layout, bool own_alone) {

@@ -22,13 +22,16 @@ constexpr double kHardlyCounts = 0.02;  // of what is left
 constexpr int kMostDrops = 3;
 constexpr int kMostFits = 14;  // a round
 constexpr int kFitRounds = 6;
+constexpr int kCarryRounds = 12;
+constexpr double kWorthCarrying = 0.98;  // of the squares that are left without it
 constexpr int kNoiseRounds = 3;
 const std::vector<double> kScales{0.3, 3.0};
 
 /// Where a hypothesis fits.
 struct Place {
   Hypothesis hypothesis;
-  Eigen::VectorXd theta, windows;
+  Eigen::VectorXd theta;
+  PlayHistory history;
   double log_posterior = -1e300;
 };
 
@@ -38,7 +41,7 @@ class Searcher {
       : replay_(replay), layout_(layout), windows_(replay, layout), options_(options) {}
 
   Found Run() {
-    windows_.Set(Eigen::VectorXd());
+    windows_.Set({});
     replay_.Evaluate(Eigen::VectorXd::Zero(layout_.Size()));
     replay_.Register();
     replay_.Evaluate(Eigen::VectorXd::Zero(layout_.Size()));
@@ -84,7 +87,7 @@ class Searcher {
   }
 
   void GoTo(const Place& place) {
-    windows_.Set(place.windows);
+    windows_.Set(place.history);
     replay_.Evaluate(place.theta);
   }
 
@@ -100,7 +103,7 @@ class Searcher {
       Descend(all, 2);
       noise_ = MeasureNoise(replay_, true);
     }
-    best_ = {all, replay_.Theta(), windows_.Windows(), -1e300};
+    best_ = {all, replay_.Theta(), windows_.History(), -1e300};
   }
 
   /// Moves the replay to where `hypothesis` fits.
@@ -113,7 +116,8 @@ class Searcher {
       if (hypothesis.effects.size() <= std::size_t(options_.most_effects))
         weighed = evidence.Weigh(hypothesis);
       const Eigen::MatrixXd covariance = evidence.Covariance(weighed);
-      const Eigen::VectorXd mode = evidence.Mode(weighed, covariance).head(layout_.Size());
+      const Eigen::VectorXd mode = layout_.WithinBounds(
+          replay_.Theta(), evidence.Mode(weighed, covariance).head(layout_.Size()));
       const Eigen::VectorXd step = mode - replay_.Theta();
       const Eigen::VectorXd sd =
           covariance.diagonal().head(layout_.Size()).cwiseMax(1e-300).cwiseSqrt();
@@ -129,28 +133,55 @@ class Searcher {
     return nullptr;
   }
 
-  /// Fits a hypothesis from where the best is, and keeps where that leads.
-  void Fit(const Hypothesis& hypothesis, const Place& from) {
-    GoTo(from);
-    const bool window =
-        windows_.IsThere() && std::find(hypothesis.effects.begin(), hypothesis.effects.end(),
-                                        layout_.WindowBlock()) != hypothesis.effects.end();
-    Descend(hypothesis, window ? 2 : kFitRounds);
-    if (window) {
-      windows_.Scan(noise_);
-      Descend(hypothesis, 2);
-      for (int round = 0; round < 2; ++round) {
-        windows_.TryCarrying(noise_);
-        windows_.Scan(noise_);
-        Descend(hypothesis, 2);
-      }
-      Descend(hypothesis, kFitRounds);
-    }
+  /// Where the replay is, as a place of the hypothesis.
+  Place PlaceHere(const Hypothesis& hypothesis) const {
     const Problem problem = ProblemHere();
     const Evidence evidence = EvidenceHere(problem, false);
-    Place place{hypothesis, replay_.Theta(), windows_.Windows(),
-                evidence.LogEvidenceOfNone() + evidence.Weigh(hypothesis).log_evidence +
-                    LogPriorOf(hypothesis, layout_.EffectCount(), options_)};
+    return {hypothesis, replay_.Theta(), windows_.History(),
+            evidence.LogEvidenceOfNone() + evidence.Weigh(hypothesis).log_evidence +
+                LogPriorOf(hypothesis, layout_.EffectCount(), options_)};
+  }
+
+  bool HasPlay(const Hypothesis& hypothesis) const {
+    return windows_.IsThere() && std::find(hypothesis.effects.begin(), hypothesis.effects.end(),
+                                           layout_.WindowBlock()) != hypothesis.effects.end();
+  }
+
+  /// Plays with windows of their own; and plays that drag each other, from there and from where the
+  /// best has such ones. The simpler one unless another leaves less.
+  Place FitPlay(const Hypothesis& hypothesis, const Place& from) {
+    GoTo(from);
+    windows_.LetGo();
+    replay_.Evaluate(layout_.InTheMiddle(replay_.Theta()));
+    Descend(hypothesis, 2);
+    windows_.Scan(noise_);
+    Descend(hypothesis, kFitRounds);
+    Place place = PlaceHere(hypothesis);
+    double least = kWorthCarrying * Misfit();
+    const auto descend_carried = [&] {
+      Descend(hypothesis, kCarryRounds);
+      if (Misfit() >= least) return;
+      least = Misfit();
+      place = PlaceHere(hypothesis);
+    };
+    if (windows_.Carry()) descend_carried();
+    if (from.history.by_parameters) {
+      GoTo(from);
+      descend_carried();
+    }
+    return place;
+  }
+
+  /// Fits a hypothesis from where the best is, and keeps where that leads.
+  void Fit(const Hypothesis& hypothesis, const Place& from) {
+    Place place;
+    if (HasPlay(hypothesis)) {
+      place = FitPlay(hypothesis, from);
+    } else {
+      GoTo(from);
+      Descend(hypothesis, kFitRounds);
+      place = PlaceHere(hypothesis);
+    }
     ++found_.fits;
     tried_.push_back(place);
     if (place.log_posterior > best_.log_posterior) best_ = place;
@@ -195,13 +226,15 @@ class Searcher {
     return sum;
   }
 
+  double Misfit() const { return MisfitAfter(Eigen::VectorXd::Zero(layout_.Size())); }
+
   /// By how much of what is left the misfit rises without each effect of the best, with all that
   /// recordings have of it.
   std::vector<double> Importance() {
     GoTo(best_);
     const Problem problem = ProblemHere();
     const Evidence evidence = EvidenceHere(problem, false);
-    const double left = MisfitAfter(Eigen::VectorXd::Zero(layout_.Size()));
+    const double left = Misfit();
     std::vector<double> importance;
     for (const int effect : best_.hypothesis.effects) {
       Hypothesis without;

@@ -7,19 +7,18 @@
 namespace flextip::arms {
 namespace {
 
-constexpr double kWorthCarrying = 20.0;  // squared residual
 // Widths of a window that are tried, in rad or 10 cm.
 constexpr double kWidths[] = {0.0,  0.002, 0.004, 0.008, 0.015, 0.025, 0.04,
                               0.06, 0.09,  0.13,  0.18,  0.25,  0.35,  0.5};
 
 }  // namespace
 
-void WindowSearch::Set(const Eigen::VectorXd& windows) {
-  if (IsThere()) layout_.Blocks()[layout_.WindowBlock()].effect->SetWindows(windows);
+void WindowSearch::Set(const PlayHistory& history) {
+  if (IsThere()) layout_.Blocks()[layout_.WindowBlock()].effect->SetHistory(history);
 }
 
-Eigen::VectorXd WindowSearch::Windows() const {
-  return IsThere() ? layout_.Blocks()[layout_.WindowBlock()].effect->Windows() : Eigen::VectorXd();
+PlayHistory WindowSearch::History() const {
+  return IsThere() ? layout_.Blocks()[layout_.WindowBlock()].effect->History() : PlayHistory{};
 }
 
 bool WindowSearch::Moves(int joint) const { return Range(joint) > 1e-4; }
@@ -69,7 +68,8 @@ void WindowSearch::Scan(const Noise& noise) {
   const Layout::Block& block = layout_.Blocks()[layout_.WindowBlock()];
   const ArmData& data = layout_.DataOf(block);
   const int n = data.Size();
-  Eigen::VectorXd windows = Windows();
+  PlayHistory history = History();
+  Eigen::VectorXd& windows = history.windows;
   if (windows.size() < n) windows = Eigen::VectorXd::Zero(n);
   for (int j = 0; j < n; ++j) {
     if (!Moves(j)) continue;
@@ -80,7 +80,7 @@ void WindowSearch::Scan(const Noise& noise) {
     double best = 0.0, best_width = windows[j];
     const auto tell = [&](double width) {
       windows[j] = width;
-      Set(windows);
+      Set(history);
       Eigen::VectorXd theta = replay_.Theta();
       const double gain = Explained(theta, columns, noise);
       if (gain <= best) return;
@@ -93,26 +93,29 @@ void WindowSearch::Scan(const Noise& noise) {
     for (const double by : {0.8, 0.9, 1.12, 1.25})
       if (best_width > 0.0) tell(best_width * by);
     windows[j] = best_width;
-    Set(windows);
+    Set(history);
     replay_.Evaluate(theta);
   }
 }
 
-void WindowSearch::TryCarrying(const Noise& noise) {
-  if (!IsThere()) return;
+void WindowSearch::LetGo() {
+  PlayHistory history = History();
+  history.carried.resize(0, 0);
+  history.by_parameters = false;
+  Set(history);
+}
+
+bool WindowSearch::Carry() {
+  if (!IsThere()) return false;
   const Layout::Block& block = layout_.Blocks()[layout_.WindowBlock()];
-  const ArmData& data = layout_.DataOf(block);
-  const Eigen::VectorXd theta = replay_.Theta(), before = Windows();
-  std::vector<int> columns;
-  for (int j = 0; j < data.Size(); ++j)
-    for (const int own : block.effect->OfWindow(data, j))
-      if (Moves(j)) columns.push_back(block.first + own);
-  if (columns.empty()) return;
-  const double plain = Explained(theta, columns, noise);
-  Set(block.effect->Carrying(data, theta.segment(block.first, block.size)));
-  const double carried = Explained(theta, columns, noise);
-  if (carried < plain + kWorthCarrying) Set(before);
+  Eigen::VectorXd theta = replay_.Theta(), own = theta.segment(block.first, block.size);
+  PlayHistory history = block.effect->Carrying(layout_.DataOf(block), own);
+  if (history.carried.isZero(0.0)) return false;
+  history.by_parameters = true;
+  Set(history);
+  theta.segment(block.first, block.size) = own;
   replay_.Evaluate(theta);
+  return true;
 }
 
 }  // namespace flextip::arms

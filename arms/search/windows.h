@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "arms/effects/play.h"
 #include "arms/replay/replay.h"
 #include "arms/search/noise.h"
 
@@ -16,13 +17,16 @@ class WindowSearch {
   WindowSearch(Replay& replay, Layout& layout) : replay_(replay), layout_(layout) {}
 
   bool IsThere() const { return layout_.WindowBlock() >= 0; }
-  void Set(const Eigen::VectorXd& windows);
-  Eigen::VectorXd Windows() const;
+  void Set(const PlayHistory& history);
+  PlayHistory History() const;
 
   /// Gives each joint the window whose state explains most of what is left, joint by joint.
   void Scan(const Noise& noise);
-  /// Lets what is dragged pass through the play of what it drags, where that explains more.
-  void TryCarrying(const Noise& noise);
+  /// Lets each joint have a window of its own, through which nothing else is dragged.
+  void LetGo();
+  /// Lets joints drag each other through their plays as the parameters say.
+  /// Returns false where none does.
+  bool Carry();
 
  private:
   bool Moves(int joint) const;

@@ -5,6 +5,7 @@
 
 #include "arms/effects/late.h"
 #include "arms/effects/play.h"
+#include "tests/arms/wrist_of_cables.h"
 
 namespace flextip::arms {
 namespace {
@@ -54,6 +55,40 @@ TEST(Play, WithoutWidthIsTheDirectionWithItsMemory) {
   x << 0.0, 0.1, 0.1, -0.2, -0.1;
   const Eigen::VectorXd state = PlayState(x, 0.0);
   EXPECT_EQ(state, (Eigen::VectorXd(5) << 0.0, -0.5, -0.5, 0.5, -0.5).finished());
+}
+
+TEST(Play, BeginsWhereItIsSaidTo) {
+  Eigen::VectorXd x(4);
+  x << 0.0, 0.0, 0.02, 0.3;
+  const Eigen::VectorXd state = PlayState(x, 0.1, 0.4);
+  EXPECT_LT((state - Eigen::Vector4d(0.4, 0.4, 0.2, -0.5)).norm(), 1e-12);
+}
+
+/// Two motors that turn back and forth out of step.
+Eigen::MatrixXd TwoMotors() {
+  constexpr Eigen::Index kRows = 1600;
+  Eigen::MatrixXd motors(kRows, 2);
+  for (Eigen::Index k = 0; k < kRows; ++k)
+    motors.row(k) << 0.7 * std::sin(0.0125 * double(k)) + 0.2 * std::sin(0.08 * double(k)),
+        0.9 * std::sin(0.021 * double(k));
+  return motors;
+}
+
+// Plays that drag each other are springs and friction. A row moves a motor by up to 20 mrad.
+TEST(Play, JointsThatDragEachOtherAreWhereForcesLeadThem) {
+  for (const double over : {0.0, 0.4, 0.9}) {
+    const WristOfCables wrist{.over = over};
+    const Eigen::MatrixXd motors = TwoMotors(), moved = wrist.Moved();
+    Eigen::MatrixXd carried = moved;
+    carried.diagonal().setZero();
+    const Eigen::Vector2d start{0.3, -0.5};
+    const Eigen::Vector2d at = motors.row(0).transpose() + moved * start;
+    const Eigen::MatrixXd by_forces = wrist.Follow(motors, at);
+    const Eigen::MatrixXd by_states =
+        motors + CarriedStates(motors, moved.diagonal(), carried, start) * moved.transpose();
+    EXPECT_LT((by_forces - by_states).cwiseAbs().maxCoeff(), 1e-2) << over;
+    EXPECT_GT((by_states - motors).cwiseAbs().maxCoeff(), 0.1);
+  }
 }
 
 }  // namespace

@@ -109,6 +109,57 @@ TEST_F(RealArms, BareArmCarriesNoPayload) {
   for (const Change& change : result.changes) EXPECT_NE(change.effect, "payload");
 }
 
+/// Seen joints between two parts of the recording's time.
+ArmData SeenBetween(Recording recording, double from, double to, const std::string& name) {
+  const TimeNs begin = recording.joints_command0->q.front().t_ns;
+  const double whole = double(recording.joints_command0->q.back().t_ns - begin);
+  const auto cut = [&](auto& samples) {
+    std::erase_if(samples, [&](const auto& sample) {
+      const double at = double(sample.t_ns - begin) / whole;
+      return at < from || at > to;
+    });
+  };
+  cut(recording.joints_command0->q);
+  cut(recording.joints_seen0->q);
+  return {recording, name};
+}
+
+/// Tip (m) with the model of `fitted` over that of the arm's file, on `other`.
+double TipRatio(const std::vector<ArmData>& fitted, const ArmData& other) {
+  const ArmPrediction prediction = Predict(other, Diagnose(fitted).model);
+  fmt::print("{}: {:.2f} -> {:.2f} mm, joints 5 and 6 {:.0f}, {:.0f} -> {:.0f}, {:.0f} mrad\n",
+             other.name, 1e3 * prediction.base_tip_rms_m, 1e3 * prediction.extended_tip_rms_m,
+             1e3 * prediction.base_rms.at("joints_seen0_q5_rad"),
+             1e3 * prediction.base_rms.at("joints_seen0_q6_rad"),
+             1e3 * prediction.extended_rms.at("joints_seen0_q5_rad"),
+             1e3 * prediction.extended_rms.at("joints_seen0_q6_rad"));
+  return prediction.tip_ratio;
+}
+
+// Takes a minute.
+TEST_F(RealArms, DISABLED_AWristIsPredictedInRecordingsThatAreNotFitted) {
+  const std::vector<std::string> names{
+      "seen_joints_wrist_one_joint_a", "seen_joints_wrist_one_joint_b",
+      "seen_joints_wrist_one_joint_c", "seen_joints_random_motion"};
+  for (const std::string& left_out : names) {
+    std::vector<ArmData> fitted;
+    for (const std::string& name : names)
+      if (name != left_out) fitted.push_back(Read(name));
+    EXPECT_LT(TipRatio(fitted, Read(left_out)), 0.8) << left_out;
+  }
+  const Recording random = ReadRecording(kArms / names.back()).recording;
+  const ArmData halves[] = {SeenBetween(random, 0.0, 0.5, "first half"),
+                            SeenBetween(random, 0.5, 1.0, "second half")};
+  std::vector<ArmData> wrist;
+  for (int i = 0; i < 3; ++i) wrist.push_back(Read(names[i]));
+  for (const int fitted : {0, 1}) {
+    EXPECT_LT(TipRatio({halves[fitted]}, halves[1 - fitted]), 0.5);
+    auto with_wrist = wrist;
+    with_wrist.push_back(halves[fitted]);
+    EXPECT_LT(TipRatio(with_wrist, halves[1 - fitted]), 0.8);
+  }
+}
+
 TEST_F(RealArms, PlayAndOffsetsOfTheWristAreFound) {
   const ArmResult result = Diagnose({Read("seen_joints_wrist_one_joint_a")});
   EXPECT_THAT(result.answer.verdict, Contains("joint_offset"));
