@@ -151,6 +151,7 @@ TEST_F(RealArms, DISABLED_AWristIsPredictedInRecordingsThatAreNotFitted) {
   const ArmData halves[] = {SeenBetween(random, 0.0, 0.5, "first half"),
                             SeenBetween(random, 0.5, 1.0, "second half")};
   std::vector<ArmData> wrist;
+  wrist.reserve(names.size());
   for (int i = 0; i < 3; ++i) wrist.push_back(Read(names[i]));
   for (const int fitted : {0, 1}) {
     EXPECT_LT(TipRatio({halves[fitted]}, halves[1 - fitted]), 0.5);
