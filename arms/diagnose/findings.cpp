@@ -46,7 +46,7 @@ LooseNumber MakeLoose(const Layout& layout, const Layout::Block& block, int j, i
   if (bracket != std::string::npos) loose.index = std::stoi(name.substr(bracket + 1)) + 1;
   for (const Layout::Block& rival : layout.Blocks())
     if (partner >= rival.first && partner < rival.first + rival.size)
-      loose.taken_by = rival.effect->Name();
+      loose.taken_by = rival.effect->IsAnswer() ? rival.effect->Name() : rival.effect->Summary();
   return loose;
 }
 
@@ -87,7 +87,10 @@ std::vector<std::string> NotTold(const Layout& layout, const diagnosis::WeighedH
         partner = other;
       }
       const LooseNumber loose = MakeLoose(layout, block, j, partner);
-      lists[{loose.list, loose.taken_by}].push_back(loose.index);
+      auto& indices =
+          lists[{loose.list, loose.taken_by}];  // the same list may begin more than once
+      if (std::find(indices.begin(), indices.end(), loose.index) == indices.end())
+        indices.push_back(loose.index);
     }
   }
   std::vector<std::string> not_told;

@@ -91,9 +91,25 @@ std::string WithDeviation(double value, double sd, const std::string& unit) {
   return fmt::format("{:.{}f} ± {:.{}f}{}", value, digits, sd, digits, tail);
 }
 
+bool IsOfJoints(const DiagnosedParameter& parameter) {
+  return parameter.is_list &&
+         (parameter.effect.starts_with("joint_") || parameter.effect.starts_with("servo_") ||
+          parameter.effect == "torque_drift");
+}
+
 std::string ComponentName(const DiagnosedParameter& parameter, std::size_t i) {
   const std::size_t size = parameter.value.size();
   if (!parameter.is_list) return "";
+  if (IsOfJoints(parameter)) {
+    if (parameter.name != "drag" && parameter.name != "matrix")
+      return "of joint " + std::to_string(i + 1);
+    // Off-diagonal entries, row by row: n (n - 1) of them.
+    std::size_t others = 1;
+    while (others * (others + 1) < size) ++others;
+    const std::size_t row = i / others, column = i % others;
+    return "of joint " + std::to_string(row + 1) + " by joint " +
+           std::to_string(column < row ? column + 1 : column + 2);
+  }
   const std::string axes = "xyz";
   if (size == 3) return axes.substr(i, 1);
   if (size == 9) return axes.substr(i / 3, 1) + axes.substr(i % 3, 1);

@@ -9,7 +9,8 @@
 namespace flextip::report {
 namespace {
 
-constexpr double kSure = 0.9;  ///< from here on a verdict is stated, below it is "probably"
+constexpr double kSureSd = 3.0;  // of a number, in its deviations
+constexpr double kSure = 0.9;    ///< from here on a verdict is stated, below it is "probably"
 constexpr double kLikely = 0.5;
 constexpr double kNearlyAll = 0.99;
 
@@ -40,12 +41,22 @@ std::string SummaryAndName(const DiagnosedResult& result, const std::string& eff
   return summary == name ? name : summary + " (" + name + ")";
 }
 
+/// Of a list the number that is furthest off, of those that are sure where there are any.
+std::size_t FurthestOff(const DiagnosedParameter& p) {
+  const auto off = [&](std::size_t i) { return std::abs(p.value[i] - p.nominal[i]); };
+  const auto is_sure = [&](std::size_t i) { return p.sd.empty() || off(i) > kSureSd * p.sd[i]; };
+  std::size_t chosen = 0;
+  for (std::size_t i = 1; i < p.value.size(); ++i) {
+    if (is_sure(i) != is_sure(chosen) ? is_sure(i) : off(i) > off(chosen)) chosen = i;
+  }
+  return chosen;
+}
+
 /// A vector by its length, a list of like things by the one that is furthest off.
 std::string InShort(const DiagnosedParameter& p) {
   const auto shown = ShownUnitOf(p.name);
   const auto sd = [&](std::size_t i) { return p.sd.empty() ? 0.0 : p.sd[i]; };
-  std::size_t chosen = 0;
-  if (p.value.size() == 2 || p.value.size() == 3) {
+  if (!IsOfJoints(p) && (p.value.size() == 2 || p.value.size() == 3)) {
     double squares = 0.0, variance = 0.0;
     for (std::size_t i = 0; i < p.value.size(); ++i) {
       squares += p.value[i] * p.value[i];
@@ -56,10 +67,7 @@ std::string InShort(const DiagnosedParameter& p) {
     return shown.name + " " +
            WithDeviation(shown.per_si * length, shown.per_si * deviation, shown.unit);
   }
-  for (std::size_t i = 1; i < p.value.size(); ++i) {
-    const auto off = [&](std::size_t k) { return std::abs(p.value[k] - p.nominal[k]); };
-    if (off(i) > off(chosen)) chosen = i;
-  }
+  const std::size_t chosen = FurthestOff(p);
   const std::string component = ComponentName(p, chosen);
   return shown.name + (component.empty() ? "" : " " + component) + " " +
          WithDeviation(shown.per_si * p.value[chosen], shown.per_si * sd(chosen), shown.unit);

@@ -42,5 +42,7 @@ std::string WithDeviation(double value, double sd, const std::string& unit);
 std::string Brief(double value);
 /// "x", "y", "z" of three, "xy" of nine, else a number from one; empty for a single number.
 std::string ComponentName(const DiagnosedParameter& parameter, std::size_t i);
+/// Whether it is a list of an arm's joints, not a vector in space.
+bool IsOfJoints(const DiagnosedParameter& parameter);
 
 }  // namespace flextip::report

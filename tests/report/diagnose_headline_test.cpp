@@ -28,6 +28,28 @@ TEST_F(DiagnoseHeadline, SaysCauseSizeProbabilityAndGain) {
   EXPECT_EQ(headline.advice, "");
 }
 
+// A ratio to a width that is nearly none is large, and says nothing.
+TEST_F(DiagnoseHeadline, SaysOfAnArmWhichJointAndWhatIsSure) {
+  auto json = Friction();
+  json["verdict"] = "joint_backlash";
+  json["verdicts"] = {"joint_backlash"};
+  json["probabilities"] = {{"joint_backlash", 0.98}, {"none", 0.02}, {"unknown", 0.0}};
+  json["indistinguishable"] = {{"joint_backlash"}};
+  json["summaries"] = {{"joint_backlash", "play drags other joints"}};
+  json["parameters"] = {
+      {"joint_backlash",
+       {{"width",
+         {{"value", {0.001, 0.25, 0.37}}, {"sd", {0.0004, 0.01, 0.02}}, {"nominal", {0, 0, 0}}}},
+        {"drag",
+         {{"value", {13.0, 0.1, 2.0, -0.9, 4.0, 0.0}},
+          {"sd", {53.0, 0.2, 9.0, 0.1, 8.0, 0.1}},
+          {"nominal", {0, 0, 0, 0, 0, 0}}}}}}};
+  EXPECT_EQ(
+      Of(json).verdict,
+      "Play drags other joints: width of joint 3 0.370 ± 0.020 and drag of joint 2 by joint 3 "
+      "-0.90 ± 0.10 (98 %).");
+}
+
 TEST_F(DiagnoseHeadline, SaysOfNoneWhetherOnlyNoiseIsLeft) {
   auto json = Friction();
   json["verdict"] = "none";
