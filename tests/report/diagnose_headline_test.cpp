@@ -44,10 +44,9 @@ TEST_F(DiagnoseHeadline, SaysOfAnArmWhichJointAndWhatIsSure) {
          {{"value", {13.0, 0.1, 2.0, -0.9, 4.0, 0.0}},
           {"sd", {53.0, 0.2, 9.0, 0.1, 8.0, 0.1}},
           {"nominal", {0, 0, 0, 0, 0, 0}}}}}}};
-  EXPECT_EQ(
-      Of(json).verdict,
-      "Play drags other joints: width of joint 3 0.370 ± 0.020 and drag of joint 2 by joint 3 "
-      "-0.90 ± 0.10 (98 %).");
+  EXPECT_EQ(Of(json).verdict,
+            "Play drags other joints: drag of joint 2 by joint 3 -0.90 ± 0.10 and width of joint 3 "
+            "0.370 ± 0.020 (98 %).");
 }
 
 TEST_F(DiagnoseHeadline, SaysOfNoneWhetherOnlyNoiseIsLeft) {
