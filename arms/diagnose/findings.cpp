@@ -35,7 +35,7 @@ std::string NumberName(const Layout& layout, const Layout::Block& block, int j) 
 /// Where a number of present effects stands: its list, and what takes it up.
 struct LooseNumber {
   std::string list, taken_by;
-  int index = 0;
+  std::string which;  ///< "2" of joint 2, "5 by 6"; empty for a single number
 };
 
 LooseNumber MakeLoose(const Layout& layout, const Layout::Block& block, int j, int partner) {
@@ -43,7 +43,13 @@ LooseNumber MakeLoose(const Layout& layout, const Layout::Block& block, int j, i
   const std::string name = NumberName(layout, block, j - block.first);
   const auto bracket = name.find('[');
   loose.list = name.substr(0, bracket);
-  if (bracket != std::string::npos) loose.index = std::stoi(name.substr(bracket + 1)) + 1;
+  if (bracket != std::string::npos) {
+    const int index = std::stoi(name.substr(bracket + 1)), n = layout.DataOf(block).Size();
+    const Entry entry = OffDiagonal(n, index);
+    loose.which = loose.list.ends_with("drag") || loose.list.ends_with("matrix")
+                      ? fmt::format("{} by {}", entry.row + 1, entry.column + 1)
+                      : std::to_string(index + 1);
+  }
   for (const Layout::Block& rival : layout.Blocks())
     if (partner >= rival.first && partner < rival.first + rival.size)
       loose.taken_by = rival.effect->IsAnswer() ? rival.effect->Name() : rival.effect->Summary();
@@ -71,7 +77,7 @@ std::vector<ReportedParameter> Reported(const Layout& layout, const Layout::Bloc
 std::vector<std::string> NotTold(const Layout& layout, const diagnosis::WeighedHypothesis& weighed,
                                  const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd wide = layout.Prior().Widened(weighed.hypothesis.effects, weighed.scales);
-  std::map<std::pair<std::string, std::string>, std::vector<int>> lists;
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> lists;
   for (const int b : weighed.hypothesis.effects) {
     const Layout::Block& block = layout.Blocks()[b];
     for (int j = block.first; j < block.first + block.size; ++j) {
@@ -89,14 +95,14 @@ std::vector<std::string> NotTold(const Layout& layout, const diagnosis::WeighedH
       const LooseNumber loose = MakeLoose(layout, block, j, partner);
       auto& indices =
           lists[{loose.list, loose.taken_by}];  // the same list may begin more than once
-      if (std::find(indices.begin(), indices.end(), loose.index) == indices.end())
-        indices.push_back(loose.index);
+      if (std::find(indices.begin(), indices.end(), loose.which) == indices.end())
+        indices.push_back(loose.which);
     }
   }
   std::vector<std::string> not_told;
   for (const auto& [names, indices] : lists) {
     std::string text = names.first;
-    if (indices.front() > 0) text += fmt::format(" {}", fmt::join(indices, ", "));
+    if (!indices.front().empty()) text += fmt::format(" {}", fmt::join(indices, ", "));
     text += names.second.empty() ? ": nothing in the recording shows it"
                                  : " cannot be told from " + names.second;
     not_told.push_back(std::move(text));
