@@ -44,11 +44,12 @@ LooseNumber MakeLoose(const Layout& layout, const Layout::Block& block, int j, i
   const auto bracket = name.find('[');
   loose.list = name.substr(0, bracket);
   if (bracket != std::string::npos) {
-    const int index = std::stoi(name.substr(bracket + 1)), n = layout.DataOf(block).Size();
-    const Entry entry = OffDiagonal(n, index);
-    loose.which = loose.list.ends_with("drag") || loose.list.ends_with("matrix")
-                      ? fmt::format("{} by {}", entry.row + 1, entry.column + 1)
-                      : std::to_string(index + 1);
+    const int index = std::stoi(name.substr(bracket + 1));
+    loose.which = std::to_string(index + 1);
+    if (loose.list.ends_with("drag") || loose.list.ends_with("matrix")) {
+      const Entry entry = OffDiagonal(layout.DataOf(block).Size(), index);
+      loose.which = fmt::format("{} by {}", entry.row + 1, entry.column + 1);
+    }
   }
   for (const Layout::Block& rival : layout.Blocks())
     if (partner >= rival.first && partner < rival.first + rival.size)
@@ -93,8 +94,8 @@ std::vector<std::string> NotTold(const Layout& layout, const diagnosis::WeighedH
         partner = other;
       }
       const LooseNumber loose = MakeLoose(layout, block, j, partner);
-      auto& indices =
-          lists[{loose.list, loose.taken_by}];  // the same list may begin more than once
+      // The same list may begin in more than one recording.
+      auto& indices = lists[{loose.list, loose.taken_by}];
       if (std::find(indices.begin(), indices.end(), loose.which) == indices.end())
         indices.push_back(loose.which);
     }

@@ -66,15 +66,16 @@ TEST(Play, BeginsWhereItIsSaidTo) {
 
 /// Two motors that turn back and forth out of step.
 Eigen::MatrixXd TwoMotors() {
-  constexpr Eigen::Index kRows = 1600;
+  constexpr Eigen::Index kRows = 12800;
   Eigen::MatrixXd motors(kRows, 2);
   for (Eigen::Index k = 0; k < kRows; ++k)
-    motors.row(k) << 0.7 * std::sin(0.0125 * double(k)) + 0.2 * std::sin(0.08 * double(k)),
-        0.9 * std::sin(0.021 * double(k));
+    motors.row(k) << 0.7 * std::sin(0.0015 * double(k)) + 0.2 * std::sin(0.01 * double(k)),
+        0.9 * std::sin(0.0026 * double(k));
   return motors;
 }
 
-// Plays that drag each other are springs and friction. A row moves a motor by up to 20 mrad.
+// Plays that drag each other are springs and friction. The two agree as steps get
+// small: a row moves a motor by 3 mrad at most.
 TEST(Play, JointsThatDragEachOtherAreWhereForcesLeadThem) {
   for (const double over : {0.0, 0.4, 0.9}) {
     const WristOfCables wrist{.over = over};
@@ -86,7 +87,7 @@ TEST(Play, JointsThatDragEachOtherAreWhereForcesLeadThem) {
     const Eigen::MatrixXd by_forces = wrist.Follow(motors, at);
     const Eigen::MatrixXd by_states =
         motors + CarriedStates(motors, moved.diagonal(), carried, start) * moved.transpose();
-    EXPECT_LT((by_forces - by_states).cwiseAbs().maxCoeff(), 1e-2) << over;
+    EXPECT_LT((by_forces - by_states).cwiseAbs().maxCoeff(), 1e-3) << over;
     EXPECT_GT((by_states - motors).cwiseAbs().maxCoeff(), 0.1);
   }
 }

@@ -49,7 +49,7 @@ void ExpectDerivatives(const Recording& recording, bool carried = false) {
           largest = std::max(largest, std::abs(by(k, c)));
           worst = std::max(worst, std::abs(own - by(k, c)));
         }
-      EXPECT_LT(worst, (carried ? 1e-3 : 2e-4) * largest)
+      EXPECT_LT(worst, (carried ? 4e-4 : 2e-4) * largest)
           << Name(at[i].kind) << " by parameter " << j;
     }
   }
