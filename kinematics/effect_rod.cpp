@@ -13,7 +13,9 @@ using namespace effect_flow;
 
 constexpr double kConverged = 1e-11;  // of the scaled conditions
 constexpr int kMaxNewton = 20;
-constexpr double kMaxTurn = 0.4;      // of the wrist tangent in one Newton step (rad)
+constexpr double kQuickFall =
+    1e-3;                         // of the conditions in a step, after which derivatives still do
+constexpr double kMaxTurn = 0.4;  // of the wrist tangent in one Newton step (rad)
 constexpr double kMinStretch = 1e-6;  // shortest stretch on either side of the port, of the length
 
 }  // namespace
@@ -79,14 +81,19 @@ bool OnShaft(double s_port) { return s_port > kMinStretch && s_port < 1.0 - kMin
 /// Returns the number of evaluations; 0 where the iteration did not converge.
 int Newton(const ScaledProblem& problem, EffectRodUnknowns& x, EffectShot& shot) {
   double last = 1e300;
+  // Of seven unknowns: Eigen's own, which allocates nothing (core/linear_algebra.h has no 7).
+  Eigen::PartialPivLU<decltype(shot.A)> lu;
   for (int i = 1; i <= kMaxNewton; ++i) {
     if (!shot.Shoot(problem, x)) return 0;
     const double size = shot.residual.norm();
     if (size < kConverged) return i;
     if (i > 4 && size > 0.9 * last) return 0;  // it should converge quadratically by now
+    if (i == 1 || size > kQuickFall * last) {
+      if (!shot.Linearize(problem, x)) return 0;
+      lu.compute(shot.A);
+    }
     last = size;
-    // Of seven unknowns: Eigen's own, which allocates nothing (core/linear_algebra.h has no 7).
-    UnknownVector dx = -shot.A.partialPivLu().solve(shot.residual);
+    UnknownVector dx = -lu.solve(shot.residual);
     if (!dx.allFinite()) return 0;
     const double turn = dx.segment<2>(kTurn).norm();
     if (turn > kMaxTurn) dx *= kMaxTurn / turn;

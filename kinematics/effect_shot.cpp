@@ -107,14 +107,18 @@ bool EffectShot::Shoot(const ScaledProblem& problem, const EffectRodUnknowns& x)
   if (!beyond.Walk(start, problem.LoadFrom(x.s_port, n_beyond, q_beyond), 1.0 - x.s_port)) {
     return false;
   }
+  Conditions(problem, x);
+  return residual.allFinite();
+}
 
+bool EffectShot::Linearize(const ScaledProblem& problem, const EffectRodUnknowns& x) {
   StartColumns(problem, x);
   port_columns = wrist_columns;
   CarryColumns(before, before_forcing_, 0, kNewtonColumns, port_columns, {}, nullptr);
   CarryColumns(beyond, beyond_forcing_, 0, kNewtonColumns, tip_columns, {}, nullptr);
   PassPort(problem, x, false);
-  Conditions(problem, x);
-  return residual.allFinite() && A.allFinite();
+  ConditionsByUnknowns(problem, x);
+  return A.allFinite();
 }
 
 void EffectShot::Differentiate(const ScaledProblem& problem, const EffectRodUnknowns& x,
@@ -133,6 +137,7 @@ void EffectShot::Differentiate(const ScaledProblem& problem, const EffectRodUnkn
   CarryColumns(beyond, beyond_forcing_, 0, kBeyondEnd, tip_columns, {on_beyond.data(), count},
                at_places);
   PassPort(problem, x, true);
+  ConditionsByUnknowns(problem, x);
 
   // The residual by the scaled inputs; its order is that of Conditions().
   const Eigen::Vector3d r = x.r, lateral = r - r.dot(port.t) * port.t;
@@ -219,7 +224,11 @@ void EffectShot::Conditions(const ScaledProblem& problem, const EffectRodUnknown
                        problem.PortCompliance() * lateral;
   residual.segment<3>(3) = beyond.end.m;
   residual[6] = along - problem.friction() * size;
+}
 
+void EffectShot::ConditionsByUnknowns(const ScaledProblem& problem, const EffectRodUnknowns& x) {
+  const Eigen::Vector3d r = x.r, lateral = r - r.dot(port.t) * port.t;
+  const double along = r.dot(port.t), size = std::hypot(lateral.norm(), kMinLateral);
   const ByUnknowns dt = -Skew(port.t) * port_turn_x;
   Eigen::Matrix<double, 1, kUnknowns> dalong = r.transpose() * dt;
   dalong.rightCols<3>() += port.t.transpose();

@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "kinematics/effect_flow.h"
+#include "kinematics/effect_columns.h"
 #include "kinematics/effect_rod.h"
 
 namespace flextip::effect_flow {
@@ -84,10 +84,12 @@ struct EffectShot {
   ByUnknowns port_turn_x;     // the turn there as the port's place moves too
   PlaceDerivative at_beyond;  // the turn and moment just beyond the port, as it moves
 
-  /// Walks the shaft and fills residual and A. Returns false where the shaft cannot be walked.
+  /// Walks the shaft and fills the residual. Returns false where the shaft cannot be walked.
   bool Shoot(const ScaledProblem& problem, const EffectRodUnknowns& x);
-  /// Fills B, the other columns, which a converged shot needs. `places` (of the length, from the
-  /// wrist) take the columns of the stretch they lie in.
+  /// Fills A after a walk. Returns false where it is not finite.
+  bool Linearize(const ScaledProblem& problem, const EffectRodUnknowns& x);
+  /// Fills A and B, and the other columns, which a converged shot needs. `places` (of the length,
+  /// from the wrist) take the columns of the stretch they lie in.
   void Differentiate(const ScaledProblem& problem, const EffectRodUnknowns& x,
                      std::span<const double> places, FlowColumns* at_places);
   /// Turns the columns of the stretch before the port into derivatives; P from the unyielded wrist.
@@ -98,6 +100,7 @@ struct EffectShot {
   void StartColumns(const ScaledProblem& problem, const EffectRodUnknowns& x);
   void PassPort(const ScaledProblem& problem, const EffectRodUnknowns& x, bool with_inputs);
   void Conditions(const ScaledProblem& problem, const EffectRodUnknowns& x);
+  void ConditionsByUnknowns(const ScaledProblem& problem, const EffectRodUnknowns& x);
 
   FlowForcing before_forcing_, beyond_forcing_;
 };

@@ -163,9 +163,6 @@ Eigen::VectorXd PeriodicEffect::TurnPhase(const Eigen::VectorXd& theta, double t
   return turned;
 }
 
-Eigen::Vector2d PeriodicEffect::ScanShapes(double frequency_hz, const Instant& now) const {
-  const double angle = kTwoPi * frequency_hz * TimeOf(now);
-  return {std::sin(angle), std::cos(angle)};
-}
+double PeriodicEffect::ScannedPhase(const Instant& now) const { return kTwoPi * TimeOf(now); }
 
 }  // namespace flextip::diagnosis

@@ -33,7 +33,7 @@ class PeriodicEffect : public Effect {
                                         const Eigen::MatrixXd& covariance) const override;
   Eigen::VectorXd FromReported(const std::vector<std::vector<double>>& values) const override;
   std::optional<ScannedParameter> Scanned(const SampleSet& samples) const override;
-  Eigen::Vector2d ScanShapes(double frequency_hz, const Instant& now) const override;
+  double ScannedPhase(const Instant& now) const override;
   double ScanCentre() const override { return frequency_hz_; }
   void SetScanCentre(double frequency_hz) override { frequency_hz_ = frequency_hz; }
   /// All: breath and motor are as they are on that day.

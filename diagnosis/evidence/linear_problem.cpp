@@ -5,16 +5,39 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/products/products.h"
+
 namespace flextip::diagnosis {
 namespace {
 
-/// Adds one stretch of samples to `sums`. The generic columns are Kronecker products of the rows'
-/// units with the basis, so their sums are too.
+constexpr std::size_t kStretch = 64;  // samples whose products are made at a time
+
+/// The place of the pair (a, b), a <= b, among all pairs of `count`.
+Eigen::Index PairOf(Eigen::Index a, Eigen::Index b, Eigen::Index count) {
+  return a * count - a * (a - 1) / 2 + b - a;
+}
+
+/// Products of two columns each, in the order of PairOf.
+Eigen::MatrixXd PairsOfColumns(const Eigen::MatrixXd& columns) {
+  const Eigen::Index J = columns.cols();
+  Eigen::MatrixXd pairs(columns.rows(), J * (J + 1) / 2);
+  for (Eigen::Index j = 0; j < J; ++j)
+    pairs.middleCols(PairOf(j, j, J), J - j) =
+        columns.rightCols(J - j).array().colwise() * columns.col(j).array();
+  return pairs;
+}
+
+/// Sums of stretches of samples. The generic columns are Kronecker products of the rows' units with
+/// the basis, so their sums are too. Of what is symmetric only one half is summed.
 class BlockBuilder {
  public:
   BlockBuilder(const Replay& replay, const WhitenedRows& rows, const Eigen::MatrixXd& basis,
                const std::vector<int>& row_place)
-      : theta_(replay.Theta()), rows_(rows), basis_(basis), row_place_(row_place) {}
+      : theta_(replay.Theta()),
+        rows_(rows),
+        basis_(basis),
+        basis_pairs_(PairsOfColumns(basis)),
+        row_place_(row_place) {}
 
   NormalSums Build(std::size_t begin, std::size_t end, Eigen::Index size) const {
     NormalSums sums(size);
@@ -23,7 +46,9 @@ class BlockBuilder {
     if (count == 0) return sums;
     const auto X = rows_.X.middleRows(first, count);
     const Eigen::VectorXd z = rows_.e.segment(first, count) + X * theta_;
-    sums.H.topLeftCorner(P, P).selfadjointView<Eigen::Upper>().rankUpdate(X.transpose());
+    Eigen::MatrixXd XX = Eigen::MatrixXd::Zero(P, P);
+    AddSquares(X, XX);
+    sums.H.topLeftCorner(P, P) = XX;
     sums.g.head(P).noalias() = X.transpose() * z;
     sums.c = z.squaredNorm();
     sums.rows = count;
@@ -32,44 +57,68 @@ class BlockBuilder {
   }
 
  private:
+  /// Of a stretch of samples: what an error in each row becomes (`U`), with the parameters' columns
+  /// and with z, a column a sample, and with itself by pairs, a row a sample.
+  struct Products {
+    Eigen::MatrixXd XU, UU, Uz;
+
+    Products(Eigen::Index P, Eigen::Index R, Eigen::Index samples)
+        : XU(Eigen::MatrixXd::Zero(P * R, samples)),
+          UU(Eigen::MatrixXd::Zero(samples, R * (R + 1) / 2)),
+          Uz(Eigen::MatrixXd::Zero(R, samples)) {}
+  };
+
+  void Fill(std::size_t k, Eigen::Index at, Eigen::Index R, const Eigen::VectorXd& z,
+            std::ptrdiff_t first_of_z, Products& products) const {
+    const auto P = rows_.X.cols();
+    const int count = rows_.Rows(k), first = rows_.first_row[k];
+    const Eigen::MatrixXd& U = rows_.units[k];
+    const Eigen::MatrixXd UU = U.transpose() * U;
+    const Eigen::MatrixXd XU = rows_.X.middleRows(first, count).transpose() * U;
+    const Eigen::VectorXd Uz = U.transpose() * z.segment(first - first_of_z, count);
+    for (int a = 0; a < count; ++a) {
+      const Eigen::Index row = row_place_[rows_.rows[k][a]];
+      products.XU.block(row * P, at, P, 1) = XU.col(a);
+      products.Uz(row, at) = Uz[a];
+      for (int b = a; b < count; ++b)
+        products.UU(at, PairOf(row, row_place_[rows_.rows[k][b]], R)) = UU(a, b);
+    }
+  }
+
   /// A row's generic column is what an error in the row becomes, times the basis: sums over samples
   /// of products of the one and products of the other, as matrix products.
   void AddGeneric(std::size_t begin, std::size_t end, const Eigen::VectorXd& z,
                   NormalSums& sums) const {
     const auto P = rows_.X.cols(), J = basis_.cols(), R = (sums.g.size() - P) / J;
-    const auto n = Eigen::Index(end - begin);
-    const Eigen::MatrixXd phi = basis_.middleRows(Eigen::Index(begin), n);
-    Eigen::MatrixXd phi_phi(n, J * J);
-    for (Eigen::Index j = 0; j < J; ++j)
-      phi_phi.middleCols(j * J, J) = phi.array().colwise() * phi.col(j).array();
-    Eigen::MatrixXd XU = Eigen::MatrixXd::Zero(P * R, n), UU = Eigen::MatrixXd::Zero(R * R, n);
-    Eigen::MatrixXd Uz = Eigen::MatrixXd::Zero(R, n);
-    for (std::size_t k = begin; k < end; ++k) {
-      const int count = rows_.Rows(k), first = rows_.first_row[k];
-      const auto at = Eigen::Index(k - begin);
-      const Eigen::MatrixXd& U = rows_.units[k];
-      const Eigen::MatrixXd UU_k = U.transpose() * U;
-      const Eigen::MatrixXd XU_k = rows_.X.middleRows(first, count).transpose() * U;
-      const Eigen::VectorXd Uz_k = U.transpose() * z.segment(first - rows_.first_row[begin], count);
-      for (int a = 0; a < count; ++a) {
-        const Eigen::Index row = row_place_[rows_.rows[k][a]];
-        XU.block(row * P, at, P, 1) = XU_k.col(a);
-        Uz(row, at) = Uz_k[a];
-        for (int b = a; b < count; ++b) UU(row * R + row_place_[rows_.rows[k][b]], at) = UU_k(a, b);
-      }
+    Eigen::MatrixXd XU_phi = Eigen::MatrixXd::Zero(P * R, J);
+    Eigen::MatrixXd phi_UU = Eigen::MatrixXd::Zero(basis_pairs_.cols(), R * (R + 1) / 2);
+    Eigen::MatrixXd Uz_phi = Eigen::MatrixXd::Zero(R, J);
+    for (std::size_t from = begin; from < end; from += kStretch) {
+      const auto n = Eigen::Index(std::min(kStretch, end - from));
+      Products products(P, R, n);
+      for (Eigen::Index at = 0; at < n; ++at)
+        Fill(from + std::size_t(at), at, R, z, rows_.first_row[begin], products);
+      const auto phi = basis_.middleRows(Eigen::Index(from), n);
+      AddProduct(products.XU, phi, XU_phi);
+      AddTransposedProduct(basis_pairs_.middleRows(Eigen::Index(from), n), products.UU, phi_UU);
+      Uz_phi.noalias() += products.Uz * phi;
     }
-    const Eigen::MatrixXd XU_phi = XU * phi, UU_phi = UU * phi_phi, Uz_phi = Uz * phi;
     for (Eigen::Index a = 0; a < R; ++a) {
       sums.g.segment(P + a * J, J) = Uz_phi.row(a);
       sums.H.block(0, P + a * J, P, J) = XU_phi.middleRows(a * P, P);
       for (Eigen::Index b = a; b < R; ++b)
-        sums.H.block(P + a * J, P + b * J, J, J) = UU_phi.row(a * R + b).reshaped(J, J);
+        for (Eigen::Index i = 0; i < J; ++i) {
+          const auto pairs = phi_UU.col(PairOf(a, b, R)).segment(PairOf(i, i, J), J - i);
+          sums.H.col(P + b * J + i).segment(P + a * J + i, J - i) = pairs;
+          sums.H.row(P + a * J + i).segment(P + b * J + i, J - i) = pairs;
+        }
     }
   }
 
   const Eigen::VectorXd& theta_;
   const WhitenedRows& rows_;
   const Eigen::MatrixXd& basis_;
+  const Eigen::MatrixXd basis_pairs_;
   const std::vector<int>& row_place_;
 };
 

@@ -19,10 +19,6 @@ std::string Effect::WhatIsWrong(const std::vector<std::vector<double>>& values) 
   return "";
 }
 
-Eigen::Vector2d Effect::ScanShapes(double /*value*/, const Instant& /*now*/) const {
-  return Eigen::Vector2d::Zero();
-}
-
 std::vector<ReportedParameter> DirectEffect::Report(const Eigen::VectorXd& theta,
                                                     const Eigen::MatrixXd& covariance) const {
   std::vector<ReportedParameter> reported;

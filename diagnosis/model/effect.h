@@ -105,8 +105,9 @@ class Effect {
 
   /// Returns the parameter to scan; empty for most effects.
   virtual std::optional<ScannedParameter> Scanned(const SampleSet&) const { return {}; }
-  /// Returns the two shapes at `now`, by which amplitudes move the scanned inputs.
-  virtual Eigen::Vector2d ScanShapes(double value, const Instant& now) const;
+  /// Returns the phase at `now` per unit of the scanned parameter: the inputs are moved by its sine
+  /// and its cosine, times amplitudes.
+  virtual double ScannedPhase(const Instant& /*now*/) const { return 0.0; }
   /// Returns the value about which the scanned parameter is fitted.
   virtual double ScanCentre() const { return 0.0; }
   virtual void SetScanCentre(double /*value*/) {}

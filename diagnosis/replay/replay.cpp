@@ -48,11 +48,18 @@ bool Replay::EvaluateBy(const Eigen::VectorXd& theta, const std::function<void()
     const double change = ApplyEffects(theta);
     if (pass > 0 && change < kSameFriction) break;
     if (pass == 0)
-      for (ReplayedSample& sample : replayed_) sample.stale = true;
+      for (ReplayedSample& sample : replayed_)
+        sample.stale = !samples_.has_load || !IsSolved(sample);
     Retime();
     solve();
   }
   return Finish();
+}
+
+/// Whether the sample's rod is that of its inputs and force: where only frequencies moved, it is.
+bool Replay::IsSolved(const ReplayedSample& sample) {
+  return sample.ok && sample.solved_inputs == sample.inputs &&
+         sample.solved_f_tip_N == sample.f_tip_N;
 }
 
 bool Replay::Finish() {
@@ -128,6 +135,8 @@ void Replay::SolveRods() {
       ReplayedSample& sample = replayed_[k];
       if (!sample.stale) continue;
       sample.solved = SolveSample(samples_, k, sample.inputs, sample.f_tip_N, solver);
+      sample.solved_inputs = sample.inputs;
+      sample.solved_f_tip_N = sample.f_tip_N;
       sample.ok = sample.solved.ok;
     }
   });

@@ -18,9 +18,12 @@ namespace flextip::diagnosis {
 /// One sample after a replay.
 struct ReplayedSample {
   bool ok = false;    ///< the rod has an equilibrium
-  bool stale = true;  ///< its inputs are not those it was solved with
+  bool stale = true;  ///< is to be solved
   SolvedSample solved;
   SampleInputs inputs = SampleInputs::Zero();
+  /// With a known load: the inputs and the force of `solved`.
+  SampleInputs solved_inputs = SampleInputs::Zero();
+  Eigen::Vector3d solved_f_tip_N = Eigen::Vector3d::Zero();
   std::vector<InputChange::Column> columns;  ///< of the inputs, by parameter
   Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
   DiagnosisSample measured;  ///< what the sensors say of this time, latency taken off
@@ -134,6 +137,7 @@ class Replay {
   using InputNoise = Eigen::Matrix<double, row::kCount, 6>;
   struct Statistics;  // covariance of a sample's rows and what the force has to do with them
 
+  static bool IsSolved(const ReplayedSample& sample);
   bool Finish();
   double FreePortPlace(std::size_t k) const;
   double SmoothPortPlace(std::size_t k) const;

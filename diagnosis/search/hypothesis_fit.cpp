@@ -42,14 +42,12 @@ Eigen::VectorXd Plausible(Eigen::VectorXd mode, const ParameterLayout& layout) {
 /// Scans the parameters that call for it, but those of effects that are fitted anyway. Returns
 /// whether there was any.
 bool Scan(Replay& replay, ParameterLayout& layout, const Hypothesis& hypothesis) {
-  bool any = false;
-  for (const int block : layout.ScannedBlocks()) {
-    const auto& present = hypothesis.effects;
-    if (std::find(present.begin(), present.end(), block) != present.end()) continue;
-    ScanAgain(replay, layout, block);
-    any = true;
-  }
-  return any;
+  std::vector<int> blocks = layout.ScannedBlocks();
+  std::erase_if(blocks, [&](int block) {
+    return std::ranges::find(hypothesis.effects, block) != hypothesis.effects.end();
+  });
+  ScanAgain(replay, layout, blocks);
+  return !blocks.empty();
 }
 
 }  // namespace

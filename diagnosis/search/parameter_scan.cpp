@@ -5,52 +5,25 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <span>
 
 #include "core/check.h"
 #include "core/linear_algebra.h"
+#include "core/products/products.h"
 
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kStep = 0.25;      // of the resolution
-constexpr double kSameValue = 0.6;  // of the resolution
-constexpr int kMostExact = 128;     // of more only those that look best at first sight
-constexpr int kAtATime = 32;        // values, for the sake of large products
+constexpr double kStep = 0.25;        // of the resolution
+constexpr double kSameValue = 0.6;    // of the resolution
+constexpr int kMostExact = 128;       // of more only those that look best at first sight
+constexpr std::size_t kAtATime = 32;  // values, for the sake of large products
 
 ScannedParameter ScannedOf(const Replay& replay, int block) {
   const auto scanned = replay.Layout().Blocks()[block].effect->Scanned(replay.Set());
   FLEXTIP_CHECK(scanned.has_value(), "the effect has a scanned parameter");
   return *scanned;
-}
-
-/// Returns the whitened rows' derivatives by the scanned inputs (a column each).
-Eigen::MatrixXd ByInputs(const Replay& replay, const WhitenedRows& rows,
-                         const ScannedParameter& scanned) {
-  Eigen::MatrixXd by_inputs = Eigen::MatrixXd::Zero(rows.e.size(), scanned.inputs);
-  for (std::size_t k = 0; k < replay.Samples().size(); ++k) {
-    for (int i = 0; i < rows.Rows(k); ++i) {
-      const int r = rows.rows[k][i];
-      const double sd = replay.RowNoise(k)[r];
-      by_inputs.middleRows(rows.first_row[k], rows.Rows(k)) +=
-          rows.units[k].col(i) *
-          replay.Samples()[k].compared.by_inputs.block(r, scanned.first_input, 1, scanned.inputs) /
-          sd;
-    }
-  }
-  return by_inputs;
-}
-
-/// The lower triangle of X^T X; stretches of rows in parallel.
-Eigen::MatrixXd Squares(const Eigen::MatrixXd& X) {
-  constexpr Eigen::Index kParts = 8;
-  std::vector<Eigen::MatrixXd> parts(kParts, Eigen::MatrixXd::Zero(X.cols(), X.cols()));
-  tbb::parallel_for(Eigen::Index{0}, kParts, [&](Eigen::Index part) {
-    const Eigen::Index from = X.rows() * part / kParts, to = X.rows() * (part + 1) / kParts;
-    parts[std::size_t(part)].selfadjointView<Eigen::Lower>().rankUpdate(
-        X.middleRows(from, to - from).transpose());
-  });
-  for (std::size_t part = 1; part < parts.size(); ++part) parts[0] += parts[part];
-  return parts[0];
 }
 
 /// The products of each sample's rows, a column a sample: what a shape, which is one number a
@@ -59,39 +32,37 @@ struct SampleProducts {
   Eigen::MatrixXd with_X;     ///< B^T X, entry by entry
   Eigen::MatrixXd with_self;  ///< B^T B
   Eigen::MatrixXd with_left;  ///< B^T of what is left
-
-  SampleProducts(const WhitenedRows& rows, const Eigen::MatrixXd& B, const Eigen::MatrixXd& X,
-                 const Eigen::VectorXd& left, std::size_t samples) {
-    const Eigen::Index inputs = B.cols(), n = static_cast<Eigen::Index>(samples);
-    with_X.resize(inputs * X.cols(), n);
-    with_self.resize(inputs * inputs, n);
-    with_left.resize(inputs, n);
-    tbb::parallel_for(Eigen::Index{0}, n, [&](Eigen::Index k) {
-      const auto at = static_cast<std::size_t>(k);
-      const Eigen::MatrixXd b = B.middleRows(rows.first_row[at], rows.Rows(at));
-      const auto x = X.middleRows(rows.first_row[at], rows.Rows(at));
-      with_X.col(k) = (b.transpose() * x).reshaped();
-      with_self.col(k) = (b.transpose() * b).reshaped();
-      with_left.col(k) = b.transpose() * left.segment(rows.first_row[at], rows.Rows(at));
-    });
-  }
 };
+
+/// The lower triangle of X^T X; stretches of rows in parallel.
+Eigen::MatrixXd Squares(const RowMajorMatrix& X) {
+  constexpr Eigen::Index kParts = 8;
+  std::vector<Eigen::MatrixXd> parts(kParts, Eigen::MatrixXd::Zero(X.cols(), X.cols()));
+  tbb::parallel_for(Eigen::Index{0}, kParts, [&](Eigen::Index part) {
+    const Eigen::Index from = X.rows() * part / kParts, to = X.rows() * (part + 1) / kParts;
+    AddSquares(X.middleRows(from, to - from), parts[std::size_t(part)]);
+  });
+  for (std::size_t part = 1; part < parts.size(); ++part) parts[0] += parts[part];
+  return parts[0].transpose();
+}
 
 /// The fall of chi-squared by pairs of shapes (a row a sample; first all first ones, then all
 /// second ones) of each input. Many pairs at a time: the products are large. Without `llt`, of
 /// what the other parameters may explain, the shapes count as apart from all of that: a lower
-/// bound.
+/// bound. `sd` of the other parameters.
 std::vector<double> Scores(const SampleProducts& products, const Eigen::MatrixXd& shapes,
-                           const Llt<Eigen::Dynamic>* llt) {
+                           const Eigen::VectorXd& sd, const Llt<Eigen::Dynamic>* llt) {
   const Eigen::Index inputs = products.with_left.rows(), pairs = shapes.cols() / 2;
-  const Eigen::Index parameters = products.with_X.rows() / inputs;
   const auto first = shapes.leftCols(pairs), second = shapes.rightCols(pairs);
   Eigen::MatrixXd squares(shapes.rows(), 3 * pairs);
   squares << first.cwiseAbs2(), first.cwiseProduct(second), second.cwiseAbs2();
   const Eigen::MatrixXd by_left = products.with_left * shapes;
   const Eigen::MatrixXd by_self = products.with_self * squares;
   Eigen::MatrixXd by_X;
-  if (llt != nullptr) by_X = products.with_X * shapes;
+  if (llt != nullptr) {
+    by_X = Eigen::MatrixXd::Zero(products.with_X.rows(), shapes.cols());
+    AddProduct(products.with_X, shapes, by_X);
+  }
   std::vector<double> scores;
   for (Eigen::Index c = 0; c < pairs; ++c) {
     const auto self = [&](Eigen::Index which) {
@@ -100,10 +71,11 @@ std::vector<double> Scores(const SampleProducts& products, const Eigen::MatrixXd
     Eigen::MatrixXd A(2 * inputs, 2 * inputs);
     A << self(0), self(1), self(1).transpose(), self(2);
     if (llt != nullptr) {
-      Eigen::MatrixXd XB(parameters, 2 * inputs);
-      XB << by_X.col(c).reshaped(inputs, parameters).transpose(),
-          by_X.col(pairs + c).reshaped(inputs, parameters).transpose();
-      A -= XB.transpose() * llt->Solve(XB);
+      Eigen::MatrixXd XB(sd.size(), 2 * inputs);
+      XB << by_X.col(c).reshaped(inputs, sd.size()).transpose(),
+          by_X.col(pairs + c).reshaped(inputs, sd.size()).transpose();
+      const Eigen::MatrixXd apart = llt->SolveL(Eigen::MatrixXd(sd.asDiagonal() * XB));
+      A.noalias() -= apart.transpose() * apart;
     }
     A.diagonal().array() += 1e-9 * A.trace() + 1e-12;
     Eigen::VectorXd b(2 * inputs);
@@ -113,42 +85,123 @@ std::vector<double> Scores(const SampleProducts& products, const Eigen::MatrixXd
   return scores;
 }
 
-}  // namespace
+/// Sine and cosine of the phases of each sample (a row) at values of a scanned parameter: first all
+/// sines, then all cosines. Values one step apart follow from each other by a turn.
+class Shapes {
+ public:
+  Shapes(const Effect& effect, const SampleSet& set, double lowest, double step)
+      : phase_(Eigen::Index(set.samples.size())), lowest_(lowest), step_(step) {
+    for (std::size_t k = 0; k < set.samples.size(); ++k)
+      phase_[Eigen::Index(k)] = effect.ScannedPhase({set, k, set.samples[k].t_s});
+    turn_cos_ = (step_ * phase_).cos();
+    turn_sin_ = (step_ * phase_).sin();
+  }
 
-double BestScannedValue(const Replay& replay, int block) {
-  const ScannedParameter scanned = ScannedOf(replay, block);
-  const auto& own = replay.Layout().Blocks()[block];
-  const WhitenedRows rows = replay.Whiten();
-  const SampleSet& set = replay.Set();
-  const Eigen::MatrixXd by_inputs = ByInputs(replay, rows, scanned);
+  /// At `lowest` plus so many steps each.
+  Eigen::MatrixXd At(std::span<const int> steps) const {
+    const auto pairs = Eigen::Index(steps.size());
+    Eigen::MatrixXd shapes(phase_.size(), 2 * pairs);
+    for (Eigen::Index c = 0; c < pairs; ++c) {
+      auto sine = shapes.col(c).array(), cosine = shapes.col(pairs + c).array();
+      const int at = steps[std::size_t(c)];
+      if (c > 0 && at == steps[std::size_t(c - 1)] + 1) {
+        const auto sine_before = shapes.col(c - 1).array();
+        const auto cosine_before = shapes.col(pairs + c - 1).array();
+        sine = sine_before * turn_cos_ + cosine_before * turn_sin_;
+        cosine = cosine_before * turn_cos_ - sine_before * turn_sin_;
+      } else {
+        const double value = lowest_ + at * step_;
+        sine = (value * phase_).sin();
+        cosine = (value * phase_).cos();
+      }
+    }
+    return shapes;
+  }
+
+ private:
+  Eigen::ArrayXd phase_;  // a unit of the parameter turns by so much
+  double lowest_, step_;
+  Eigen::ArrayXd turn_cos_, turn_sin_;
+};
+
+/// What all scans from where a replay stands have in common.
+class Scan {
+ public:
+  explicit Scan(const Replay& replay)
+      : replay_(replay),
+        rows_(replay.Whiten()),
+        H_(Squares(rows_.X)),
+        z_(rows_.e + rows_.X * replay.Theta()),
+        Xz_(rows_.X.transpose() * z_) {}
+
+  /// Returns the best value for block `block`.
+  double Best(int block) const;
+
+ private:
+  /// Returns the whitened rows' derivatives by the scanned inputs (a column each).
+  Eigen::MatrixXd ByInputs(const ScannedParameter& scanned) const;
+  SampleProducts ProductsWith(const Eigen::MatrixXd& B, const Eigen::VectorXd& left) const;
+
+  const Replay& replay_;
+  WhitenedRows rows_;
+  Eigen::MatrixXd H_;  // the lower triangle of X^T X
+  Eigen::VectorXd z_, Xz_;
+};
+
+Eigen::MatrixXd Scan::ByInputs(const ScannedParameter& scanned) const {
+  Eigen::MatrixXd by_inputs = Eigen::MatrixXd::Zero(rows_.e.size(), scanned.inputs);
+  for (std::size_t k = 0; k < replay_.Samples().size(); ++k) {
+    const Rows sd = replay_.RowNoise(k);
+    for (int i = 0; i < rows_.Rows(k); ++i) {
+      const int r = rows_.rows[k][i];
+      by_inputs.middleRows(rows_.first_row[k], rows_.Rows(k)) +=
+          rows_.units[k].col(i) *
+          replay_.Samples()[k].compared.by_inputs.block(r, scanned.first_input, 1, scanned.inputs) /
+          sd[r];
+    }
+  }
+  return by_inputs;
+}
+
+SampleProducts Scan::ProductsWith(const Eigen::MatrixXd& B, const Eigen::VectorXd& left) const {
+  const auto n = Eigen::Index(replay_.Samples().size());
+  const Eigen::Index inputs = B.cols(), P = rows_.X.cols();
+  SampleProducts products{Eigen::MatrixXd(inputs * P, n), Eigen::MatrixXd(inputs * inputs, n),
+                          Eigen::MatrixXd(inputs, n)};
+  tbb::parallel_for(Eigen::Index{0}, n, [&](Eigen::Index k) {
+    const int first = rows_.first_row[std::size_t(k)], count = rows_.Rows(std::size_t(k));
+    const Eigen::MatrixXd b = B.middleRows(first, count);
+    products.with_X.col(k) = (b.transpose() * rows_.X.middleRows(first, count)).reshaped();
+    products.with_self.col(k) = (b.transpose() * b).reshaped();
+    products.with_left.col(k) = b.transpose() * left.segment(first, count);
+  });
+  return products;
+}
+
+double Scan::Best(int block) const {
+  const ScannedParameter scanned = ScannedOf(replay_, block);
+  const auto& own = replay_.Layout().Blocks()[block];
   // The effect's own parameters at an earlier value are to be found again.
-  Eigen::VectorXd sd = replay.Layout().Tolerances();
+  Eigen::VectorXd sd = replay_.Layout().Tolerances();
   sd.segment(own.first, own.size).setZero();
-  const Eigen::MatrixXd X = rows.X * sd.asDiagonal();
-  Eigen::MatrixXd M = Squares(X);
+  Eigen::MatrixXd M = sd.asDiagonal() * H_ * sd.asDiagonal();
   M.diagonal().array() += 1.0;
   const Llt llt(M);
-  const Eigen::VectorXd z = rows.e + rows.X * replay.Theta();
-  const Eigen::VectorXd left = z - X * llt.Solve(X.transpose() * z);
+  const Eigen::VectorXd others =
+      sd.asDiagonal() * Eigen::VectorXd(llt.Solve(Eigen::VectorXd(sd.asDiagonal() * Xz_)));
+  const SampleProducts products = ProductsWith(ByInputs(scanned), z_ - rows_.X * others);
 
   const double step = kStep * scanned.resolution;
   const int count = std::max(2, int((scanned.highest - scanned.lowest) / step));
-  const SampleProducts products(rows, by_inputs, X, left, set.samples.size());
-  const auto scores = [&](const std::vector<int>& candidates, const Llt<Eigen::Dynamic>* others) {
+  const Shapes shapes(*own.effect, replay_.Set(), scanned.lowest, step);
+  const auto scores = [&](std::span<const int> candidates, const Llt<Eigen::Dynamic>* of_others) {
     std::vector<double> found(candidates.size(), 0.0);
-    const int wanted = static_cast<int>(candidates.size());
-    tbb::parallel_for(0, (wanted + kAtATime - 1) / kAtATime, [&](int chunk) {
-      const int from = chunk * kAtATime, pairs = std::min(kAtATime, wanted - from);
-      Eigen::MatrixXd shapes(static_cast<Eigen::Index>(set.samples.size()), 2 * pairs);
-      for (int c = 0; c < pairs; ++c) {
-        const double value = scanned.lowest + candidates[from + c] * step;
-        for (std::size_t k = 0; k < set.samples.size(); ++k) {
-          const Eigen::Vector2d both = own.effect->ScanShapes(value, {set, k, set.samples[k].t_s});
-          shapes(static_cast<Eigen::Index>(k), c) = both[0];
-          shapes(static_cast<Eigen::Index>(k), pairs + c) = both[1];
-        }
-      }
-      std::ranges::copy(Scores(products, shapes, others), found.begin() + from);
+    const std::size_t wanted = candidates.size();
+    tbb::parallel_for(std::size_t{0}, (wanted + kAtATime - 1) / kAtATime, [&](std::size_t chunk) {
+      const std::size_t from = chunk * kAtATime;
+      const auto some = candidates.subspan(from, std::min(kAtATime, wanted - from));
+      std::ranges::copy(Scores(products, shapes.At(some), sd, of_others),
+                        found.begin() + std::ptrdiff_t(from));
     });
     return found;
   };
@@ -158,22 +211,30 @@ double BestScannedValue(const Replay& replay, int block) {
     const std::vector<double> apart = scores(candidates, nullptr);
     std::ranges::stable_sort(candidates, [&](int a, int b) { return apart[a] > apart[b]; });
     candidates.resize(kMostExact);
+    std::ranges::sort(candidates);
   }
   const std::vector<double> score = scores(candidates, &llt);
   const auto best = std::max_element(score.begin(), score.end()) - score.begin();
   return scanned.lowest + candidates[best] * step;
 }
 
-void ScanAgain(Replay& replay, ParameterLayout& layout, int block) {
-  const ScannedParameter scanned = ScannedOf(replay, block);
-  const auto& own = layout.Blocks()[block];
-  const double found = BestScannedValue(replay, block);
-  Eigen::VectorXd theta = replay.Theta();
-  const double now = own.effect->ScanCentre() + theta[own.first + scanned.correction];
-  if (std::abs(found - now) < kSameValue * scanned.resolution) return;
-  layout.MutableEffect(block).SetScanCentre(found);
-  theta.segment(own.first, own.size).setZero();
-  replay.Evaluate(theta);
+}  // namespace
+
+void ScanAgain(Replay& replay, ParameterLayout& layout, const std::vector<int>& blocks) {
+  std::optional<Scan> scan;
+  for (const int block : blocks) {
+    if (!scan) scan.emplace(replay);
+    const ScannedParameter scanned = ScannedOf(replay, block);
+    const auto& own = layout.Blocks()[block];
+    const double found = scan->Best(block);
+    Eigen::VectorXd theta = replay.Theta();
+    const double now = own.effect->ScanCentre() + theta[own.first + scanned.correction];
+    if (std::abs(found - now) < kSameValue * scanned.resolution) continue;
+    layout.MutableEffect(block).SetScanCentre(found);
+    theta.segment(own.first, own.size).setZero();
+    replay.Evaluate(theta);
+    scan.reset();
+  }
 }
 
 std::vector<double> ScanCentres(const ParameterLayout& layout) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "diagnosis/evidence/generic_basis.h"
@@ -39,8 +40,9 @@ class Search {
     LeaveOutFarSamples();
     Temper();
     if (tempered_by_ == 1.0) replay_.FixNoiseModel();
-    for (const int block : layout_.ScannedBlocks()) ScanAgain(replay_, layout_, block);
+    ScanAgain(replay_, layout_, layout_.ScannedBlocks());
     base_ = PlaceOf(replay_);
+    base_state_ = replay_.Save();
     basis_ = GenericBasis(replay_);
     LinearProblem base = ProblemHere(replay_, basis_, options_);
     // The same for all hypotheses: what is large in the base's residual may be missed by more.
@@ -50,6 +52,7 @@ class Search {
     const Weighing first = Weigh(replay_, std::move(base),
                                  KnownHypotheses(layout_.EffectCount(), 1), options_, at_first);
     FitLeadersFromBase(first);
+    base_state_.reset();
     FixMeasure(base_size);
     FitRivals();
     FitPartsOfBest();
@@ -131,8 +134,15 @@ class Search {
     selection_.far_samples = int(far.size());
   }
 
+  /// Until the measure changes, without solving anything.
+  void GoToBase() {
+    if (!base_state_) return GoTo(replay_, layout_, base_);
+    SetScanCentres(layout_, base_.scan_centres);
+    replay_.Restore(*base_state_);
+  }
+
   void FitFromBase(const Hypothesis& hypothesis) {
-    GoTo(replay_, layout_, base_);
+    GoToBase();
     tried_.Keep(FitHypothesis(replay_, layout_, hypothesis, options_,
                               {.basis = basis_,
                                .may_miss = may_miss_,
@@ -252,6 +262,7 @@ class Search {
   ParameterLayout& layout_;
   const SelectionOptions& options_;
   Place base_;
+  std::optional<Replay::State> base_state_;
   Eigen::MatrixXd basis_;
   Rows may_miss_ = Rows::Zero();
   double tempered_by_ = 1.0;  // noise taken over the stated noise, while leaders are fitted

@@ -45,8 +45,9 @@ bool MoveMember(Member& member, const Eigen::VectorXd& theta, const SelectionOpt
 }
 
 void ScanMember(Member& member, Replay& replay, const Fleet& fleet, bool shared_too) {
-  for (const int block : member.layout.ScannedBlocks())
-    if (shared_too || fleet.SharedOf(block).empty()) ScanAgain(replay, member.layout, block);
+  std::vector<int> blocks = member.layout.ScannedBlocks();
+  if (!shared_too) std::erase_if(blocks, [&](int b) { return !fleet.SharedOf(b).empty(); });
+  ScanAgain(replay, member.layout, blocks);
 }
 
 /// What all share is about the same centre.

@@ -136,7 +136,8 @@ class Search {
       if (scored[i].log_posterior < best - clearly) break;
       FitFrom(base, scored[i].weighed.hypothesis);
     }
-    if (Tried({}) == nullptr) FitFrom(base, {});
+    // Where it is clearly behind, `none` is fitted as a part of the best.
+    if (nothing.log_posterior > best - clearly && Tried({}) == nullptr) FitFrom(base, {});
   }
 
   void FitFrom(const JointPlace& place, const JointHypothesis& h) {

@@ -14,10 +14,12 @@ namespace {
 constexpr double kDuration_s = 20.0;
 
 double FoundIn(const SampleSet& samples) {
-  const ParameterLayout layout(samples, MakeCatalogue(samples));
+  ParameterLayout layout(samples, MakeCatalogue(samples));
   Replay replay(samples, layout);
   EXPECT_TRUE(replay.Evaluate(Eigen::VectorXd::Zero(layout.Size())));
-  return BestScannedValue(replay, layout.Find("port_motion"));
+  const int block = layout.Find("port_motion");
+  ScanAgain(replay, layout, {block});
+  return layout.Blocks()[block].effect->ScanCentre();
 }
 
 class Breathing : public testing::TestWithParam<std::uint64_t> {};

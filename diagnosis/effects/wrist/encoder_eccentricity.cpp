@@ -82,10 +82,8 @@ class EncoderEccentricity : public Effect {
                             .first_input = sample_input::kWrist,
                             .inputs = 3};
   }
-  Eigen::Vector2d ScanShapes(double waves_1_m, const Instant& now) const override {
-    const double angle =
-        kTwoPi * waves_1_m * (now.samples.p_RP - now.samples.samples[now.k].p_RW).norm();
-    return {std::sin(angle), std::cos(angle)};
+  double ScannedPhase(const Instant& now) const override {
+    return kTwoPi * (now.samples.p_RP - now.samples.samples[now.k].p_RW).norm();
   }
   double ScanCentre() const override { return waves_1_m_; }
   void SetScanCentre(double waves_1_m) override { waves_1_m_ = waves_1_m; }
