@@ -50,6 +50,20 @@ class Ldlt {
   Eigen::LDLT<Matrix> ldlt_;
 };
 
+/// The decomposition of a matrix of any size, by the processor's wide vectors where it has them.
+class LargeLlt {
+ public:
+  LargeLlt() = default;
+  explicit LargeLlt(const Eigen::MatrixXd& A);
+  const Eigen::MatrixXd& matrixLLT() const { return L_; }
+  Eigen::Index rows() const { return L_.rows(); }
+  Eigen::ComputationInfo info() const { return info_; }
+
+ private:
+  Eigen::MatrixXd L_;  // above the diagonal A is left
+  Eigen::ComputationInfo info_ = Eigen::Success;
+};
+
 /// L L^T = A for a symmetric, positive definite A (N x N; its lower triangle is read).
 template <int N>
 class Llt {
@@ -90,7 +104,7 @@ class Llt {
   double LogDeterminant() const;
   /// Tells whether A was positive definite.
   bool Succeeded() const;
-  /// Returns an estimate of the reciprocal of A's condition number (1-norm).
+  /// Returns the reciprocal of A's condition number (1-norm).
   double ReciprocalCondition() const requires(N == Eigen::Dynamic);
 
  private:
@@ -98,7 +112,7 @@ class Llt {
   void SolveLInPlace(double* columns, Eigen::Index count) const;
   void SolveLTransposedInPlace(double* columns, Eigen::Index count) const;
 
-  Eigen::LLT<Matrix> llt_;
+  std::conditional_t<N == Eigen::Dynamic, LargeLlt, Eigen::LLT<Matrix>> llt_;
 };
 
 /// P^-1 L U = A with partial pivoting, for an invertible A (N x N).

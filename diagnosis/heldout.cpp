@@ -14,11 +14,10 @@ namespace flextip::diagnosis {
 namespace {
 
 NormalSums WithoutFold(const LinearProblem& problem, int fold, int folds) {
-  NormalSums train(problem.Size());
-  if (problem.known.g.size() > 0) train.Add(problem.known);
+  NormalSums train = problem.total;
   const int blocks = int(problem.blocks.size());
   for (int b = 0; b < blocks; ++b)
-    if (b * folds / blocks != fold) train.Add(problem.blocks[b]);
+    if (b * folds / blocks == fold) train.Add(problem.blocks[b], -1.0);
   return train;
 }
 

@@ -1,9 +1,12 @@
-#include <algorithm>
-
 #include "core/linear_algebra.h"
 #include "core/linear_algebra/columns.h"
+#include "core/products/kernels.h"
 
 namespace flextip {
+
+LargeLlt::LargeLlt(const Eigen::MatrixXd& A) : L_(A) {
+  if (!products::ForThisProcessor().cholesky(L_.rows(), L_.data())) info_ = Eigen::NumericalIssue;
+}
 
 template <int N>
 Llt<N>::Llt(const std::type_identity_t<Matrix>& A) : llt_(A) {}
@@ -16,51 +19,40 @@ void Llt<N>::SolveInPlace(double* columns, Eigen::Index count) const {
 
 template <int N>
 void Llt<N>::SolveLInPlace(double* columns, Eigen::Index count) const {
-  ForColumns<N>(columns, llt_.rows(), count, [&](auto& x) { llt_.matrixL().solveInPlace(x); });
+  if constexpr (N == Eigen::Dynamic) {
+    products::ForThisProcessor().solve_lower(llt_.rows(), count, llt_.matrixLLT().data(), columns);
+  } else {
+    ForColumns<N>(columns, N, count, [&](auto& x) { llt_.matrixL().solveInPlace(x); });
+  }
 }
 
 template <int N>
 void Llt<N>::SolveLTransposedInPlace(double* columns, Eigen::Index count) const {
-  ForColumns<N>(columns, llt_.rows(), count, [&](auto& x) { llt_.matrixU().solveInPlace(x); });
-}
-
-namespace {
-
-/// Returns A^-1 for A = L L^T by blocks of columns, below the diagonal alone: two thirds of n^3
-/// operations in place of two n^3 by all columns of the identity.
-Eigen::MatrixXd InverseByBlocks(const Eigen::MatrixXd& L) {
-  constexpr Eigen::Index kBlock = 32;
-  const Eigen::Index n = L.rows();
-  Eigen::MatrixXd W = Eigen::MatrixXd::Identity(n, n);  // to be L^-1
-  for (Eigen::Index j = 0; j < n; j += kBlock) {
-    auto columns = W.block(j, j, n - j, std::min(kBlock, n - j));
-    L.bottomRightCorner(n - j, n - j).triangularView<Eigen::Lower>().solveInPlace(columns);
+  if constexpr (N == Eigen::Dynamic) {
+    products::ForThisProcessor().solve_transposed(llt_.rows(), count, llt_.matrixLLT().data(),
+                                                  columns);
+  } else {
+    ForColumns<N>(columns, N, count, [&](auto& x) { llt_.matrixU().solveInPlace(x); });
   }
-  Eigen::MatrixXd inverse(n, n);
-  for (Eigen::Index j = 0; j < n; j += kBlock) {
-    const Eigen::Index size = std::min(kBlock, n - j);
-    inverse.block(j, j, n - j, size).noalias() =
-        W.bottomRightCorner(n - j, n - j).transpose().triangularView<Eigen::Upper>() *
-        W.block(j, j, n - j, size);
-    inverse.block(j, j + size, size, n - j - size) =
-        inverse.block(j + size, j, n - j - size, size).transpose();
-  }
-  return inverse;
 }
-
-}  // namespace
 
 template <int N>
 auto Llt<N>::Inverse() const -> Matrix {
-  if constexpr (N == Eigen::Dynamic) return InverseByBlocks(llt_.matrixLLT());
-  Matrix inverse = Matrix::Identity(llt_.rows(), llt_.cols());
-  SolveInPlace(inverse.data(), inverse.cols());
-  return inverse;
+  const Eigen::Index n = llt_.rows();
+  if constexpr (N == Eigen::Dynamic) {
+    Matrix inverse(n, n);
+    products::ForThisProcessor().inverse(n, llt_.matrixLLT().data(), inverse.data());
+    return inverse;
+  } else {
+    Matrix inverse = Matrix::Identity();
+    SolveInPlace(inverse.data(), n);
+    return inverse;
+  }
 }
 
 template <int N>
 auto Llt<N>::L() const -> Matrix {
-  return llt_.matrixL();
+  return llt_.matrixLLT().template triangularView<Eigen::Lower>();
 }
 
 template <int N>
@@ -75,7 +67,9 @@ bool Llt<N>::Succeeded() const {
 
 template <int N>
 double Llt<N>::ReciprocalCondition() const requires(N == Eigen::Dynamic) {
-  return llt_.rcond();
+  const auto norm = [](const Matrix& A) { return A.cwiseAbs().colwise().sum().maxCoeff(); };
+  const Matrix lower = L();
+  return 1.0 / (norm(lower * lower.transpose()) * norm(Inverse()));
 }
 
 template class Llt<2>;

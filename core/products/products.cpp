@@ -6,30 +6,24 @@
 namespace flextip {
 namespace products {
 
-Kernels Narrow() { return {Product, Transposed, Squares}; }
+Kernels Narrow() { return kKernels; }
 
-}  // namespace products
-
-namespace {
-
-const products::Kernels& ForThisProcessor() {
+const Kernels& ForThisProcessor() {
 #ifdef FLEXTIP_HAS_WIDE_PRODUCTS
-  static const products::Kernels kernels =
-      __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0
-          ? products::Wide()
-          : products::Narrow();
+  static const Kernels kernels =
+      __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 ? Wide() : Narrow();
 #else
-  static const products::Kernels kernels = products::Narrow();
+  static const Kernels kernels = Narrow();
 #endif
   return kernels;
 }
 
-}  // namespace
+}  // namespace products
 
 void AddProduct(const MatrixView& A, const MatrixView& B, Eigen::MatrixXd& C) {
   FLEXTIP_CHECK(A.cols() == B.rows() && C.rows() == A.rows() && C.cols() == B.cols(),
                 "shapes of a product");
-  ForThisProcessor().product(
+  products::ForThisProcessor().product(
       {C.rows(), C.cols(), A.cols(), A.outerStride(), B.outerStride(), C.outerStride()}, A.data(),
       B.data(), C.data());
 }
@@ -37,14 +31,14 @@ void AddProduct(const MatrixView& A, const MatrixView& B, Eigen::MatrixXd& C) {
 void AddTransposedProduct(const MatrixView& A, const MatrixView& B, Eigen::MatrixXd& C) {
   FLEXTIP_CHECK(A.rows() == B.rows() && C.rows() == A.cols() && C.cols() == B.cols(),
                 "shapes of a product");
-  ForThisProcessor().transposed(
+  products::ForThisProcessor().transposed(
       {C.rows(), C.cols(), A.rows(), A.outerStride(), B.outerStride(), C.outerStride()}, A.data(),
       B.data(), C.data());
 }
 
 void AddSquares(const RowMajorView& X, Eigen::MatrixXd& C) {
   FLEXTIP_CHECK(C.rows() == X.cols() && C.cols() == X.cols(), "shapes of a product");
-  ForThisProcessor().squares(
+  products::ForThisProcessor().squares(
       {C.rows(), C.cols(), X.rows(), X.outerStride(), X.outerStride(), C.outerStride()}, X.data(),
       C.data());
 }

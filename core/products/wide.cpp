@@ -7,6 +7,6 @@
 
 namespace flextip::products {
 
-Kernels Wide() { return {Product, Transposed, Squares}; }
+Kernels Wide() { return kKernels; }
 
 }  // namespace flextip::products

@@ -10,9 +10,10 @@
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kAtRest = 0.5;     // of a parameter's standard deviation
-constexpr double kHopeless = 40.0;  // in log odds, after two rounds
-constexpr double kFarthest = 6.0;   // typical sizes
+constexpr double kAtRest = 0.5;      // of a parameter's standard deviation
+constexpr double kHopeless = 40.0;   // in log odds, after two rounds
+constexpr double kMostUntold = 3.0;  // times a promise that may come beyond it, after one round
+constexpr double kFarthest = 6.0;    // typical sizes
 
 /// Minus twice the log of how likely parameters `theta` are, the generic terms at their best.
 double Merit(const LinearProblem& problem, const Eigen::VectorXd& theta,
@@ -144,7 +145,9 @@ HypothesisFit FitHypothesis(Replay& replay, ParameterLayout& layout, const Hypot
     fit.distance = weighing.distance;
     fit.place = PlaceOf(replay);
     if (round > 0 && round >= fit_options.scans && weighing.distance < kAtRest) break;
-    if (round > 1 && weighing.LogPosterior() < fit_options.worth - kHopeless) break;
+    const double behind = fit_options.worth - weighing.LogPosterior();
+    if (round > 1 && behind > kHopeless) break;
+    if (round == 1 && behind > kHopeless + kMostUntold * weighing.promised) break;
     if (round + 1 == fit_options.rounds) break;
     here = MoveToTarget(replay, weighing, fit_options.basis, options);
     if (!here) break;

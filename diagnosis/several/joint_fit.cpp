@@ -16,9 +16,11 @@
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kAtRest = 0.1;     // log odds that are still promised
-constexpr double kHopeless = 40.0;  // log odds
-constexpr double kFarthest = 6.0;   // typical sizes
+constexpr double kAtRest = 0.1;      // log odds that are still promised
+constexpr double kHopeless = 40.0;   // log odds
+constexpr double kMostUntold = 3.0;  // times a promise that may come beyond it, after one step
+constexpr double kNoRival = 2.0;     // log odds behind what is worth it
+constexpr double kFarthest = 6.0;    // typical sizes
 constexpr double kPriorChange = 0.1;
 
 template <class Work>
@@ -87,13 +89,14 @@ void MakePlausible(const Fleet& fleet, std::vector<Eigen::VectorXd>& theta) {
   }
 }
 
-/// Towards `target` as far as that explains more than standing at `from`.
-bool MoveTowards(Fleet& fleet, const JointWeighed& weighed,
-                 const std::vector<Eigen::VectorXd>& from,
-                 const std::vector<Eigen::VectorXd>& target, double before,
+/// Towards `target` as far as that explains more than standing at `from`. A part of the way gains
+/// its part of what the whole promises: given up where that is less than `least` log odds.
+bool MoveTowards(Fleet& fleet, const JointFit& fit, const std::vector<Eigen::VectorXd>& from,
+                 const std::vector<Eigen::VectorXd>& target, double before, double least,
                  const SelectionOptions& options) {
   const JointPlace here = PlaceOf(fleet);
   for (double part = 1.0; part > 0.1; part *= 0.4) {
+    if (part * (2.0 - part) * fit.promised < least) break;
     std::vector<Eigen::VectorXd> theta(fleet.Size());
     for (std::size_t r = 0; r < fleet.Size(); ++r)
       theta[r] = from[r] + part * (target[r] - from[r]);
@@ -101,7 +104,7 @@ bool MoveTowards(Fleet& fleet, const JointWeighed& weighed,
     tbb::parallel_for(std::size_t{0}, fleet.Size(), [&](std::size_t r) {
       if (!MoveMember(fleet.At(r), theta[r], options)) all = false;
     });
-    if (all && EvidenceHere(fleet).Merit(weighed, theta) < before) return true;
+    if (all && EvidenceHere(fleet).Merit(fit.weighed, theta) < before) return true;
     GoTo(fleet, here);
   }
   return false;
@@ -203,9 +206,12 @@ JointFit FitJointly(Fleet& fleet, const JointHypothesis& hypothesis, int rounds,
         fit.weighed.log_evidence + LogPrior(hypothesis, fleet, options) - fit.promised;
     fit.place = PlaceOf(fleet);
     if (round > 0 && fit.promised < kAtRest) break;
-    if (round > 1 && fit.log_posterior + fit.promised < worth - kHopeless) break;
+    const double behind = worth - (fit.log_posterior + fit.promised);
+    if (round > 1 && behind > kHopeless) break;
+    if (round == 1 && behind > kHopeless + kMostUntold * fit.promised) break;
     if (round + 1 == rounds) break;
-    if (!MoveTowards(fleet, fit.weighed, from, target, before, options)) break;
+    const double gain_to_rival = behind + fit.promised - kNoRival;
+    if (!MoveTowards(fleet, fit, from, target, before, gain_to_rival, options)) break;
   }
   return fit;
 }

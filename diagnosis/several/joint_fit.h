@@ -38,7 +38,7 @@ struct JointFit {
 double LogPrior(const JointHypothesis& h, const Fleet& fleet, const SelectionOptions& options);
 
 /// From where the fleet stands, at most `rounds` steps; given up after two where the log posterior
-/// is clearly below `worth`.
+/// is clearly below `worth`, and after one where it is far below.
 JointFit FitJointly(Fleet& fleet, const JointHypothesis& hypothesis, int rounds, double worth,
                     const SelectionOptions& options);
 
