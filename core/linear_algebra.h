@@ -55,13 +55,14 @@ class LargeLlt {
  public:
   LargeLlt() = default;
   explicit LargeLlt(const Eigen::MatrixXd& A);
-  const Eigen::MatrixXd& matrixLLT() const { return L_; }
-  Eigen::Index rows() const { return L_.rows(); }
-  Eigen::ComputationInfo info() const { return info_; }
+  /// Its lower triangle is L.
+  const Eigen::MatrixXd& Factor() const { return factor_; }
+  Eigen::Index Size() const { return factor_.rows(); }
+  bool Succeeded() const { return succeeded_; }
 
  private:
-  Eigen::MatrixXd L_;  // above the diagonal A is left
-  Eigen::ComputationInfo info_ = Eigen::Success;
+  Eigen::MatrixXd factor_;
+  bool succeeded_ = true;
 };
 
 /// L L^T = A for a symmetric, positive definite A (N x N; its lower triangle is read).

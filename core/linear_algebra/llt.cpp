@@ -4,9 +4,19 @@
 
 namespace flextip {
 
-LargeLlt::LargeLlt(const Eigen::MatrixXd& A) : L_(A) {
-  if (!products::ForThisProcessor().cholesky(L_.rows(), L_.data())) info_ = Eigen::NumericalIssue;
+LargeLlt::LargeLlt(const Eigen::MatrixXd& A) : factor_(A) {
+  succeeded_ = products::ForThisProcessor().cholesky(Size(), factor_.data());
 }
+
+namespace {
+
+const Eigen::MatrixXd& FactorOf(const LargeLlt& llt) { return llt.Factor(); }
+template <class Matrix>
+const Matrix& FactorOf(const Eigen::LLT<Matrix>& llt) {
+  return llt.matrixLLT();
+}
+
+}  // namespace
 
 template <int N>
 Llt<N>::Llt(const std::type_identity_t<Matrix>& A) : llt_(A) {}
@@ -20,7 +30,7 @@ void Llt<N>::SolveInPlace(double* columns, Eigen::Index count) const {
 template <int N>
 void Llt<N>::SolveLInPlace(double* columns, Eigen::Index count) const {
   if constexpr (N == Eigen::Dynamic) {
-    products::ForThisProcessor().solve_lower(llt_.rows(), count, llt_.matrixLLT().data(), columns);
+    products::ForThisProcessor().solve_lower(llt_.Size(), count, llt_.Factor().data(), columns);
   } else {
     ForColumns<N>(columns, N, count, [&](auto& x) { llt_.matrixL().solveInPlace(x); });
   }
@@ -29,7 +39,7 @@ void Llt<N>::SolveLInPlace(double* columns, Eigen::Index count) const {
 template <int N>
 void Llt<N>::SolveLTransposedInPlace(double* columns, Eigen::Index count) const {
   if constexpr (N == Eigen::Dynamic) {
-    products::ForThisProcessor().solve_transposed(llt_.rows(), count, llt_.matrixLLT().data(),
+    products::ForThisProcessor().solve_transposed(llt_.Size(), count, llt_.Factor().data(),
                                                   columns);
   } else {
     ForColumns<N>(columns, N, count, [&](auto& x) { llt_.matrixU().solveInPlace(x); });
@@ -38,31 +48,33 @@ void Llt<N>::SolveLTransposedInPlace(double* columns, Eigen::Index count) const 
 
 template <int N>
 auto Llt<N>::Inverse() const -> Matrix {
-  const Eigen::Index n = llt_.rows();
   if constexpr (N == Eigen::Dynamic) {
-    Matrix inverse(n, n);
-    products::ForThisProcessor().inverse(n, llt_.matrixLLT().data(), inverse.data());
+    Matrix inverse(llt_.Size(), llt_.Size());
+    products::ForThisProcessor().inverse(llt_.Size(), llt_.Factor().data(), inverse.data());
     return inverse;
   } else {
     Matrix inverse = Matrix::Identity();
-    SolveInPlace(inverse.data(), n);
+    SolveInPlace(inverse.data(), N);
     return inverse;
   }
 }
 
 template <int N>
 auto Llt<N>::L() const -> Matrix {
-  return llt_.matrixLLT().template triangularView<Eigen::Lower>();
+  return FactorOf(llt_).template triangularView<Eigen::Lower>();
 }
 
 template <int N>
 double Llt<N>::LogDeterminant() const {
-  return 2.0 * llt_.matrixLLT().diagonal().array().log().sum();
+  return 2.0 * FactorOf(llt_).diagonal().array().log().sum();
 }
 
 template <int N>
 bool Llt<N>::Succeeded() const {
-  return llt_.info() == Eigen::Success;
+  if constexpr (N == Eigen::Dynamic)
+    return llt_.Succeeded();
+  else
+    return llt_.info() == Eigen::Success;
 }
 
 template <int N>
