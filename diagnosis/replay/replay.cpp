@@ -237,9 +237,29 @@ GeometryByInputs Replay::ExpectedDerivatives(std::size_t k) const {
   if (!samples_.has_load) {
     by.col(rod_input::kStiffness) += Around(k, with_force) - with_force(k);
   } else if (const auto noise_N = LoadNoise(k); noise_N && !own_derivatives_) {
+    // Moments are a stiffness times a function of force over stiffness: of theirs, M - f dM/df, a
+    // force's noise takes nothing.
+    const Eigen::Matrix<double, 4, 1> of_moments =
+        by.col(rod_input::kStiffness).segment<4>(place::kMoments);
     by.col(rod_input::kStiffness) += by.middleCols<3>(rod_input::kForce) * *noise_N;
+    by.col(rod_input::kStiffness).segment<4>(place::kMoments) = of_moments;
   }
   return by;
+}
+
+/// What a gage's gain acts on: the moments, without what comes of this very sample's noise of the
+/// force. With a known load as in the derivative by stiffness: a gain, a load cell's scale and a
+/// stiffness that look alike must look quite alike, or many recordings tell them apart by how
+/// roughly they were told.
+Eigen::Vector4d Replay::ExpectedMoments(std::size_t k) const {
+  const auto own = [&](std::size_t j) -> Eigen::Vector4d {
+    return replayed_[j].solved.at.segment<4>(place::kMoments);
+  };
+  if (!samples_.has_load) return Around(k, own);
+  const auto noise_N = LoadNoise(k);
+  if (!noise_N || own_derivatives_) return own(k);
+  return own(k) -
+         replayed_[k].solved.by_inputs.block<4, 3>(place::kMoments, rod_input::kForce) * *noise_N;
 }
 
 void Replay::CompareSamples() {
@@ -252,10 +272,7 @@ void Replay::CompareSamples() {
       sample.compared =
           Compare(samples_, sample.measured, sample.inputs, ForceOnTip(sample.f_tip_N, expected_N),
                   WithRate(k), ExpectedDerivatives(k));
-      // A gain acts on the moment, which comes of the force too.
-      const Eigen::Vector4d bends = Around(k, [&](std::size_t j) -> Eigen::Vector4d {
-        return replayed_[j].solved.at.segment<4>(place::kMoments);
-      });
+      const Eigen::Vector4d bends = ExpectedMoments(k);
       for (int i = 0; i < 4; ++i) {
         if (!sample.measured.Has(row::kStrain + i)) continue;
         auto by = sample.compared.by_inputs.row(row::kStrain + i);

@@ -162,6 +162,7 @@ class Replay {
   template <class Get>
   auto Around(std::size_t k, Get get) const;
   GeometryByInputs ExpectedDerivatives(std::size_t k) const;
+  Eigen::Vector4d ExpectedMoments(std::size_t k) const;
   Eigen::Matrix3d ForcePrior(std::size_t k) const;
   std::optional<Eigen::Vector3d> LoadNoise(std::size_t k) const;
   double ByInput(std::size_t k, int r, int input) const;
