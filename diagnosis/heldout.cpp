@@ -70,9 +70,14 @@ HeldOut MeasureHeldOut(const Replay& base, const Replay& extended, const Selecti
     const Eigen::VectorXd base_step = BaseParameters(base_train, layout) - base.Theta();
     const Eigen::VectorXd step =
         evidence.Mode(weighed, evidence.Covariance(weighed)).head(layout.Size()) - extended.Theta();
-    const PredictionErrors base_errors(base, tip, base_step), errors(extended, tip, step);
-    for (int b = 0; b < blocks; ++b) {
-      if (b * folds / blocks != fold) continue;
+    std::vector<int> of_fold;
+    for (int b = 0; b < blocks; ++b)
+      if (b * folds / blocks == fold) of_fold.push_back(b);
+    if (of_fold.empty()) continue;
+    const SampleRange range{n * of_fold.front() / blocks, n * (of_fold.back() + 1) / blocks};
+    const PredictionErrors base_errors(base, tip, base_step, range);
+    const PredictionErrors errors(extended, tip, step, range);
+    for (const int b : of_fold) {
       const std::size_t begin = n * b / blocks, end = n * (b + 1) / blocks;
       base_sums.push_back(base_errors.Sum(begin, end));
       extended_sums.push_back(errors.Sum(begin, end));

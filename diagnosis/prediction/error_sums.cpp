@@ -57,11 +57,11 @@ TipRows::TipRows(const SampleSet& samples) {
 }
 
 PredictionErrors::PredictionErrors(const Replay& replay, const TipRows& tip,
-                                   const Eigen::VectorXd& dtheta)
+                                   const Eigen::VectorXd& dtheta, const SampleRange& range)
     : replay_(replay),
       tip_row_(tip.position),
-      free_(replay.ForceFreeResiduals({}, dtheta)),
-      tip_(replay.ForceFreeResiduals(tip.hidden, dtheta)) {
+      free_(replay.ForceFreeResiduals({}, dtheta, range)),
+      tip_(replay.ForceFreeResiduals(tip.hidden, dtheta, range)) {
   for (const ReplayedSample& sample : replay.Samples()) judged_.push_back(sample.ok);
 }
 

@@ -35,10 +35,11 @@ struct TipRows {
 
 /// Errors of the model at which `replay` stands, its parameters moved by `dtheta` to first order
 /// (empty: not). Forces that are not measured are found from each sample's own sensors, for the
-/// tip's error without those that measure the tip.
+/// tip's error without those that measure the tip. Only samples of `range` may be summed.
 class PredictionErrors {
  public:
-  PredictionErrors(const Replay& replay, const TipRows& tip, const Eigen::VectorXd& dtheta = {});
+  PredictionErrors(const Replay& replay, const TipRows& tip, const Eigen::VectorXd& dtheta = {},
+                   const SampleRange& range = {});
 
   /// Returns the sums over the samples begin .. end that have an equilibrium.
   ErrorSums Sum(std::size_t begin, std::size_t end) const;

@@ -6,6 +6,7 @@
 #include <array>
 #include <bitset>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -45,6 +46,12 @@ struct WhitenedRows {
   std::vector<double> force_share;
 
   int Rows(std::size_t k) const { return first_row[k + 1] - first_row[k]; }
+};
+
+/// Samples from `begin` to before `end`; all where not said.
+struct SampleRange {
+  std::size_t begin = 0, end = std::numeric_limits<std::size_t>::max();
+  bool Holds(std::size_t k) const { return k >= begin && k < end; }
 };
 
 class Replay {
@@ -97,9 +104,11 @@ class Replay {
 
   /// Per sample: the residual less what an unknown tip force explains, unwhitened; absent rows
   /// zero. With `hidden` rows, the force is found without them: their residual is a prediction
-  /// error. `dtheta` moves the parameters, to first order; empty: not.
+  /// error. `dtheta` moves the parameters, to first order; empty: not. Of samples outside `range`
+  /// all rows are zero.
   std::vector<Rows> ForceFreeResiduals(const std::bitset<row::kCount>& hidden = {},
-                                       const Eigen::VectorXd& dtheta = {}) const;
+                                       const Eigen::VectorXd& dtheta = {},
+                                       const SampleRange& range = {}) const;
 
   const Eigen::VectorXd& Theta() const { return theta_; }
   const std::vector<ReplayedSample>& Samples() const { return replayed_; }

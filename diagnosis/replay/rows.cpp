@@ -179,11 +179,12 @@ void Replay::PredictForces(const Eigen::VectorXd& dtheta) {
 }
 
 std::vector<Rows> Replay::ForceFreeResiduals(const std::bitset<row::kCount>& hidden,
-                                             const Eigen::VectorXd& dtheta) const {
+                                             const Eigen::VectorXd& dtheta,
+                                             const SampleRange& range) const {
   std::vector<Rows> free(replayed_.size(), Rows::Zero());
   ForChunks(replayed_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      if (!replayed_[k].ok) continue;
+      if (!replayed_[k].ok || !range.Holds(k)) continue;
       Statistics used = StatisticsOf(k, ~hidden), all = StatisticsOf(k, AllRows());
       if (dtheta.size() > 0) {
         used.e -= Derivatives(k, used.rows) * dtheta;

@@ -18,6 +18,8 @@ constexpr int kMostFits = 14;
 constexpr double kSettled = 1.0;      // log odds that are still promised
 constexpr double kRival = 2.0;        // log odds below the best that are worth a fit
 constexpr std::size_t kBesides = 10;  // hypotheses beside which changes are weighed, with singles
+constexpr std::size_t kFewRecordings =
+    10;  // recordings, of which own effects are weighed beside all of these
 constexpr std::size_t kMostEffects = 2;  // in any recording: three at once are not weighed
 
 std::vector<JointHypothesis> Commons(const Fleet& fleet, bool pairs) {
@@ -46,9 +48,11 @@ std::vector<JointScored> Weighed(const JointEvidence& evidence, const Fleet& fle
   return scored;
 }
 
-/// `beside` and each change that it has not yet.
+/// `beside` and each change that it has not yet; `own_too`: of effects that each recording has for
+/// itself, too.
 std::vector<JointScored> WithChanges(const JointEvidence& evidence, const Fleet& fleet,
-                                     const JointWeighed& beside, const SelectionOptions& options) {
+                                     const JointWeighed& beside, bool own_too,
+                                     const SelectionOptions& options) {
   std::vector<JointScored> scored;
   if (beside.hypothesis.EffectsIn(fleet.Size() - 1).size() >= kMostEffects) return scored;
   std::vector<JointHypothesis> own;  // of effects that each recording has for itself
@@ -61,7 +65,7 @@ std::vector<JointScored> WithChanges(const JointEvidence& evidence, const Fleet&
     scored.push_back({weighed, log});
   }
   for (int e = 0; e < fleet.EffectCount(); ++e) {
-    if (fleet.OwnOf(e).empty()) continue;
+    if (fleet.OwnOf(e).empty() || !own_too) continue;
     const std::vector<int> present = beside.hypothesis.EffectsIn(fleet.Size() - 1);
     if (std::ranges::find(present, e) != present.end()) continue;
     for (int first = 1; first < int(fleet.Size()); ++first) {
@@ -127,7 +131,7 @@ class Search {
     const auto none = std::ranges::find_if(
         scored, [](const JointScored& s) { return s.weighed.hypothesis == JointHypothesis{}; });
     const JointScored nothing = *none;
-    for (JointScored& one : WithChanges(evidence, fleet_, nothing.weighed, options_))
+    for (JointScored& one : WithChanges(evidence, fleet_, nothing.weighed, true, options_))
       scored.push_back(one);
     Sort(scored);
     const double best = scored.front().log_posterior;
@@ -249,6 +253,7 @@ std::vector<JointScored> WeighAll(const JointEvidence& evidence, const Fleet& fl
     if (i < kBesides || scored[i].weighed.hypothesis.effects.size() < 2)
       besides.push_back(scored[i].weighed);
   std::vector<JointScored> more;
+  const std::size_t first_of_best = besides.size();
   if (!best.changes.empty()) {
     const JointScored own = Weighed(evidence, fleet, {best}, options).front();
     more.push_back(own);
@@ -260,7 +265,10 @@ std::vector<JointScored> WeighAll(const JointEvidence& evidence, const Fleet& fl
   }
   std::vector<std::vector<JointScored>> with(besides.size());
   tbb::parallel_for(std::size_t{0}, besides.size(), [&](std::size_t i) {
-    with[i] = WithChanges(evidence, fleet, besides[i], options);
+    // Of many recordings these are most of the time: beside the leaders alone.
+    const bool leads = i < kBesides || i >= first_of_best;
+    with[i] =
+        WithChanges(evidence, fleet, besides[i], leads || fleet.Size() <= kFewRecordings, options);
   });
   for (const auto& list : with)
     for (const JointScored& one : list)
