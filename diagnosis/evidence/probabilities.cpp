@@ -20,6 +20,20 @@ std::vector<double> Softmax(const std::vector<ScoredHypothesis>& scored, double 
   return p;
 }
 
+/// Of what is known and of what is beside something unknown so many each: where the one leads, the
+/// bags must weigh the other all the same.
+std::vector<Hypothesis> Leaders(const Selection& selection, const ProbabilityOptions& options) {
+  std::vector<Hypothesis> leaders;
+  int known = 0, unknown = 0;
+  for (const auto& s : selection.scored) {
+    const Hypothesis& h = s.weighed.hypothesis;
+    int& count = h.unknown ? unknown : known;
+    if (count < options.leaders || h.effects.empty()) leaders.push_back(h);
+    ++count;
+  }
+  return leaders;
+}
+
 void FillCredibleSet(double credible, Probabilities& result) {
   double sum = 0.0;
   for (const auto& h : result.hypotheses) {
@@ -96,10 +110,7 @@ Probabilities MakeProbabilities(const Selection& selection, const ParameterLayou
     }
   };
   add(selection.scored, 1.0, whole);
-  std::vector<Hypothesis> leaders;
-  for (const auto& s : selection.scored)
-    if (int(leaders.size()) < options.leaders || s.weighed.hypothesis.effects.empty())
-      leaders.push_back(s.weighed.hypothesis);
+  const std::vector<Hypothesis> leaders = Leaders(selection, options);
   std::mt19937_64 rng(options.seed);
   for (int bag = 0; bag < options.bags; ++bag) {
     const NormalSums sums = DrawBag(selection.problem, rng);

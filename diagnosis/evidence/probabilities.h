@@ -12,7 +12,7 @@ namespace flextip::diagnosis {
 
 struct ProbabilityOptions {
   int bags = 8;              ///< resamplings of the blocks of time
-  int leaders = 30;          ///< hypotheses that take part in them
+  int leaders = 30;          ///< known hypotheses that take part in them, and unknown ones
   double temperature = 1.0;  ///< log odds are divided by this; from recordings made for tuning
   double credible = 0.9;
   /// Chi-squared per degree of freedom of the best that the catalogue has, above which none of it

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "tests/diagnosis/small_recording.h"
 
 namespace flextip::diagnosis {
@@ -50,6 +53,22 @@ TEST(MakeProbabilities, WhereNothingKnownIsAdequateTheAnswerIsUnknown) {
   double sum = 0.0;
   for (const auto& h : inadequate.hypotheses) sum += h.probability;
   EXPECT_NEAR(sum, 1.0, 1e-9);
+}
+
+/// Something small in the whole recording may put all that is unknown before all that is known. The
+/// parts, where it does not show, then weigh the known causes all the same.
+TEST(MakeProbabilities, WhereUnknownsLeadTheKnownCauseIsNotLost) {
+  const SampleSet samples = SmallSamples(10.0, true, 61, {"tag_offset"});
+  ParameterLayout layout(samples, MakeCatalogue(samples));
+  Replay replay(samples, layout);
+  Selection selection = Select(replay, layout);
+  for (ScoredHypothesis& s : selection.scored)
+    if (s.weighed.hypothesis.unknown) s.log_posterior += 1e6;
+  std::ranges::stable_sort(selection.scored, std::ranges::greater(),
+                           &ScoredHypothesis::log_posterior);
+  ASSERT_TRUE(selection.scored[30].weighed.hypothesis.unknown);
+  const Probabilities found = MakeProbabilities(selection, layout, {});
+  EXPECT_EQ(found.hypotheses.front().verdict, Verdict{"tag_offset"});
 }
 
 }  // namespace
