@@ -89,14 +89,16 @@ void MakePlausible(const Fleet& fleet, std::vector<Eigen::VectorXd>& theta) {
   }
 }
 
-/// Towards `target` as far as that explains more than standing at `from`. A part of the way gains
-/// its part of what the whole promises: given up where that is less than `least` log odds.
+/// Towards `target` as far as that explains more than standing at `from`. Near the target a part of
+/// the way gains its part of what the whole promises: given up where that is less than `least` log
+/// odds.
 bool MoveTowards(Fleet& fleet, const JointFit& fit, const std::vector<Eigen::VectorXd>& from,
                  const std::vector<Eigen::VectorXd>& target, double before, double least,
                  const SelectionOptions& options) {
   const JointPlace here = PlaceOf(fleet);
   for (double part = 1.0; part > 0.1; part *= 0.4) {
-    if (part * (2.0 - part) * fit.promised < least) break;
+    const bool is_near = part < 1.0 && fit.promised < kHopeless;
+    if (is_near && part * (2.0 - part) * fit.promised < least) break;
     std::vector<Eigen::VectorXd> theta(fleet.Size());
     for (std::size_t r = 0; r < fleet.Size(); ++r)
       theta[r] = from[r] + part * (target[r] - from[r]);
