@@ -20,20 +20,26 @@ const Kernels& ForThisProcessor() {
 
 }  // namespace products
 
+namespace {
+
+using OfTwo = void (*)(const products::Shape&, const double*, const double*, double*);
+
+/// `sum` is over so many rows or columns of A, which must be B's rows.
+void Add(OfTwo kernel, const MatrixView& A, const MatrixView& B, Eigen::Index rows,
+         Eigen::Index sum, Eigen::MatrixXd& C) {
+  FLEXTIP_CHECK(sum == B.rows() && C.rows() == rows && C.cols() == B.cols(), "shapes of a product");
+  kernel({C.rows(), C.cols(), sum, A.outerStride(), B.outerStride(), C.outerStride()}, A.data(),
+         B.data(), C.data());
+}
+
+}  // namespace
+
 void AddProduct(const MatrixView& A, const MatrixView& B, Eigen::MatrixXd& C) {
-  FLEXTIP_CHECK(A.cols() == B.rows() && C.rows() == A.rows() && C.cols() == B.cols(),
-                "shapes of a product");
-  products::ForThisProcessor().product(
-      {C.rows(), C.cols(), A.cols(), A.outerStride(), B.outerStride(), C.outerStride()}, A.data(),
-      B.data(), C.data());
+  Add(products::ForThisProcessor().product, A, B, A.rows(), A.cols(), C);
 }
 
 void AddTransposedProduct(const MatrixView& A, const MatrixView& B, Eigen::MatrixXd& C) {
-  FLEXTIP_CHECK(A.rows() == B.rows() && C.rows() == A.cols() && C.cols() == B.cols(),
-                "shapes of a product");
-  products::ForThisProcessor().transposed(
-      {C.rows(), C.cols(), A.rows(), A.outerStride(), B.outerStride(), C.outerStride()}, A.data(),
-      B.data(), C.data());
+  Add(products::ForThisProcessor().transposed, A, B, A.cols(), A.rows(), C);
 }
 
 void AddSquares(const RowMajorView& X, Eigen::MatrixXd& C) {

@@ -18,9 +18,8 @@ constexpr int kMostFits = 14;
 constexpr double kSettled = 1.0;      // log odds that are still promised
 constexpr double kRival = 2.0;        // log odds below the best that are worth a fit
 constexpr std::size_t kBesides = 10;  // hypotheses beside which changes are weighed, with singles
-constexpr std::size_t kFewRecordings =
-    10;  // recordings, of which own effects are weighed beside all of these
-constexpr std::size_t kMostEffects = 2;  // in any recording: three at once are not weighed
+constexpr std::size_t kFewRecordings = 10;  // own effects are weighed beside all of these
+constexpr std::size_t kMostEffects = 2;     // in any recording: three at once are not weighed
 
 std::vector<JointHypothesis> Commons(const Fleet& fleet, bool pairs) {
   std::vector<JointHypothesis> all;

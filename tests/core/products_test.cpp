@@ -54,20 +54,41 @@ TEST(Products, SquaresFillTheUpperTriangleOnly) {
   EXPECT_LT((C - expected).norm(), 1e-11);
 }
 
-TEST(Products, AreTheSameForAnyProcessor) {
+/// The kernels that this processor does not use, where it has AVX2.
+TEST(Products, OfAnyProcessorAreTheSums) {
   std::mt19937_64 rng(75);
   const Eigen::MatrixXd A = Random(kN, kK, rng), B = Random(kK, kM, rng);
-  const RowMajorMatrix X = Random(kK, kN, rng);
-  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(kN, kM), narrow = product;
-  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(kN, kN), narrow_squares = squares;
-  AddProduct(A, B, product);
-  AddSquares(X, squares);
+  const Eigen::MatrixXd At = A.transpose();
   const products::Kernels any = products::Narrow();
-  any.product({kN, kM, kK, kN, kK, kN}, A.data(), B.data(), narrow.data());
-  any.squares({kN, kN, kK, kN, kN, kN}, X.data(), narrow_squares.data());
-  EXPECT_LT((product - narrow).norm(), 1e-11);
-  EXPECT_LT((squares - narrow_squares).norm(), 1e-11);
-  EXPECT_GT(narrow.norm(), 1.0);
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(kN, kM), transposed = product;
+  any.product({kN, kM, kK, kN, kK, kN}, A.data(), B.data(), product.data());
+  any.transposed({kN, kM, kK, kK, kK, kN}, At.data(), B.data(), transposed.data());
+  const Eigen::MatrixXd expected = Sums(A, B, Eigen::MatrixXd::Zero(kN, kM));
+  EXPECT_LT((product - expected).norm(), 1e-11);
+  EXPECT_LT((transposed - expected).norm(), 1e-11);
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(kN, kN);
+  any.squares({kN, kN, kK, kN, kN, kN}, A.data(), squares.data());  // columns of A: rows of X
+  const Eigen::MatrixXd off = squares - Sums(A, At, Eigen::MatrixXd::Zero(kN, kN));
+  EXPECT_LT(Eigen::MatrixXd(off.triangularView<Eigen::Upper>()).norm(), 1e-11);
+}
+
+TEST(Products, DecompositionsOfAnyProcessorAreOnes) {
+  std::mt19937_64 rng(76);
+  const Eigen::MatrixXd root = Random(kN, kK, rng), B = Random(kN, kM, rng);
+  const Eigen::MatrixXd A = root * root.transpose(), I = Eigen::MatrixXd::Identity(kN, kN);
+  const products::Kernels any = products::Narrow();
+  Eigen::MatrixXd factor = A, lower = B, upper = B, inverse(kN, kN);
+  ASSERT_TRUE(any.cholesky(kN, factor.data()));
+  any.solve_lower(kN, kM, factor.data(), lower.data());
+  any.solve_transposed(kN, kM, factor.data(), upper.data());
+  any.inverse(kN, factor.data(), inverse.data());
+  const Eigen::MatrixXd L = factor.triangularView<Eigen::Lower>();
+  EXPECT_LT((L * L.transpose() - A).norm(), 1e-11);
+  EXPECT_LT((L * lower - B).norm(), 1e-11);
+  EXPECT_LT((L.transpose() * upper - B).norm(), 1e-11);
+  EXPECT_LT((A * inverse - I).norm(), 1e-11);
+  Eigen::MatrixXd negative = A - 1e3 * I;
+  EXPECT_FALSE(any.cholesky(kN, negative.data()));
 }
 
 }  // namespace
