@@ -15,6 +15,7 @@
 #include <fstream>
 #include <optional>
 #include <random>
+#include <thread>
 #include <utility>
 
 #include "batch/zygote.h"
@@ -23,7 +24,7 @@
 namespace flextip::batch {
 namespace {
 
-enum Tag : int { kReady = 1, kItem, kEnded, kStop, kBye };
+enum Tag : int { kReady = 1, kItem, kEnded, kStop, kBye, kQuestion, kReply };
 
 constexpr std::size_t kPiece = std::size_t{1} << 26;  // MPI counts bytes in an int
 
@@ -74,6 +75,10 @@ class Idle {
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
+
+void Sleep(double seconds) {
+  if (seconds > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+}
 
 /// An item's end with its results: "INDEX\tLENGTH\tOUTCOME" and behind its length the bytes.
 std::string EndedText(const Ended& ended, const std::string& bytes) {
@@ -225,6 +230,43 @@ void Ranks::Serve(Pool& pool, const std::function<void(Item&)>& begin,
     something = !ended.empty();
   }
   Send(0, kBye, "");
+}
+
+std::vector<std::string> Ranks::Ask(const std::vector<std::string>& texts,
+                                    const std::function<void()>& meanwhile) const {
+  for (std::size_t i = 0; i < texts.size(); ++i) Send(int(i) + 1, kQuestion, texts[i]);
+  std::exception_ptr failed;  // told when nobody is about to send any more
+  try {
+    meanwhile();
+  } catch (...) {
+    failed = std::current_exception();
+  }
+  std::vector<std::string> replies(texts.size());
+  Idle idle;
+  for (std::size_t left = texts.size(); left > 0;) {
+    auto message = ReceiveIfAny();
+    Sleep(idle.Next(message.has_value()));
+    if (!message) continue;
+    replies[std::size_t(message->rank) - 1] = std::move(message->text);
+    --left;
+  }
+  if (failed) std::rethrow_exception(failed);
+  return replies;
+}
+
+void Ranks::StopAsking() const {
+  for (int rank = 1; rank < size_; ++rank) Send(rank, kStop, "");
+}
+
+void Ranks::Answer(const std::function<std::string(const std::string&)>& reply) const {
+  Idle idle;
+  while (true) {
+    const auto message = ReceiveIfAny();
+    Sleep(idle.Next(message.has_value()));
+    if (!message) continue;
+    if (message->tag == kStop) return;
+    Send(0, kReply, reply(message->text));
+  }
 }
 
 void Ranks::Abort() const {

@@ -1,4 +1,5 @@
-// Items over the ranks of an MPI job: rank 0 hands out, all of them work.
+// Items over the ranks of an MPI job: rank 0 hands out, all of them work. Or rank 0 asks the others
+// for parts of one work.
 #pragma once
 
 #include <functional>
@@ -14,8 +15,12 @@ namespace flextip::batch {
 bool IsRank();
 /// The number of this process among the ranks, by its environment; 0 where it is none.
 int RankNumber();
+/// The number of ranks, by the environment; 1 where it is none.
+int RankCount();
 /// How many ranks run on this machine, by the environment; 1 where it is not told.
 int RanksOnThisMachine();
+/// Makes this process none of the ranks: for the process of an item, which must not begin MPI.
+void LeaveRanks();
 /// Whether this program was built with MPI.
 bool HasMpi();
 
@@ -49,6 +54,15 @@ class Ranks {
   /// On the other ranks: works until rank 0 has nothing left. `begin` may change an item before it
   /// starts. Results are sent where `transfer.pack` is set.
   void Serve(Pool& pool, const std::function<void(Item&)>& begin, const Transfer& transfer) const;
+
+  /// On rank 0: sends a text to each other rank, runs `meanwhile`, and returns the others' replies
+  /// in order.
+  std::vector<std::string> Ask(const std::vector<std::string>& texts,
+                               const std::function<void()>& meanwhile) const;
+  /// On rank 0: the others need not wait for questions any more.
+  void StopAsking() const;
+  /// On the other ranks: replies to what rank 0 asks until it has nothing left.
+  void Answer(const std::function<std::string(const std::string&)>& reply) const;
 
   /// Ends the whole job.
   [[noreturn]] void Abort() const;

@@ -91,6 +91,7 @@ set(FLEXTIP_PUBLIC_HEADERS
   diagnosis/replay/sample_input.h
   diagnosis/samples/sample_set.h
   diagnosis/several/diagnose_several.h
+  diagnosis/several/helpers.h
   estimation/instrument_model.h
   estimation/watch/instrument_watch.h
   estimation/measurements.h

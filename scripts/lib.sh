@@ -5,7 +5,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # Compiler and libraries of the program, as Debian 12 names them.
 BUILD_PACKAGES=(
   cmake ninja-build clang libopencv-dev libavformat-dev libswscale-dev libapriltag-dev libeigen3-dev
-  libceres-dev libcli11-dev libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev libcairo2-dev
+  libceres-dev libcli11-dev libcereal-dev libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libtbb-dev libboost-dev libcairo2-dev
   liblz4-dev libzstd-dev libopenigtlink-dev cyclonedds-dev cyclonedds-tools libwebsocketpp-dev
   pkg-config
 )

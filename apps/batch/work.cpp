@@ -15,6 +15,7 @@
 
 #include "apps/batch/folder.h"
 #include "apps/common/run_facts.h"
+#include "batch/ranks.h"
 
 namespace flextip {
 namespace {
@@ -85,6 +86,7 @@ batch::Item ItemOf(const ListedItem& listed, const fs::path& out) {
 }
 
 int DoItem(const BatchWork& work, const batch::Item& item, std::string& payload) {
+  batch::LeaveRanks();
   const fs::path out = item.arguments.at(0);
   SendMessagesTo(ItemLog(out, item.name));
   const tbb::global_control share(tbb::global_control::max_allowed_parallelism,

@@ -17,6 +17,7 @@
 #include "apps/common/output.h"
 #include "apps/diagnose/arm.h"
 #include "apps/diagnose/motion_options.h"
+#include "apps/diagnose/rank_helpers.h"
 #include "apps/diagnose/result_files.h"
 #include "core/error.h"
 #include "diagnosis/diagnose.h"
@@ -145,18 +146,29 @@ void RunOne(const Options& options, const std::vector<NamedRead>& reads, bool qu
   Finish(options, reads, judged, SummaryOf(result), output, quiet);
 }
 
-void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, bool quiet) {
+diagnosis::DiagnoseOptions SeveralOptions(const Options& options) {
+  return {.without = options.without, .plan = options.plan.Limits()};
+}
+
+std::vector<diagnosis::NamedRecording> RecordingsOf(const std::vector<NamedRead>& reads) {
+  std::vector<diagnosis::NamedRecording> recordings;
+  recordings.reserve(reads.size());
+  for (const NamedRead& one : reads) recordings.push_back({one.name, one.read.recording});
+  return recordings;
+}
+
+void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, bool quiet,
+                const diagnosis::Helpers& helpers) {
   OutputFolder output = OutputOf(options);
   std::vector<plausibility::Finding> findings;
-  std::vector<diagnosis::NamedRecording> recordings;
   for (const NamedRead& one : reads) {
     for (const std::string& warning : one.read.warnings) output.Warn(one.name + ": " + warning);
     findings.insert(findings.end(), one.read.findings.begin(), one.read.findings.end());
-    recordings.push_back({one.name, one.read.recording});
   }
+  const std::vector<diagnosis::NamedRecording> recordings = RecordingsOf(reads);
   output.Beware(FindingsJson(findings));
-  const diagnosis::SeveralResult several = diagnosis::DiagnoseSeveral(
-      recordings, {.without = options.without, .plan = options.plan.Limits()});
+  const diagnosis::SeveralResult several =
+      diagnosis::DiagnoseSeveral(recordings, SeveralOptions(options), helpers);
   output.Warn(several.common.warnings);
   const auto gain = GainOf(options, recordings.front().recording, several.common, output);
   WriteDiagnosisFiles(output.folder(), DiagnosisJson(several, gain ? &*gain : nullptr),
@@ -175,11 +187,9 @@ void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, boo
 
 /// The stretches of one session as one recording, with the warnings of all.
 std::vector<NamedRead> Joined(std::vector<NamedRead> reads) {
-  std::vector<diagnosis::NamedRecording> named;
+  const std::vector<diagnosis::NamedRecording> named = RecordingsOf(reads);
   std::vector<const Recording*> stretches;
-  named.reserve(reads.size());
   stretches.reserve(reads.size());
-  for (const NamedRead& one : reads) named.push_back({one.name, one.read.recording});
   diagnosis::RequireOneSession(named);
   for (const diagnosis::NamedRecording& one : named) stretches.push_back(&one.recording);
   InputRead& first = reads.front().read;
@@ -202,11 +212,18 @@ void RunArm(const Options& options, bool quiet) {
   DiagnoseArm(run);
 }
 
-void Run(const Options& options, bool quiet) {
+void RunHere(const Options& options, bool quiet, const diagnosis::Helpers& helpers) {
   if (IsArmRecording(options.input.recording)) return RunArm(options, quiet);
   std::vector<NamedRead> reads = ReadAll(options, quiet);
   if (options.one_session) reads = Joined(std::move(reads));
-  reads.size() == 1 ? RunOne(options, reads, quiet) : RunSeveral(options, reads, quiet);
+  reads.size() == 1 ? RunOne(options, reads, quiet) : RunSeveral(options, reads, quiet, helpers);
+}
+
+void Run(const Options& options, bool quiet) {
+  if (!RanksShareTheWork()) return RunHere(options, quiet, {});
+  const RankHelpers ranks;
+  if (ranks.IsFirst()) return RunHere(options, quiet, ranks.Ask());
+  ranks.Serve(SeveralOptions(options), [&] { return RecordingsOf(ReadAll(options, true)); });
 }
 
 }  // namespace
@@ -236,7 +253,8 @@ void AddDiagnose(CLI::App& app, AppContext& context) {
       "Example:\n  flextip diagnose recording -o diagnosis\n"
       "  flextip diagnose recording --plan-motion --plan-speed 0.05 -o diagnosis\n"
       "  flextip diagnose monday tuesday friday -o week\n"
-      "  flextip diagnose first second --one-session -o session\n");
+      "  flextip diagnose first second --one-session -o session\n"
+      "  mpirun -n 8 flextip diagnose week_* -o weeks\n");
   OnRun(*command, context, [options, &context] { Run(*options, context.quiet); });
 }
 

@@ -1,18 +1,12 @@
 #include "diagnosis/several/diagnose_several.h"
 
-#include <fmt/format.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <map>
 
-#include "core/check.h"
-#include "diagnosis/describe.h"
 #include "diagnosis/heldout.h"
 #include "diagnosis/model/catalogue.h"
 #include "diagnosis/planning/next_motion.h"
 #include "diagnosis/several/joint_probabilities.h"
-#include "diagnosis/signature.h"
 
 namespace flextip::diagnosis {
 namespace {
@@ -20,148 +14,55 @@ namespace {
 constexpr std::size_t kFew = 10;  // recordings that are judged part by part
 constexpr int kBags = 8, kBagsOfMany = 2;
 
-/// A member at the best place, by blocks of time, slow residuals counted as fewer samples.
-struct MemberProblem {
-  std::unique_ptr<Replay> extended;
-  LinearProblem problem;
-  Eigen::VectorXd generic_sd;
-  ResidualMemory memory;
-
-  MemberProblem(Member& member, const SelectionOptions& options)
-      : extended(ReplayOf(member, member.place)) {
-    FLEXTIP_CHECK(extended != nullptr, "a member stands where it has an equilibrium");
-    problem = ProblemHere(*extended, member.basis, options);
-    generic_sd = GenericSd(problem, member.may_miss);
-    std::vector<int> parameters, generic;
-    for (int j = 0; j < problem.Size(); ++j)
-      (j < problem.parameters ? parameters : generic).push_back(j);
-    Eigen::VectorXd x(problem.Size());
-    x << extended->Theta(),
-        BestOf(problem.total, parameters, generic, generic_sd, extended->Theta());
-    memory = MemoryOfResiduals(*extended, member.basis, problem, x);
-    problem.CountAsOne(memory.SamplesAsOne());
-  }
-};
-
-std::vector<MemberSums> AllSums(Fleet& fleet, const SelectionOptions& options) {
-  std::vector<MemberSums> sums(fleet.Size());
+std::vector<MemberSums> AllSums(const MemberWorkers& workers) {
+  const Fleet& fleet = workers.Members();
   const int bags = fleet.Size() <= kFew ? kBags : kBagsOfMany;
-  tbb::parallel_for(std::size_t{0}, fleet.Size(), [&](std::size_t r) {
-    const MemberProblem at(fleet.At(r), options);
-    sums[r] = SumsOf(at.problem, at.generic_sd, bags, r + 1);
-    sums[r].samples_as_one = at.memory.SamplesAsOne();
-    sums[r].chi2_per_dof = at.extended->ChiSquaredPerDof();
-  });
+  std::vector<MemberTask> tasks;
+  for (std::size_t r = 0; r < fleet.Size(); ++r)
+    tasks.push_back({r, SumUp{fleet.At(r).place, bags}});
+  std::vector<MemberSums> sums;
+  for (MemberAnswer& answer : workers.Do(tasks))
+    sums.push_back(std::move(std::get<MemberSums>(answer)));
   return sums;
 }
 
-/// What is known of all members, to judge one of them.
-struct Known {
-  const JointSelection& selection;
-  const JointProbabilities& probabilities;
-  const JointEvidence& evidence;
-  const SelectionOptions& options;
-  std::size_t recordings = 1;
-
-  bool AreFew() const { return recordings <= kFew; }
-};
-
-Selection SelectionOf(std::size_t r, const Member& member, MemberProblem& at, const Known& known) {
-  Selection selection;
-  at.problem.Know([&] {
-    const NormalSums of_parameters = known.evidence.KnownTo(r, known.probabilities.answer);
-    NormalSums all(at.problem.Size());
-    const int P = at.problem.parameters;
-    all.H.topLeftCorner(P, P) = of_parameters.H;
-    all.g.head(P) = of_parameters.g;
-    all.c = of_parameters.c;
-    all.volume = of_parameters.volume;
-    return all;
-  }());
-  selection.converged = known.selection.converged;
-  selection.fits = known.selection.fits;
-  selection.far_samples = member.far_samples;
-  selection.chi2_per_dof = at.extended->ChiSquaredPerDof();
-  selection.memory = at.memory;
-  selection.problem = std::move(at.problem);
-  selection.generic_sd = at.generic_sd;
-  std::vector<Hypothesis> hypotheses = AllHypotheses(member.layout.EffectCount());
-  const Hypothesis here{known.probabilities.answer.hypothesis.EffectsIn(r), false};
-  if (here.effects.size() > 2) hypotheses.push_back(here);
-  const Evidence evidence(selection.problem.total, member.layout, selection.generic_sd);
-  selection.scored = Score(evidence, member.layout.EffectCount(), hypotheses, known.options, {});
-  return selection;
+MemberContext ContextOf(std::size_t r, const MemberWorkers& workers,
+                        const JointSelection& selection, const JointProbabilities& probabilities,
+                        const JointEvidence& evidence) {
+  const std::size_t size = workers.Members().Size();
+  const JointHypothesis& answer = probabilities.answer.hypothesis;
+  MemberContext context;
+  context.known = evidence.KnownTo(r, probabilities.answer);
+  context.present = answer.EffectsIn(r);
+  context.common = answer.effects;
+  context.names_effects = NamesEffects(probabilities.common.hypotheses.front().verdict);
+  context.converged = selection.converged;
+  context.fits = selection.fits;
+  context.bags = size <= kFew ? kBags : 0;
+  context.is_first = r == 0;
+  context.is_last = r + 1 == size;
+  return context;
 }
 
-/// The answer of member `r`; `sums`: where its errors go.
-struct Judged {
-  DiagnosisResult own;
-  std::vector<EffectFit> common_parameters, common_within_tolerance;
-  Eigen::MatrixXd common_covariance;
-  SensorTolerance common_sensor_tolerance;
-  std::vector<std::vector<std::string>> common_groups;
-  std::string separating_motion;
-  double separating_score = 0.0;
-  HeldOut heldout;
-};
-
-void DescribeCommon(const MemberProblem& at, const Selection& selection, const Known& known,
-                    bool names_effects, Judged& judged) {
-  const Evidence evidence(selection.problem.total, at.extended->Layout(), selection.generic_sd,
-                          {.unknown_sd = {}});
-  const WeighedHypothesis weighed =
-      evidence.Weigh({known.probabilities.answer.hypothesis.effects, false});
-  DiagnosisResult common;
-  DescribeParameters(*at.extended, selection, weighed, common);
-  if (names_effects) DescribeAmbiguity(*at.extended, selection, weighed, true, common);
-  judged.common_parameters = common.parameters;
-  judged.common_within_tolerance = common.within_tolerance;
-  judged.common_covariance = common.covariance;
-  judged.common_sensor_tolerance = common.sensor_tolerance;
-  judged.common_groups = common.indistinguishable;
-  judged.separating_motion = common.separating_motion;
-  judged.separating_score = common.separating_motion_score;
-}
-
-Judged Judge(std::size_t r, Member& member, const NamedRecording& recording, const Known& known,
-             const DiagnoseOptions& options) {
-  Judged judged;
-  DiagnosisResult& result = judged.own;
-  MemberProblem at(member, known.options);
-  const Selection selection = SelectionOf(r, member, at, known);
-  Replay base(member.samples, member.layout);
-  MoveToBase(base, member.name);
-  result.signatures = FindSignatures(base);
-  if (member.far_samples > 0) {
-    result.warnings.push_back(
-        fmt::format("{} of {} samples are far from what any model says: left out",
-                    member.far_samples, member.samples.samples.size()));
+std::vector<JudgedMember> JudgeAll(const MemberWorkers& workers,
+                                   const std::vector<NamedRecording>& recordings,
+                                   const JointSelection& selection,
+                                   const std::vector<MemberSums>& sums,
+                                   const JointProbabilities& probabilities) {
+  std::vector<NormalSums> narrow;
+  narrow.reserve(sums.size());
+  for (const MemberSums& member : sums) narrow.push_back(member.narrow);
+  const Fleet& fleet = workers.Members();
+  const JointEvidence evidence(fleet, std::move(narrow));
+  std::vector<MemberTask> tasks;
+  for (std::size_t r = 0; r < fleet.Size(); ++r) {
+    Judge judge{fleet.At(r).place, ContextOf(r, workers, selection, probabilities, evidence)};
+    judge.context.start_ns = recordings[r].recording.wrist0->samples.front().t_ns;
+    tasks.push_back({r, std::move(judge)});
   }
-  result.memory = selection.memory;
-  const Probabilities probabilities = MakeProbabilities(selection, member.layout, known.options,
-                                                        {.bags = known.AreFew() ? kBags : 0});
-  result.probabilities = probabilities.hypotheses;
-  result.presence = probabilities.presence;
-  result.credible_set = probabilities.credible_set;
-  result.verdict = probabilities.hypotheses.front().verdict;
-  if (!result.IsAdequate()) result.warnings.push_back(MemoryWarning(selection.memory));
-  const WeighedHypothesis& best = selection.BestKnown();
-  DescribeParameters(*at.extended, selection, best, result);
-  if (NamesEffects(result.verdict)) DescribeAmbiguity(*at.extended, selection, best, false, result);
-  base.TakeSettings(*at.extended);
-  if (options.measure_gain) {
-    judged.heldout = MeasureHeldOut(base, *at.extended, selection, best);
-    result.base = judged.heldout.base;
-    result.extended = judged.heldout.extended;
-    result.gain = judged.heldout.gain;
-  }
-  result.residuals = MakeResidualTable(base, *at.extended);
-  DescribeRecording(*at.extended, selection, recording.recording.wrist0->samples.front().t_ns,
-                    result);
-  if (options.plan && r + 1 == known.recordings)
-    result.plan = PlanNextMotion(*at.extended, selection, result.indistinguishable, *options.plan);
-  const Verdict& common = known.probabilities.common.hypotheses.front().verdict;
-  if (r == 0) DescribeCommon(at, selection, known, NamesEffects(common), judged);
+  std::vector<JudgedMember> judged;
+  for (MemberAnswer& answer : workers.Do(tasks))
+    judged.push_back(std::move(std::get<JudgedMember>(answer)));
   return judged;
 }
 
@@ -199,12 +100,12 @@ ResidualTable Joined(const std::vector<DiagnosisResult>& own) {
   return joined;
 }
 
-DiagnosisResult CommonOf(const std::vector<Judged>& judged, const SeveralResult& several,
-                         const Known& known) {
+DiagnosisResult CommonOf(const std::vector<JudgedMember>& judged, const SeveralResult& several,
+                         const Probabilities& probabilities) {
   DiagnosisResult common = judged.front().own;  // catalogue, nominal values, start and centre
-  common.probabilities = known.probabilities.common.hypotheses;
-  common.presence = known.probabilities.common.presence;
-  common.credible_set = known.probabilities.common.credible_set;
+  common.probabilities = probabilities.hypotheses;
+  common.presence = probabilities.presence;
+  common.credible_set = probabilities.credible_set;
   common.verdict = common.probabilities.front().verdict;
   common.parameters = judged.front().common_parameters;
   common.within_tolerance = judged.front().common_within_tolerance;
@@ -256,25 +157,19 @@ std::vector<ReportedParameter> ParametersOf(const DiagnosisResult& result,
 }  // namespace
 
 SeveralResult DiagnoseSeveral(const std::vector<NamedRecording>& recordings,
-                              const DiagnoseOptions& options) {
+                              const DiagnoseOptions& options, const Helpers& helpers) {
   RequireEffects(options.without, options.own_effects);
   const SelectionOptions selection_options;
   Fleet fleet(recordings, options);
   if (options.plan)
     RequireUsable(*options.plan, fleet.At(fleet.Size() - 1).samples, recordings.back().name);
-  const JointSelection selection = SearchJointly(fleet, selection_options);
-  const std::vector<MemberSums> sums = AllSums(fleet, selection_options);
+  const MemberWorkers workers(fleet, options, selection_options, helpers);
+  const JointSelection selection = SearchJointly(workers);
+  const std::vector<MemberSums> sums = AllSums(workers);
   const JointProbabilities probabilities =
       MakeJointProbabilities(fleet, sums, selection, selection_options);
-  std::vector<NormalSums> narrow;
-  narrow.reserve(sums.size());
-  for (const MemberSums& member : sums) narrow.push_back(member.narrow);
-  const JointEvidence evidence(fleet, std::move(narrow));
-  const Known known{selection, probabilities, evidence, selection_options, fleet.Size()};
-  std::vector<Judged> judged(fleet.Size());
-  tbb::parallel_for(std::size_t{0}, fleet.Size(), [&](std::size_t r) {
-    judged[r] = Judge(r, fleet.At(r), recordings[r], known, options);
-  });
+  const std::vector<JudgedMember> judged =
+      JudgeAll(workers, recordings, selection, sums, probabilities);
   SeveralResult result;
   for (std::size_t r = 0; r < fleet.Size(); ++r) {
     result.names.push_back(recordings[r].name);
@@ -286,7 +181,7 @@ SeveralResult DiagnoseSeveral(const std::vector<NamedRecording>& recordings,
     result.changes.push_back(
         {effect, first, found.probability, ParametersOf(result.own[first], effect)});
   }
-  result.common = CommonOf(judged, result, known);
+  result.common = CommonOf(judged, result, probabilities.common);
   return result;
 }
 

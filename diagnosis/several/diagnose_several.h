@@ -7,6 +7,7 @@
 
 #include "core/judgement.h"
 #include "diagnosis/diagnose.h"
+#include "diagnosis/several/helpers.h"
 
 namespace flextip::diagnosis {
 
@@ -32,11 +33,11 @@ struct SeveralResult {
   std::vector<FoundChange> changes;
 };
 
-/// In order of time. A motion that is planned goes on from the last recording, in the light of all.
-/// Throws as Diagnose does, and InputError where the recordings are not of one
-/// instrument.
+/// In order of time. `helpers` share the work; the result is the same. A motion that is planned
+/// goes on from the last recording, in the light of all. Throws as Diagnose does, and InputError
+/// where the recordings are not of one instrument.
 SeveralResult DiagnoseSeveral(const std::vector<NamedRecording>& recordings,
-                              const DiagnoseOptions& options = {});
+                              const DiagnoseOptions& options = {}, const Helpers& helpers = {});
 
 /// Throws InputError where the recordings cannot be stretches of one session (recording/join.h):
 /// another instrument, a sensor that says something else of itself, or a wrist that begins

@@ -1,16 +1,8 @@
 #include "diagnosis/several/joint_fit.h"
 
-#include <fmt/format.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
-#include "core/check.h"
-#include "core/error.h"
-#include "diagnosis/evidence/generic_basis.h"
-#include "diagnosis/samples/noise_level.h"
 #include "diagnosis/search/parameter_scan.h"
 
 namespace flextip::diagnosis {
@@ -22,35 +14,6 @@ constexpr double kMostUntold = 3.0;  // times a promise that may come beyond it,
 constexpr double kNoRival = 2.0;     // log odds behind what is worth it
 constexpr double kFarthest = 6.0;    // typical sizes
 constexpr double kPriorChange = 0.1;
-
-template <class Work>
-void ForAll(Fleet& fleet, const Work& work) {
-  tbb::parallel_for(std::size_t{0}, fleet.Size(), [&](std::size_t r) { work(fleet.At(r)); });
-}
-
-void TakeSums(Member& member, const Replay& replay, const SelectionOptions& options) {
-  SelectionOptions whole = options;
-  whole.blocks = 1;
-  const LinearProblem problem = ProblemHere(replay, member.basis, whole);
-  member.sums = OfParameters(problem, problem.total, GenericSd(problem, member.may_miss));
-  member.place = PlaceOf(replay);
-}
-
-/// False, and the member where it was, where it has no equilibrium there.
-bool MoveMember(Member& member, const Eigen::VectorXd& theta, const SelectionOptions& options) {
-  Place there = member.place;
-  there.theta = theta;
-  const auto replay = ReplayOf(member, there);
-  if (!replay) return false;
-  TakeSums(member, *replay, options);
-  return true;
-}
-
-void ScanMember(Member& member, Replay& replay, const Fleet& fleet, bool shared_too) {
-  std::vector<int> blocks = member.layout.ScannedBlocks();
-  if (!shared_too) std::erase_if(blocks, [&](int b) { return !fleet.SharedOf(b).empty(); });
-  ScanAgain(replay, member.layout, blocks);
-}
 
 /// What all share is about the same centre.
 void ShareScanCentres(Fleet& fleet, std::size_t from) {
@@ -92,21 +55,23 @@ void MakePlausible(const Fleet& fleet, std::vector<Eigen::VectorXd>& theta) {
 /// Towards `target` as far as that explains more than standing at `from`. Near the target a part of
 /// the way gains its part of what the whole promises: given up where that is less than `least` log
 /// odds.
-bool MoveTowards(Fleet& fleet, const JointFit& fit, const std::vector<Eigen::VectorXd>& from,
-                 const std::vector<Eigen::VectorXd>& target, double before, double least,
-                 const SelectionOptions& options) {
+bool MoveTowards(const MemberWorkers& workers, const JointFit& fit,
+                 const std::vector<Eigen::VectorXd>& from,
+                 const std::vector<Eigen::VectorXd>& target, double before, double least) {
+  Fleet& fleet = workers.Members();
   const JointPlace here = PlaceOf(fleet);
   for (double part = 1.0; part > 0.1; part *= 0.4) {
     const bool is_near = part < 1.0 && fit.promised < kHopeless;
     if (is_near && part * (2.0 - part) * fit.promised < least) break;
     std::vector<Eigen::VectorXd> theta(fleet.Size());
-    for (std::size_t r = 0; r < fleet.Size(); ++r)
+    std::vector<MemberTask> moves;
+    for (std::size_t r = 0; r < fleet.Size(); ++r) {
       theta[r] = from[r] + part * (target[r] - from[r]);
-    std::atomic<bool> all{true};
-    tbb::parallel_for(std::size_t{0}, fleet.Size(), [&](std::size_t r) {
-      if (!MoveMember(fleet.At(r), theta[r], options)) all = false;
-    });
-    if (all && EvidenceHere(fleet).Merit(fit.weighed, theta) < before) return true;
+      Place there = fleet.At(r).place;
+      there.theta = theta[r];
+      moves.push_back({r, ToPlace{std::move(there)}});
+    }
+    if (workers.Move(moves) && EvidenceHere(fleet).Merit(fit.weighed, theta) < before) return true;
     GoTo(fleet, here);
   }
   return false;
@@ -131,51 +96,25 @@ void GoTo(Fleet& fleet, const JointPlace& place) {
   }
 }
 
-void StandAtBase(Fleet& fleet, const SelectionOptions& options) {
-  const auto stand = [&](Member& member, bool scan_shared) {
-    Replay replay(member.samples, member.layout);
-    if (!replay.Evaluate(Eigen::VectorXd::Zero(member.layout.Size()))) {
-      throw WorkError(fmt::format(
-          "{}: the nominal instrument has no equilibrium in {} of {} samples: check length, port "
-          "and load",
-          member.name, replay.FailedSamples(), member.samples.samples.size()));
-    }
-    const std::vector<std::size_t> far = FarSamples(replay);
-    member.far_samples = int(far.size());
-    replay.LeaveOut(far);
-    replay.FixNoiseModel();
-    ScanMember(member, replay, fleet, scan_shared);
-    member.settings = replay.SettingsNow();
-    member.basis = GenericBasis(replay);
-    SelectionOptions whole = options;
-    whole.blocks = 1;
-    const LinearProblem problem = ProblemHere(replay, member.basis, whole);
-    member.may_miss = MayMiss(problem.residual_size, options.discrepancy, options);
-    const Rows at_first = MayMiss(problem.residual_size, options.first_discrepancy, options);
-    member.sums = OfParameters(problem, problem.total, GenericSd(problem, at_first));
-    member.place = PlaceOf(replay);
+void StandAtBase(const MemberWorkers& workers) {
+  Fleet& fleet = workers.Members();
+  const auto task = [&](std::size_t r, bool scan_shared) {
+    return MemberTask{r, ToBase{scan_shared, ScanCentres(fleet.At(r).layout)}};
   };
   // What began in some recording is in the last one.
   const std::size_t last = fleet.Size() - 1;
-  stand(fleet.At(last), true);
+  workers.Move({task(last, true)});
   ShareScanCentres(fleet, last);
-  tbb::parallel_for(std::size_t{0}, last, [&](std::size_t r) { stand(fleet.At(r), false); });
+  std::vector<MemberTask> others;
+  for (std::size_t r = 0; r < last; ++r) others.push_back(task(r, false));
+  workers.Move(others);
 }
 
-void FixMeasure(Fleet& fleet, const SelectionOptions& options) {
-  ForAll(fleet, [&](Member& member) {
-    const auto replay = ReplayOf(member, member.place);
-    FLEXTIP_CHECK(replay != nullptr, "a member stands where it has an equilibrium");
-    replay->LeaveOut({});
-    const std::vector<std::size_t> far = FarSamples(*replay);
-    member.far_samples = int(far.size());
-    replay->LeaveOut(far);
-    replay->SetNoiseScale(NoiseScale(*replay));
-    replay->FixNoiseModel();
-    member.settings = replay->SettingsNow();
-    member.basis = GenericBasis(*replay);
-    TakeSums(member, *replay, options);
-  });
+void FixMeasure(const MemberWorkers& workers) {
+  std::vector<MemberTask> tasks;
+  for (std::size_t r = 0; r < workers.Members().Size(); ++r)
+    tasks.push_back({r, Remeasure{workers.Members().At(r).place}});
+  workers.Move(tasks);
 }
 
 JointEvidence EvidenceHere(const Fleet& fleet) {
@@ -192,8 +131,9 @@ double LogPrior(const JointHypothesis& h, const Fleet& fleet, const SelectionOpt
   return common + double(h.changes.size()) * std::log(each);
 }
 
-JointFit FitJointly(Fleet& fleet, const JointHypothesis& hypothesis, int rounds, double worth,
-                    const SelectionOptions& options) {
+JointFit FitJointly(const MemberWorkers& workers, const JointHypothesis& hypothesis, int rounds,
+                    double worth) {
+  Fleet& fleet = workers.Members();
   JointFit fit;
   for (int round = 0; round < rounds; ++round) {
     const JointEvidence evidence = EvidenceHere(fleet);
@@ -205,7 +145,7 @@ JointFit FitJointly(Fleet& fleet, const JointHypothesis& hypothesis, int rounds,
     const double before = evidence.Merit(fit.weighed, from);
     fit.promised = std::max(0.0, 0.5 * (before - least));
     fit.log_posterior =
-        fit.weighed.log_evidence + LogPrior(hypothesis, fleet, options) - fit.promised;
+        fit.weighed.log_evidence + LogPrior(hypothesis, fleet, workers.Options()) - fit.promised;
     fit.place = PlaceOf(fleet);
     if (round > 0 && fit.promised < kAtRest) break;
     const double behind = worth - (fit.log_posterior + fit.promised);
@@ -213,7 +153,7 @@ JointFit FitJointly(Fleet& fleet, const JointHypothesis& hypothesis, int rounds,
     if (round == 1 && behind > kHopeless + kMostUntold * fit.promised) break;
     if (round + 1 == rounds) break;
     const double gain_to_rival = behind + fit.promised - kNoRival;
-    if (!MoveTowards(fleet, fit, from, target, before, gain_to_rival, options)) break;
+    if (!MoveTowards(workers, fit, from, target, before, gain_to_rival)) break;
   }
   return fit;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnosis/several/joint_evidence.h"
+#include "diagnosis/several/workers.h"
 
 namespace flextip::diagnosis {
 
@@ -16,13 +17,11 @@ struct JointPlace {
 JointPlace PlaceOf(const Fleet& fleet);
 void GoTo(Fleet& fleet, const JointPlace& place);
 
-/// Puts all members at the base simulation: far samples left out, the noise model fixed,
-/// frequencies scanned, and the generic basis and discrepancy taken there. Throws WorkError where
-/// the nominal instrument has no equilibrium.
-void StandAtBase(Fleet& fleet, const SelectionOptions& options);
+/// Puts all members at the base simulation (member_work.h), what all share about the same centre.
+void StandAtBase(const MemberWorkers& workers);
 
 /// Takes noise, unknown forces' size and generic basis anew where the members stand.
-void FixMeasure(Fleet& fleet, const SelectionOptions& options);
+void FixMeasure(const MemberWorkers& workers);
 
 /// Weighed where the fleet stands.
 JointEvidence EvidenceHere(const Fleet& fleet);
@@ -39,7 +38,7 @@ double LogPrior(const JointHypothesis& h, const Fleet& fleet, const SelectionOpt
 
 /// From where the fleet stands, at most `rounds` steps; given up after two where the log posterior
 /// is clearly below `worth`, and after one where it is far below.
-JointFit FitJointly(Fleet& fleet, const JointHypothesis& hypothesis, int rounds, double worth,
-                    const SelectionOptions& options);
+JointFit FitJointly(const MemberWorkers& workers, const JointHypothesis& hypothesis, int rounds,
+                    double worth);
 
 }  // namespace flextip::diagnosis

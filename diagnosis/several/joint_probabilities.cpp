@@ -8,8 +8,6 @@
 namespace flextip::diagnosis {
 namespace {
 
-const std::vector<double> kUnknownSd{0.1, 0.3, 1.0, 3.0};  // of generic terms, in noise sd
-constexpr double kBaggedUnknownSd = 0.3;
 constexpr std::size_t kLeaders = 30;
 constexpr double kLikelierThanNot = 0.5;
 
@@ -96,7 +94,7 @@ std::map<Verdict, double> Whole(const Fleet& fleet, const std::vector<MemberSums
     if (leaders.size() < kLeaders || s.weighed.hypothesis == JointHypothesis{})
       leaders.push_back(s.weighed.hypothesis);
   std::vector<std::vector<NormalSums>> by_width;
-  for (std::size_t w = 0; w < kUnknownSd.size(); ++w)
+  for (std::size_t w = 0; w < kUnknownWidths.size(); ++w)
     by_width.push_back(Each(sums, [&](const auto& m) -> const NormalSums& { return m.wide[w]; }));
   AddUnknowns(by_width, fleet, Unknowns(fleet, best), options, scored);
   return Shares(scored, fleet);
@@ -176,23 +174,6 @@ void FillCommon(const std::map<Verdict, double>& probability, const ProbabilityO
 }
 
 }  // namespace
-
-MemberSums SumsOf(const LinearProblem& problem, const Eigen::VectorXd& generic_sd, int bags,
-                  std::uint64_t seed) {
-  MemberSums sums;
-  const auto with = [&](const NormalSums& of, double width) {
-    return OfParameters(problem, of, generic_sd.cwiseMax(width));
-  };
-  sums.narrow = with(problem.total, 0.0);
-  for (const double width : kUnknownSd) sums.wide.push_back(with(problem.total, width));
-  std::mt19937_64 rng(seed);
-  for (int bag = 0; bag < bags; ++bag) {
-    const NormalSums drawn = DrawBag(problem, rng);
-    sums.bags.push_back(with(drawn, 0.0));
-    sums.wide_bags.push_back(with(drawn, kBaggedUnknownSd));
-  }
-  return sums;
-}
 
 JointProbabilities MakeJointProbabilities(const Fleet& fleet, const std::vector<MemberSums>& sums,
                                           const JointSelection& selection,

@@ -6,22 +6,9 @@
 
 #include "diagnosis/evidence/probabilities.h"
 #include "diagnosis/several/joint_search.h"
+#include "diagnosis/several/judge_member.h"
 
 namespace flextip::diagnosis {
-
-/// A member's normal sums of its parameters, made one member after the other.
-struct MemberSums {
-  NormalSums narrow;             ///< generic terms within what a right form may miss
-  std::vector<NormalSums> wide;  ///< generic terms that carry something unknown, by width
-  std::vector<NormalSums> bags;  ///< of its blocks of time, drawn with replacement
-  std::vector<NormalSums> wide_bags;
-  double samples_as_one = 1.0;  ///< all of them are divided by it already
-  double chi2_per_dof = 0.0;
-};
-
-/// `problem` of a member (by blocks of time); the bags differ by `seed`.
-MemberSums SumsOf(const LinearProblem& problem, const Eigen::VectorXd& generic_sd, int bags,
-                  std::uint64_t seed);
 
 struct ProbableChange {
   Change change;

@@ -78,14 +78,15 @@ std::vector<JointScored> WithChanges(const JointEvidence& evidence, const Fleet&
 
 class Search {
  public:
-  Search(Fleet& fleet, const SelectionOptions& options) : fleet_(fleet), options_(options) {}
+  explicit Search(const MemberWorkers& workers)
+      : workers_(workers), fleet_(workers.Members()), options_(workers.Options()) {}
 
   JointSelection Run() {
-    StandAtBase(fleet_, options_);
+    StandAtBase(workers_);
     const JointPlace base = PlaceOf(fleet_);
     FitLeadersFrom(base);
     GoTo(fleet_, best_.place);
-    FixMeasure(fleet_, options_);
+    FixMeasure(workers_);
     std::vector<JointHypothesis> near{best_.weighed.hypothesis};
     for (const JointFit& fit : tried_)
       if (fit.log_posterior > best_.log_posterior - kNearLeader &&
@@ -94,7 +95,7 @@ class Search {
     tried_.clear();
     best_ = {};
     for (const JointHypothesis& leader : near)
-      Keep(FitJointly(fleet_, leader, kMostRounds, best_.log_posterior, options_));
+      Keep(FitJointly(workers_, leader, kMostRounds, best_.log_posterior));
     FitRivals();
     FitPartsOfBest();
     GoTo(fleet_, best_.place);
@@ -145,7 +146,7 @@ class Search {
 
   void FitFrom(const JointPlace& place, const JointHypothesis& h) {
     GoTo(fleet_, place);
-    Keep(FitJointly(fleet_, h, kFirstRounds, best_.log_posterior, options_));
+    Keep(FitJointly(workers_, h, kFirstRounds, best_.log_posterior));
   }
 
   /// The best one is fitted until it is at rest: a rival that is fitted from its place would gain
@@ -153,7 +154,7 @@ class Search {
   void Settle() {
     GoTo(fleet_, best_.place);
     if (best_.promised < kSettled || best_.log_posterior == settled_at_) return;
-    Keep(FitJointly(fleet_, best_.weighed.hypothesis, kMostRounds, best_.log_posterior, options_));
+    Keep(FitJointly(workers_, best_.weighed.hypothesis, kMostRounds, best_.log_posterior));
     settled_at_ = best_.log_posterior;
     GoTo(fleet_, best_.place);
   }
@@ -174,8 +175,7 @@ class Search {
       }
       rivals_left_ = rival != nullptr;
       if (!rivals_left_) return;
-      Keep(
-          FitJointly(fleet_, rival->weighed.hypothesis, kFitRounds, best_.log_posterior, options_));
+      Keep(FitJointly(workers_, rival->weighed.hypothesis, kFitRounds, best_.log_posterior));
     }
   }
 
@@ -232,6 +232,7 @@ class Search {
     }
   }
 
+  const MemberWorkers& workers_;
   Fleet& fleet_;
   const SelectionOptions& options_;
   std::vector<JointFit> tried_;
@@ -277,8 +278,6 @@ std::vector<JointScored> WeighAll(const JointEvidence& evidence, const Fleet& fl
   return scored;
 }
 
-JointSelection SearchJointly(Fleet& fleet, const SelectionOptions& options) {
-  return Search(fleet, options).Run();
-}
+JointSelection SearchJointly(const MemberWorkers& workers) { return Search(workers).Run(); }
 
 }  // namespace flextip::diagnosis

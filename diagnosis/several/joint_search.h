@@ -27,6 +27,6 @@ std::vector<JointScored> WeighAll(const JointEvidence& evidence, const Fleet& fl
                                   const JointHypothesis& best, const SelectionOptions& options);
 
 /// Moves the fleet to the best place and leaves it there.
-JointSelection SearchJointly(Fleet& fleet, const SelectionOptions& options = {});
+JointSelection SearchJointly(const MemberWorkers& workers);
 
 }  // namespace flextip::diagnosis

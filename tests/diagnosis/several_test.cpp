@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <random>
 #include <string>
 #include <utility>
@@ -78,8 +79,7 @@ TEST(ReducedSums, EvidenceOfTheRestIsThatOfAll) {
 TEST(JointEvidence, OfOneRecordingIsItsOwn) {
   const auto named = Series({"stiffness"}, {}, 1, 1, 41);
   Fleet fleet(named, {});
-  const SelectionOptions options;
-  StandAtBase(fleet, options);
+  StandAtBase(MemberWorkers(fleet));
   const JointEvidence joint = EvidenceHere(fleet);
   const Member& member = fleet.At(0);
   const Evidence alone(member.sums, member.layout, Eigen::VectorXd(), {.unknown_sd = {}});
@@ -95,7 +95,7 @@ TEST(JointEvidence, OfOneRecordingIsItsOwn) {
 TEST(JointEvidence, AChangeIsWeighedTheSameInBothWays) {
   const auto named = Series({}, {"stiffness"}, 1, 3, 42);
   Fleet fleet(named, {});
-  StandAtBase(fleet, {});
+  StandAtBase(MemberWorkers(fleet));
   const JointEvidence evidence = EvidenceHere(fleet);
   const JointWeighed none = evidence.Weigh({});
   int compared = 0;
@@ -115,7 +115,7 @@ TEST(JointEvidence, AChangeIsWeighedTheSameInBothWays) {
 TEST(JointEvidence, AChangeBesideOneOfOwnParametersIsWeighedTheSame) {
   const auto named = Series({}, {"strain_drift"}, 2, 3, 48);
   Fleet fleet(named, {});
-  StandAtBase(fleet, {});
+  StandAtBase(MemberWorkers(fleet));
   const JointEvidence evidence = EvidenceHere(fleet);
   JointHypothesis drift;
   drift.changes = {{fleet.Layout().Find("strain_drift"), 2}};
@@ -178,6 +178,65 @@ TEST(Several, ABreathIsEachRecordingsOwn) {
   EXPECT_THAT(several.common.verdict, ElementsAre("port_motion"));
   EXPECT_THAT(several.changes, IsEmpty());
   for (const DiagnosisResult& own : several.own) EXPECT_LT(own.extended.chi2_per_dof, 1.4);
+}
+
+/// Two helpers, as processes of their own have them: bytes alone go there and back.
+class HelpedDiagnosis : public testing::Test {
+ protected:
+  Helpers Ask() {
+    return {2, [this](const auto& requests, const auto& meanwhile) {
+              meanwhile();
+              std::vector<std::string> replies;
+              for (std::size_t i = 0; i < 2; ++i) replies.push_back(helpers_[i](requests[i]));
+              return replies;
+            }};
+  }
+  std::vector<std::function<std::string(const std::string&)>> helpers_;
+};
+
+/// Of a breath, whose frequency is scanned and shared.
+TEST_F(HelpedDiagnosis, IsTheSameAsAlone) {
+  const auto named = Series({"port_motion"}, {}, 1, 4, 46);
+  const DiagnoseOptions options{.plan = MotionLimits{.seconds = 5.0}};
+  MemberServer one(named, options), two(named, options);
+  int asked = 0;
+  helpers_ = {[&](const std::string& request) { return ++asked, one.Reply(request); },
+              [&](const std::string& request) { return two.Reply(request); }};
+  const SeveralResult helped = DiagnoseSeveral(named, options, Ask());
+  const SeveralResult alone = DiagnoseSeveral(named, options);
+  EXPECT_GT(asked, 3);
+  ASSERT_EQ(helped.own.size(), alone.own.size());
+  EXPECT_EQ(helped.common.covariance, alone.common.covariance);
+  EXPECT_EQ(helped.common.gain.heldout_error_ratio, alone.common.gain.heldout_error_ratio);
+  for (std::size_t r = 0; r < alone.own.size(); ++r) {
+    const DiagnosisResult &x = helped.own[r], &y = alone.own[r];
+    EXPECT_EQ(x.presence, y.presence);
+    EXPECT_EQ(x.credible_set, y.credible_set);
+    EXPECT_EQ(x.residuals.rows, y.residuals.rows);
+    EXPECT_EQ(x.residuals.present, y.residuals.present);
+    EXPECT_EQ(x.noise_sd, y.noise_sd);
+    EXPECT_EQ(x.start_ns, y.start_ns);
+    EXPECT_EQ(x.summaries, y.summaries);
+    EXPECT_EQ(x.extended.heldout_rms, y.extended.heldout_rms);
+    EXPECT_EQ(x.plan.has_value(), r == 3);
+  }
+  EXPECT_EQ(helped.own[3].plan->places_m, alone.own[3].plan->places_m);
+}
+
+TEST_F(HelpedDiagnosis, SaysWhyAHelperCannotWork) {
+  const auto named = Series({}, {}, 1, 2, 47);
+  const auto refuse = [](const std::string&) { return MemberServer::Refusal("rank 1: no disk"); };
+  helpers_ = {refuse, refuse};
+  EXPECT_THAT([&] { DiagnoseSeveral(named, {}, Ask()); },
+              testing::ThrowsMessage<WorkError>("rank 1: no disk"));
+  // A helper's own members may fail where those of the first process do not.
+  auto broken = named;
+  broken[1].recording.instrument.bending_stiffness_Nm2 *= 1e-6;
+  broken[0].recording.instrument = broken[1].recording.instrument;
+  MemberServer server(broken, {});
+  helpers_.front() = [&](const std::string& request) { return server.Reply(request); };
+  EXPECT_THAT([&] { DiagnoseSeveral(named, {}, Ask()); },
+              testing::ThrowsMessage<WorkError>(HasSubstr("day_1: the nominal instrument")));
 }
 
 TEST(Several, RefusesAnotherInstrument) {

@@ -95,6 +95,7 @@ const std::map<std::string, Names>& ForeignHeaders() {
       {"CLI/", {"reproduction", "apps", "bench", "testdata"}},
       {"pybind11/", {"python"}},
       {"mpi.h", {"batch"}},
+      {"cereal/", {"diagnosis"}},
   };
   return foreign;
 }

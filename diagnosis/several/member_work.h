@@ -1,0 +1,63 @@
+// Work on one member by itself. Any process can do it that has read the recordings.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "diagnosis/several/fleet.h"
+#include "diagnosis/several/judge_member.h"
+
+namespace flextip::diagnosis {
+
+/// To the base simulation: far samples left out, the noise model fixed, frequencies scanned, and
+/// the generic basis and discrepancy taken there. Throws WorkError where the nominal instrument has
+/// no equilibrium.
+struct ToBase {
+  bool scan_shared = false;  ///< what all share is scanned, too
+  std::vector<double> scan_centres;
+};
+
+/// To a place, by the noise, forces' size and generic basis of before.
+struct ToPlace {
+  Place place;
+};
+
+/// Takes noise, unknown forces' size and generic basis anew at a place that has an equilibrium.
+struct Remeasure {
+  Place place;
+};
+
+/// Sums at a place that has an equilibrium, for probabilities.
+struct SumUp {
+  Place place;
+  int bags = 0;
+};
+
+/// Gives the member's own answer.
+struct Judge {
+  Place place;
+  MemberContext context;
+};
+
+struct MemberTask {
+  std::size_t member = 0;
+  std::variant<ToBase, ToPlace, Remeasure, SumUp, Judge> what;
+};
+
+/// Where a member stands, as the search needs it.
+struct MemberState {
+  Place place;
+  NormalSums sums;
+  int far_samples = 0;
+};
+
+struct NoEquilibrium {};
+
+/// A state of the first three tasks, NoEquilibrium of the second where it has none there.
+using MemberAnswer = std::variant<NoEquilibrium, MemberState, MemberSums, JudgedMember>;
+
+/// Does a task. The member keeps the noise, forces' size and generic basis that it took.
+MemberAnswer DoTask(Fleet& fleet, const MemberTask& task, const DiagnoseOptions& options,
+                    const SelectionOptions& selection_options);
+
+}  // namespace flextip::diagnosis
