@@ -1,5 +1,6 @@
 // flextip diagnose: what the simulation gets wrong, why, and what an extended model gains.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -176,10 +177,10 @@ void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, boo
   nlohmann::json summary = SummaryOf(several.common);
   summary["recordings"] = several.names;
   summary["changes"] = several.changes.size();
-  for (std::size_t r = 0; r < several.own.size(); ++r) {
+  tbb::parallel_for(std::size_t{0}, several.own.size(), [&](std::size_t r) {
     const auto folder = output.folder() / "recordings" / several.names[r];
     WriteDiagnosisFiles(folder, DiagnosisJson(several.own[r]), several.own[r]);
-  }
+  });
   Judgement judged = diagnosis::JudgeSeveral(several);
   MentionFindings(findings, judged);
   Finish(options, reads, judged, summary, output, quiet);

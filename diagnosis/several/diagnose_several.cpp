@@ -17,11 +17,11 @@ constexpr int kBags = 8, kBagsOfMany = 2;
 std::vector<MemberSums> AllSums(const MemberWorkers& workers) {
   const Fleet& fleet = workers.Members();
   const int bags = fleet.Size() <= kFew ? kBags : kBagsOfMany;
-  std::vector<MemberTask> tasks;
-  for (std::size_t r = 0; r < fleet.Size(); ++r)
-    tasks.push_back({r, SumUp{fleet.At(r).place, bags}});
+  const auto sum_up = [&](std::size_t, Place place) -> MemberTask::What {
+    return SumUp{std::move(place), bags};
+  };
   std::vector<MemberSums> sums;
-  for (MemberAnswer& answer : workers.Do(tasks))
+  for (MemberAnswer& answer : workers.DoWhereTheyStand(sum_up))
     sums.push_back(std::move(std::get<MemberSums>(answer)));
   return sums;
 }
@@ -54,14 +54,13 @@ std::vector<JudgedMember> JudgeAll(const MemberWorkers& workers,
   for (const MemberSums& member : sums) narrow.push_back(member.narrow);
   const Fleet& fleet = workers.Members();
   const JointEvidence evidence(fleet, std::move(narrow));
-  std::vector<MemberTask> tasks;
-  for (std::size_t r = 0; r < fleet.Size(); ++r) {
-    Judge judge{fleet.At(r).place, ContextOf(r, workers, selection, probabilities, evidence)};
-    judge.context.start_ns = recordings[r].recording.wrist0->samples.front().t_ns;
-    tasks.push_back({r, std::move(judge)});
-  }
+  const auto judge = [&](std::size_t r, Place place) -> MemberTask::What {
+    MemberContext context = ContextOf(r, workers, selection, probabilities, evidence);
+    context.start_ns = recordings[r].recording.wrist0->samples.front().t_ns;
+    return Judge{std::move(place), std::move(context)};
+  };
   std::vector<JudgedMember> judged;
-  for (MemberAnswer& answer : workers.Do(tasks))
+  for (MemberAnswer& answer : workers.DoWhereTheyStand(judge))
     judged.push_back(std::move(std::get<JudgedMember>(answer)));
   return judged;
 }

@@ -213,6 +213,12 @@ Fleet::Fleet(const std::vector<NamedRecording>& recordings, const DiagnoseOption
   }
 }
 
+Place PlaceNow(const Member& member) {
+  Place place = member.place;
+  place.theta = member.theta;
+  return place;
+}
+
 std::unique_ptr<Replay> ReplayOf(Member& member, const Place& place) {
   auto replay = std::make_unique<Replay>(member.samples, member.layout);
   replay->Use(member.settings);

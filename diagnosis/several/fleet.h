@@ -24,6 +24,8 @@ struct Member {
   Place place = {};
   /// About the place, of the layout's parameters: the generic terms are integrated out.
   NormalSums sums;
+  /// Where the fit has the parameters: at the place, or so near that the sums still hold.
+  Eigen::VectorXd theta = {};
   int far_samples = 0;
 
   Member(std::string its_name, SampleSet its_samples, const std::vector<std::string>& effects,
@@ -56,6 +58,9 @@ class Fleet {
   std::vector<int> shared_;
   std::vector<std::vector<int>> shared_of_, own_of_;
 };
+
+/// Returns the place of a member with the parameters that the fit has.
+Place PlaceNow(const Member& member);
 
 /// Returns the replay of a member at its place, or at other parameters from there; empty where that
 /// has no equilibrium.

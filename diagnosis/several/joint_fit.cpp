@@ -8,11 +8,12 @@
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kAtRest = 0.1;      // log odds that are still promised
+constexpr double kStepDown = 0.4;
 constexpr double kHopeless = 40.0;   // log odds
 constexpr double kMostUntold = 3.0;  // times a promise that may come beyond it, after one step
 constexpr double kNoRival = 2.0;     // log odds behind what is worth it
-constexpr double kFarthest = 6.0;    // typical sizes
+constexpr double kStays = 0.1;  // of the log odds of rest: a recording's own that a move is about
+constexpr double kFarthest = 6.0;  // typical sizes
 constexpr double kPriorChange = 0.1;
 
 /// What all share is about the same centre.
@@ -28,7 +29,7 @@ void ShareScanCentres(Fleet& fleet, std::size_t from) {
 /// A place that the hypothesis allows: what does not change is the same in all.
 std::vector<Eigen::VectorXd> Allowed(const Fleet& fleet, const JointHypothesis& h) {
   std::vector<Eigen::VectorXd> theta;
-  for (std::size_t r = 0; r < fleet.Size(); ++r) theta.push_back(fleet.At(r).place.theta);
+  for (std::size_t r = 0; r < fleet.Size(); ++r) theta.push_back(fleet.At(r).theta);
   const Eigen::VectorXd first = theta.front(), last = theta.back();
   for (int e = 0; e < fleet.EffectCount(); ++e) {
     if (std::ranges::any_of(h.changes, [&](const Change& c) { return c.effect == e; })) continue;
@@ -52,26 +53,37 @@ void MakePlausible(const Fleet& fleet, std::vector<Eigen::VectorXd>& theta) {
   }
 }
 
+/// How much a member's theta is from the place of its sums, in log odds.
+double FromItsPlace(const Member& member) {
+  const Eigen::VectorXd way = member.theta - member.place.theta;
+  return 0.5 * way.dot(member.sums.H * way);
+}
+
 /// Towards `target` as far as that explains more than standing at `from`. Near the target a part of
 /// the way gains its part of what the whole promises: given up where that is less than `least` log
-/// odds.
+/// odds. `first_part` of the way is tried first, and left as a good one to try next. Members to
+/// which the way makes hardly a difference stay where their sums are.
 bool MoveTowards(const MemberWorkers& workers, const JointFit& fit,
                  const std::vector<Eigen::VectorXd>& from,
-                 const std::vector<Eigen::VectorXd>& target, double before, double least) {
+                 const std::vector<Eigen::VectorXd>& target, double before, double least,
+                 double rest, double& first_part) {
   Fleet& fleet = workers.Members();
   const JointPlace here = PlaceOf(fleet);
-  for (double part = 1.0; part > 0.1; part *= 0.4) {
+  for (double part = first_part; part > 0.1; part *= kStepDown) {
     const bool is_near = part < 1.0 && fit.promised < kHopeless;
     if (is_near && part * (2.0 - part) * fit.promised < least) break;
     std::vector<Eigen::VectorXd> theta(fleet.Size());
     std::vector<MemberTask> moves;
     for (std::size_t r = 0; r < fleet.Size(); ++r) {
       theta[r] = from[r] + part * (target[r] - from[r]);
-      Place there = fleet.At(r).place;
-      there.theta = theta[r];
-      moves.push_back({r, ToPlace{std::move(there)}});
+      Member& member = fleet.At(r);
+      member.theta = theta[r];
+      if (FromItsPlace(member) > kStays * rest) moves.push_back({r, ToPlace{PlaceNow(member)}});
     }
-    if (workers.Move(moves) && EvidenceHere(fleet).Merit(fit.weighed, theta) < before) return true;
+    if (workers.Move(moves) && EvidenceHere(fleet).Merit(fit.weighed, theta) < before) {
+      first_part = part == first_part ? 1.0 : part;
+      return true;
+    }
     GoTo(fleet, here);
   }
   return false;
@@ -84,6 +96,7 @@ JointPlace PlaceOf(const Fleet& fleet) {
   for (std::size_t r = 0; r < fleet.Size(); ++r) {
     place.places.push_back(fleet.At(r).place);
     place.sums.push_back(fleet.At(r).sums);
+    place.theta.push_back(fleet.At(r).theta);
   }
   return place;
 }
@@ -92,6 +105,7 @@ void GoTo(Fleet& fleet, const JointPlace& place) {
   for (std::size_t r = 0; r < fleet.Size(); ++r) {
     fleet.At(r).place = place.places[r];
     fleet.At(r).sums = place.sums[r];
+    fleet.At(r).theta = place.theta[r];
     SetScanCentres(fleet.At(r).layout, place.places[r].scan_centres);
   }
 }
@@ -111,10 +125,8 @@ void StandAtBase(const MemberWorkers& workers) {
 }
 
 void FixMeasure(const MemberWorkers& workers) {
-  std::vector<MemberTask> tasks;
-  for (std::size_t r = 0; r < workers.Members().Size(); ++r)
-    tasks.push_back({r, Remeasure{workers.Members().At(r).place}});
-  workers.Move(tasks);
+  workers.Take(workers.DoWhereTheyStand(
+      [](std::size_t, Place place) -> MemberTask::What { return Remeasure{std::move(place)}; }));
 }
 
 JointEvidence EvidenceHere(const Fleet& fleet) {
@@ -132,9 +144,10 @@ double LogPrior(const JointHypothesis& h, const Fleet& fleet, const SelectionOpt
 }
 
 JointFit FitJointly(const MemberWorkers& workers, const JointHypothesis& hypothesis, int rounds,
-                    double worth) {
+                    double worth, double rest) {
   Fleet& fleet = workers.Members();
   JointFit fit;
+  double first_part = 1.0;
   for (int round = 0; round < rounds; ++round) {
     const JointEvidence evidence = EvidenceHere(fleet);
     fit.weighed = evidence.Weigh(hypothesis);
@@ -147,13 +160,13 @@ JointFit FitJointly(const MemberWorkers& workers, const JointHypothesis& hypothe
     fit.log_posterior =
         fit.weighed.log_evidence + LogPrior(hypothesis, fleet, workers.Options()) - fit.promised;
     fit.place = PlaceOf(fleet);
-    if (round > 0 && fit.promised < kAtRest) break;
+    if (round > 0 && fit.promised < rest) break;
     const double behind = worth - (fit.log_posterior + fit.promised);
     if (round > 1 && behind > kHopeless) break;
     if (round == 1 && behind > kHopeless + kMostUntold * fit.promised) break;
     if (round + 1 == rounds) break;
     const double gain_to_rival = behind + fit.promised - kNoRival;
-    if (!MoveTowards(workers, fit, from, target, before, gain_to_rival)) break;
+    if (!MoveTowards(workers, fit, from, target, before, gain_to_rival, rest, first_part)) break;
   }
   return fit;
 }

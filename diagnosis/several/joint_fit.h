@@ -13,6 +13,7 @@ namespace flextip::diagnosis {
 struct JointPlace {
   std::vector<Place> places;
   std::vector<NormalSums> sums;
+  std::vector<Eigen::VectorXd> theta;
 };
 JointPlace PlaceOf(const Fleet& fleet);
 void GoTo(Fleet& fleet, const JointPlace& place);
@@ -36,9 +37,10 @@ struct JointFit {
 /// log of the prior odds: those of a single recording's hypothesis, and of each change.
 double LogPrior(const JointHypothesis& h, const Fleet& fleet, const SelectionOptions& options);
 
-/// From where the fleet stands, at most `rounds` steps; given up after two where the log posterior
-/// is clearly below `worth`, and after one where it is far below.
+/// From where the fleet stands, at most `rounds` steps, until less than `rest` log odds are
+/// promised; given up after two where the log posterior is clearly below `worth`, and after one
+/// where it is far below.
 JointFit FitJointly(const MemberWorkers& workers, const JointHypothesis& hypothesis, int rounds,
-                    double worth);
+                    double worth, double rest);
 
 }  // namespace flextip::diagnosis

@@ -1,6 +1,7 @@
 #include "diagnosis/several/joint_probabilities.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,19 +56,19 @@ std::vector<JointHypothesis> Unknowns(const Fleet& fleet, const JointHypothesis&
 void AddUnknowns(const std::vector<std::vector<NormalSums>>& by_width, const Fleet& fleet,
                  const std::vector<JointHypothesis>& unknowns, const SelectionOptions& options,
                  std::vector<JointScored>& scored) {
-  std::vector<std::vector<double>> logs(unknowns.size());
-  std::vector<JointScored> found(unknowns.size());
-  for (const auto& sums : by_width) {
-    const JointEvidence evidence(fleet, sums);
-    for (std::size_t i = 0; i < unknowns.size(); ++i) {
-      found[i].weighed = evidence.Weigh(unknowns[i]);
-      logs[i].push_back(found[i].weighed.log_evidence);
-    }
-  }
+  std::vector<std::vector<JointWeighed>> weighed(by_width.size());
+  tbb::parallel_for(std::size_t{0}, by_width.size(), [&](std::size_t w) {
+    const JointEvidence evidence(fleet, by_width[w]);
+    for (const JointHypothesis& h : unknowns) weighed[w].push_back(evidence.Weigh(h));
+  });
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    found[i].weighed.log_evidence = LogSumExp(logs[i]) - std::log(double(logs[i].size()));
-    found[i].log_posterior = found[i].weighed.log_evidence + LogPrior(unknowns[i], fleet, options);
-    scored.push_back(found[i]);
+    std::vector<double> logs;
+    logs.reserve(weighed.size());
+    for (const auto& of_width : weighed) logs.push_back(of_width[i].log_evidence);
+    JointScored found{weighed.back()[i], 0.0};
+    found.weighed.log_evidence = LogSumExp(logs) - std::log(double(logs.size()));
+    found.log_posterior = found.weighed.log_evidence + LogPrior(unknowns[i], fleet, options);
+    scored.push_back(found);
   }
 }
 
@@ -104,9 +105,9 @@ std::map<Verdict, double> Bagged(const Fleet& fleet, const std::vector<MemberSum
                                  const JointSelection& selection, double as_one,
                                  const SelectionOptions& options,
                                  const std::vector<JointHypothesis>& leaders) {
-  std::map<Verdict, double> mean;
   const std::size_t bags = sums.front().bags.size();
-  for (std::size_t bag = 0; bag < bags; ++bag) {
+  std::vector<std::map<Verdict, double>> of_bag(bags);
+  tbb::parallel_for(std::size_t{0}, bags, [&](std::size_t bag) {
     const JointEvidence evidence(
         fleet, Each(sums, [&](const auto& m) -> const NormalSums& { return m.bags[bag]; }));
     std::vector<JointScored> scored;
@@ -117,8 +118,11 @@ std::map<Verdict, double> Bagged(const Fleet& fleet, const std::vector<MemberSum
     }
     AddUnknowns({Each(sums, [&](const auto& m) -> const NormalSums& { return m.wide_bags[bag]; })},
                 fleet, Unknowns(fleet, selection.best.weighed.hypothesis), options, scored);
-    for (const auto& [key, p] : Shares(scored, fleet)) mean[key] += p / double(bags);
-  }
+    of_bag[bag] = Shares(scored, fleet);
+  });
+  std::map<Verdict, double> mean;
+  for (const auto& shares : of_bag)
+    for (const auto& [key, p] : shares) mean[key] += p / double(bags);
   return mean;
 }
 

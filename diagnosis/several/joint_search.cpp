@@ -15,7 +15,8 @@ constexpr int kFirstRounds = 6, kFitRounds = 4;
 constexpr int kMostRounds = 24;       // of the best one: where a play stood is found slowly
 constexpr double kNearLeader = 10.0;  // log odds behind the best leader that may still be right
 constexpr int kMostFits = 14;
-constexpr double kSettled = 1.0;      // log odds that are still promised
+constexpr double kSettled = 1.0;                          // log odds that are still promised
+constexpr double kJointlyAtRest = 0.1, kFirstRest = 3.0;  // the same; before noise is measured
 constexpr double kRival = 2.0;        // log odds below the best that are worth a fit
 constexpr std::size_t kBesides = 10;  // hypotheses beside which changes are weighed, with singles
 constexpr std::size_t kFewRecordings = 10;  // own effects are weighed beside all of these
@@ -95,7 +96,7 @@ class Search {
     tried_.clear();
     best_ = {};
     for (const JointHypothesis& leader : near)
-      Keep(FitJointly(workers_, leader, kMostRounds, best_.log_posterior));
+      Keep(FitJointly(workers_, leader, kMostRounds, best_.log_posterior, kJointlyAtRest));
     FitRivals();
     FitPartsOfBest();
     GoTo(fleet_, best_.place);
@@ -138,15 +139,29 @@ class Search {
     const double clearly = std::max(kClearly, kClearlyPart * (best - nothing.log_posterior));
     for (std::size_t i = 0; i < kLeaders && i < scored.size(); ++i) {
       if (scored[i].log_posterior < best - clearly) break;
-      FitFrom(base, scored[i].weighed.hypothesis);
+      if (LeadsByItself(scored[i], nothing))
+        FitFrom(base, scored[i].weighed.hypothesis, kFirstRest);
     }
     // Where it is clearly behind, `none` is fitted as a part of the best.
-    if (nothing.log_posterior > best - clearly && Tried({}) == nullptr) FitFrom(base, {});
+    if (nothing.log_posterior > best - clearly && Tried({}) == nullptr)
+      FitFrom(base, {}, kFirstRest);
   }
 
-  void FitFrom(const JointPlace& place, const JointHypothesis& h) {
+  /// What looks no better than nothing, and a change that begins elsewhere than one that is fitted,
+  /// lead where that leads, and are fitted from there.
+  bool LeadsByItself(const JointScored& one, const JointScored& nothing) const {
+    const JointHypothesis& h = one.weighed.hypothesis;
+    if (!(h == JointHypothesis{}) && one.log_posterior < nothing.log_posterior) return false;
+    return std::ranges::none_of(tried_, [&](const JointFit& fit) {
+      const JointHypothesis& before = fit.weighed.hypothesis;
+      return before.effects == h.effects &&
+             std::ranges::equal(before.changes, h.changes, {}, &Change::effect, &Change::effect);
+    });
+  }
+
+  void FitFrom(const JointPlace& place, const JointHypothesis& h, double rest) {
     GoTo(fleet_, place);
-    Keep(FitJointly(workers_, h, kFirstRounds, best_.log_posterior));
+    Keep(FitJointly(workers_, h, kFirstRounds, best_.log_posterior, rest));
   }
 
   /// The best one is fitted until it is at rest: a rival that is fitted from its place would gain
@@ -154,7 +169,8 @@ class Search {
   void Settle() {
     GoTo(fleet_, best_.place);
     if (best_.promised < kSettled || best_.log_posterior == settled_at_) return;
-    Keep(FitJointly(workers_, best_.weighed.hypothesis, kMostRounds, best_.log_posterior));
+    Keep(FitJointly(workers_, best_.weighed.hypothesis, kMostRounds, best_.log_posterior,
+                    kJointlyAtRest));
     settled_at_ = best_.log_posterior;
     GoTo(fleet_, best_.place);
   }
@@ -175,7 +191,8 @@ class Search {
       }
       rivals_left_ = rival != nullptr;
       if (!rivals_left_) return;
-      Keep(FitJointly(workers_, rival->weighed.hypothesis, kFitRounds, best_.log_posterior));
+      Keep(FitJointly(workers_, rival->weighed.hypothesis, kFitRounds, best_.log_posterior,
+                      kJointlyAtRest));
     }
   }
 
@@ -195,7 +212,7 @@ class Search {
     }
     for (const JointHypothesis& part : parts) {
       const JointFit* fit = Tried(part);
-      if (fit == nullptr || fit->promised >= kSettled) FitFrom(place, part);
+      if (fit == nullptr || fit->promised >= kSettled) FitFrom(place, part, kJointlyAtRest);
     }
     FitRivals();
   }

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <random>
+#include <utility>
 
-#include "core/check.h"
 #include "diagnosis/describe.h"
 #include "diagnosis/evidence/probabilities.h"
 #include "diagnosis/planning/next_motion.h"
@@ -23,9 +23,9 @@ struct MemberProblem {
   Eigen::VectorXd generic_sd;
   ResidualMemory memory;
 
-  MemberProblem(Member& member, const Place& place, const SelectionOptions& options)
-      : extended(ReplayOf(member, place)) {
-    FLEXTIP_CHECK(extended != nullptr, "a member stands where it has an equilibrium");
+  MemberProblem(const Member& member, std::unique_ptr<Replay> replay,
+                const SelectionOptions& options)
+      : extended(std::move(replay)) {
     problem = ProblemHere(*extended, member.basis, options);
     generic_sd = GenericSd(problem, member.may_miss);
     std::vector<int> parameters, generic;
@@ -86,9 +86,11 @@ void DescribeCommon(const MemberProblem& at, const Selection& selection,
 
 }  // namespace
 
-MemberSums SumMember(Member& member, const Place& place, int bags, std::uint64_t seed,
-                     const SelectionOptions& options) {
-  const MemberProblem at(member, place, options);
+std::optional<MemberSums> SumMember(Member& member, const Place& place, int bags,
+                                    std::uint64_t seed, const SelectionOptions& options) {
+  auto replay = ReplayOf(member, place);
+  if (!replay) return {};
+  const MemberProblem at(member, std::move(replay), options);
   MemberSums sums;
   const auto with = [&](const NormalSums& of, double width) {
     return OfParameters(at.problem, of, at.generic_sd.cwiseMax(width));
@@ -106,12 +108,15 @@ MemberSums SumMember(Member& member, const Place& place, int bags, std::uint64_t
   return sums;
 }
 
-JudgedMember JudgeMember(Member& member, const Place& place, const MemberContext& context,
-                         const DiagnoseOptions& options,
-                         const SelectionOptions& selection_options) {
+std::optional<JudgedMember> JudgeMember(Member& member, const Place& place,
+                                        const MemberContext& context,
+                                        const DiagnoseOptions& options,
+                                        const SelectionOptions& selection_options) {
+  auto replay = ReplayOf(member, place);
+  if (!replay) return {};
   JudgedMember judged;
   DiagnosisResult& result = judged.own;
-  MemberProblem at(member, place, selection_options);
+  MemberProblem at(member, std::move(replay), selection_options);
   const Selection selection = SelectionOf(member, at, context, selection_options);
   Replay base(member.samples, member.layout);
   MoveToBase(base, member.name);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,9 @@ struct MemberSums {
   double chi2_per_dof = 0.0;
 };
 
-/// The bags differ by `seed`. The member has an equilibrium at `place`.
-MemberSums SumMember(Member& member, const Place& place, int bags, std::uint64_t seed,
-                     const SelectionOptions& options);
+/// The bags differ by `seed`. Empty: no equilibrium at `place`.
+std::optional<MemberSums> SumMember(Member& member, const Place& place, int bags,
+                                    std::uint64_t seed, const SelectionOptions& options);
 
 /// What is known of all members, to judge one of them.
 struct MemberContext {
@@ -53,7 +54,10 @@ struct JudgedMember {
   double separating_score = 0.0;
 };
 
-JudgedMember JudgeMember(Member& member, const Place& place, const MemberContext& context,
-                         const DiagnoseOptions& options, const SelectionOptions& selection_options);
+/// Empty: no equilibrium at `place`.
+std::optional<JudgedMember> JudgeMember(Member& member, const Place& place,
+                                        const MemberContext& context,
+                                        const DiagnoseOptions& options,
+                                        const SelectionOptions& selection_options);
 
 }  // namespace flextip::diagnosis

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "core/check.h"
+#include <optional>
+#include <utility>
+
 #include "core/error.h"
 #include "diagnosis/evidence/generic_basis.h"
 #include "diagnosis/samples/noise_level.h"
@@ -59,9 +61,9 @@ MemberState Do(const ToBase& task, Fleet& fleet, Member& member, const Selection
           member.far_samples};
 }
 
-MemberState Do(const Remeasure& task, Member& member, const SelectionOptions& options) {
+MemberAnswer Do(const Remeasure& task, Member& member, const SelectionOptions& options) {
   const auto replay = ReplayOf(member, task.place);
-  FLEXTIP_CHECK(replay != nullptr, "a member stands where it has an equilibrium");
+  if (!replay) return NoEquilibrium{};
   replay->LeaveOut({});
   LeaveOutFar(*replay, member);
   replay->SetNoiseScale(NoiseScale(*replay));
@@ -69,6 +71,12 @@ MemberState Do(const Remeasure& task, Member& member, const SelectionOptions& op
   member.settings = replay->SettingsNow();
   member.basis = GenericBasis(*replay);
   return StateOf(*replay, member, options);
+}
+
+template <class Answer>
+MemberAnswer OrNone(std::optional<Answer> answer) {
+  if (!answer) return NoEquilibrium{};
+  return std::move(*answer);
 }
 
 }  // namespace
@@ -86,9 +94,9 @@ MemberAnswer DoTask(Fleet& fleet, const MemberTask& task, const DiagnoseOptions&
   if (const auto* again = std::get_if<Remeasure>(&task.what))
     return Do(*again, member, selection_options);
   if (const auto* sum = std::get_if<SumUp>(&task.what))
-    return SumMember(member, sum->place, sum->bags, task.member + 1, selection_options);
+    return OrNone(SumMember(member, sum->place, sum->bags, task.member + 1, selection_options));
   const auto& judge = std::get<Judge>(task.what);
-  return JudgeMember(member, judge.place, judge.context, options, selection_options);
+  return OrNone(JudgeMember(member, judge.place, judge.context, options, selection_options));
 }
 
 }  // namespace flextip::diagnosis

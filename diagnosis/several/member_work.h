@@ -22,18 +22,18 @@ struct ToPlace {
   Place place;
 };
 
-/// Takes noise, unknown forces' size and generic basis anew at a place that has an equilibrium.
+/// Takes noise, unknown forces' size and generic basis anew at a place.
 struct Remeasure {
   Place place;
 };
 
-/// Sums at a place that has an equilibrium, for probabilities.
+/// Sums at a place, for probabilities.
 struct SumUp {
   Place place;
   int bags = 0;
 };
 
-/// Gives the member's own answer.
+/// Gives the member's own answer at a place.
 struct Judge {
   Place place;
   MemberContext context;
@@ -41,7 +41,8 @@ struct Judge {
 
 struct MemberTask {
   std::size_t member = 0;
-  std::variant<ToBase, ToPlace, Remeasure, SumUp, Judge> what;
+  using What = std::variant<ToBase, ToPlace, Remeasure, SumUp, Judge>;
+  What what;
 };
 
 /// Where a member stands, as the search needs it.
@@ -53,7 +54,7 @@ struct MemberState {
 
 struct NoEquilibrium {};
 
-/// A state of the first three tasks, NoEquilibrium of the second where it has none there.
+/// A state of the first three tasks. Of all but the first NoEquilibrium where the place has none.
 using MemberAnswer = std::variant<NoEquilibrium, MemberState, MemberSums, JudgedMember>;
 
 /// Does a task. The member keeps the noise, forces' size and generic basis that it took.

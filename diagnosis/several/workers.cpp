@@ -48,22 +48,43 @@ std::vector<MemberAnswer> MemberWorkers::Do(const std::vector<MemberTask>& tasks
   return answers;
 }
 
+void MemberWorkers::Take(std::size_t r, MemberState state) const {
+  Member& member = fleet_.At(r);
+  SetScanCentres(member.layout, state.place.scan_centres);
+  member.place = std::move(state.place);
+  member.theta = member.place.theta;
+  member.sums = std::move(state.sums);
+  member.far_samples = state.far_samples;
+}
+
 bool MemberWorkers::Move(const std::vector<MemberTask>& tasks) const {
   std::vector<MemberAnswer> answers = Do(tasks);
   bool all = true;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     auto* state = std::get_if<MemberState>(&answers[i]);
-    if (state == nullptr) {
-      all = false;
-      continue;
-    }
-    Member& member = fleet_.At(tasks[i].member);
-    SetScanCentres(member.layout, state->place.scan_centres);
-    member.place = std::move(state->place);
-    member.sums = std::move(state->sums);
-    member.far_samples = state->far_samples;
+    all = all && state != nullptr;
+    if (state != nullptr) Take(tasks[i].member, std::move(*state));
   }
   return all;
+}
+
+std::vector<MemberAnswer> MemberWorkers::DoWhereTheyStand(const TaskAt& task) const {
+  std::vector<MemberTask> tasks, again;
+  for (std::size_t r = 0; r < fleet_.Size(); ++r)
+    tasks.push_back({r, task(r, PlaceNow(fleet_.At(r)))});
+  std::vector<MemberAnswer> answers = Do(tasks);
+  for (std::size_t r = 0; r < answers.size(); ++r)
+    if (std::holds_alternative<NoEquilibrium>(answers[r]))
+      again.push_back({r, task(r, fleet_.At(r).place)});
+  if (again.empty()) return answers;
+  std::vector<MemberAnswer> more = Do(again);
+  for (std::size_t i = 0; i < again.size(); ++i) answers[again[i].member] = std::move(more[i]);
+  return answers;
+}
+
+void MemberWorkers::Take(std::vector<MemberAnswer> answers) const {
+  for (std::size_t r = 0; r < answers.size(); ++r)
+    Take(r, std::move(std::get<MemberState>(answers[r])));
 }
 
 MemberServer::MemberServer(const std::vector<NamedRecording>& recordings,

@@ -1,6 +1,7 @@
 // Who works on the members: this process, and others that have read the same recordings.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "diagnosis/several/helpers.h"
@@ -25,7 +26,17 @@ class MemberWorkers {
   /// there: then some have moved.
   bool Move(const std::vector<MemberTask>& tasks) const;
 
+  /// Does a task of each member where the fit has it; where that has no equilibrium, at the place
+  /// of its sums, which has one.
+  using TaskAt = std::function<MemberTask::What(std::size_t member, Place place)>;
+  std::vector<MemberAnswer> DoWhereTheyStand(const TaskAt& task) const;
+
+  /// Takes where all members stand now.
+  void Take(std::vector<MemberAnswer> answers) const;
+
  private:
+  void Take(std::size_t r, MemberState state) const;
+
   Fleet& fleet_;
   const DiagnoseOptions options_;
   const SelectionOptions selection_options_;
