@@ -189,11 +189,6 @@ ArmData::ArmData(const Recording& recording, std::string recording_name)
     torque = PutOn(joints.t_s, TrackOf(recording.torque0->tau, start_ns), at_stops);
     torque.noise = VectorOf(recording.torque0->noise);
   }
-  if (!followed.Any() && !seen.Any() && !pose.Any() && !torque.Any()) {
-    throw InputError::At(name, 0,
-                         "nothing was measured beside the joints, or at other times: expected "
-                         "joints_command0, joints_seen0, pose0 or torque0 at the joints' times");
-  }
   smooth = joints.values;
   if (!at_stops) SmoothRates(joints, smooth, rate, acceleration);
   if (rate.size() == 0) {
@@ -202,6 +197,13 @@ ArmData::ArmData(const Recording& recording, std::string recording_name)
   }
   effort_at_joints = EffortsAt(*this, joints, effort_known);
   if (has_command) effort_at_command = EffortsAt(*this, command, effort_known);
+}
+
+void ArmData::RequireJudged() const {
+  if (CanBeJudged()) return;
+  throw InputError::At(name, 0,
+                       "nothing was measured beside the joints, or at other times: expected "
+                       "joints_command0, joints_seen0, pose0 or torque0 at the joints' times");
 }
 
 }  // namespace flextip::arms

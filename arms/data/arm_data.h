@@ -35,8 +35,13 @@ struct Measured {
 };
 
 struct ArmData {
-  /// Throws InputError for fewer than 20 rows of joints, or where nothing else was measured.
+  /// Throws InputError for fewer than 20 rows of joints.
   ArmData(const Recording& recording, std::string recording_name);
+
+  /// Whether anything was measured that joints can be judged by.
+  bool CanBeJudged() const { return followed.Any() || seen.Any() || pose.Any() || torque.Any(); }
+  /// Throws InputError where nothing was.
+  void RequireJudged() const;
 
   int Size() const { return arm.Size(); }
   double TypicalOf(int joint, double rad, double m) const {

@@ -146,6 +146,7 @@ void FillProbabilities(const std::map<Verdict, double>& probability,
 
 ArmResult Diagnose(const std::vector<ArmData>& recordings, const ArmOptions& options) {
   FLEXTIP_CHECK(!recordings.empty(), "a recording");
+  for (const ArmData& data : recordings) data.RequireJudged();
   RequireOneArm(recordings);
   RequireKnown(recordings, options);
   const SearchOptions search_options{.parts = std::max(4, 20 / int(recordings.size()))};

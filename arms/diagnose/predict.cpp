@@ -66,6 +66,7 @@ bool IsOfPlace(const Layout& layout, const Layout::Block& block, const EffectFit
 }  // namespace
 
 ArmPrediction Predict(const ArmData& data, const ArmModel& model) {
+  data.RequireJudged();
   const std::vector<ArmData> recordings{data};
   const Layout layout(recordings, {});
   Eigen::VectorXd base_theta = Eigen::VectorXd::Zero(layout.Size()), theta = base_theta;

@@ -106,6 +106,8 @@ HiddenRecording Sampled(const DrawnCase& drawn, const Run& run,
   hidden.recording.cam0->calibration = drawn.scene.camera;
   SampleRun(run, drawn.scene, effects, noise_seed, hidden);
   for (const HiddenForm& form : drawn.forms) form.ActOnReadings(hidden.recording);
+  if (options.carrier != nullptr)
+    options.carrier->Record(hidden.recording, simulation::kSimulationStart_ns);
   LeaveOut(options, hidden.recording);
   return hidden;
 }

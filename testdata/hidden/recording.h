@@ -10,6 +10,7 @@
 
 #include "recording/recording.h"
 #include "recording/truth.h"
+#include "testdata/hidden/carrier.h"
 #include "testdata/hidden/draw.h"
 #include "testdata/hidden/scene.h"
 
@@ -30,6 +31,7 @@ struct HiddenOptions {
   bool noise_free = false;         ///< stated all the same
   double tick_rate_hz = 100.0;     ///< rate of the plant: a multiple of 50
   int links_per_side = 60;         ///< links of the plant's chain, before and behind the port
+  Carrier* carrier = nullptr;      ///< carries the wrist of MakeHidden's; null: exactly
 };
 
 struct HiddenRecording {

@@ -31,6 +31,10 @@ std::optional<Run> RunPlant(const HiddenScene& scene, const simulation::PlantEff
   Run run;
   const int lead_in = static_cast<int>(std::lround(kLeadIn_s * options.tick_rate_hz));
   const int ticks = static_cast<int>(std::lround(scene.duration_s * options.tick_rate_hz));
+  if (options.carrier != nullptr) {
+    options.carrier->Follow([&](double t_s) { return motion.At(t_s); }, -kLeadIn_s,
+                            scene.duration_s);
+  }
   for (int tick = -lead_in; tick < ticks; ++tick) {
     const double t = tick / options.tick_rate_hz;
     plant.SetLoad(scene.load.At(t));
@@ -42,7 +46,8 @@ std::optional<Run> RunPlant(const HiddenScene& scene, const simulation::PlantEff
       plant.SetEffects(changed);
     }
     run.t_s.push_back(t);
-    run.shapes.push_back(plant.Solve(motion.At(t), t));
+    run.shapes.push_back(
+        plant.Solve(options.carrier ? options.carrier->WristAt(t) : motion.At(t), t));
     const simulation::PlantShape& shape = run.shapes.back();
     constexpr double kMostTurn = 0.3;  // cosine of the turn from wrist to tip
     if (!shape.IsUsable()) return {};

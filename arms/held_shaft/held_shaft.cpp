@@ -1,0 +1,122 @@
+#include "arms/held_shaft/held_shaft.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "arms/effects/effects.h"
+#include "arms/held_shaft/wrist_effects.h"
+
+namespace flextip::arms {
+namespace {
+
+constexpr double kAtPort_rad = 0.35;  // off the port that a last link may point
+constexpr double kFarApart_m = 0.001;
+constexpr double kLeastNoise = 1e-7;  // m, rad
+
+double MedianOf(std::vector<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Standard deviations of the wrist per axis, by those of the joints: of place and turn.
+std::pair<double, double> WristNoise(const Recording& recording, const ArmData& data) {
+  const std::vector<double>& noise = recording.joints0->noise;
+  double place2 = 0.0, turn2 = 0.0;
+  for (Eigen::Index k = 0; k < data.joints.Rows(); ++k) {
+    const WristByJoints wrist(data, data.joints.values.row(k).transpose());
+    for (int j = 0; j < data.Size(); ++j) {
+      place2 += (wrist.J.col(j).head<3>() * noise[std::size_t(j)]).squaredNorm() / 3.0;
+      turn2 += (wrist.J.col(j).tail<3>() * noise[std::size_t(j)]).squaredNorm() / 3.0;
+    }
+  }
+  const auto rows = double(data.joints.Rows());
+  return {std::max(kLeastNoise, std::sqrt(place2 / rows)),
+          std::max(kLeastNoise, std::sqrt(turn2 / rows))};
+}
+
+template <class Make>
+void Add(diagnosis::EffectMakers& makers, const std::shared_ptr<const HeldArm>& arm, Make make) {
+  makers.push_back([arm, make] { return MakeWristEffect(arm, make()); });
+}
+
+}  // namespace
+
+bool HoldsShaft(const Recording& recording) {
+  return recording.joints0 && recording.has_shaft &&
+         (recording.em0 || recording.vision0 || recording.strain0);
+}
+
+HeldShaft::HeldShaft(Recording recording, const std::string& name)
+    : recording_(std::move(recording)) {
+  const TimeNs start_ns = recording_.joints0->q.front().t_ns;
+  const bool has_wrist = recording_.wrist0 && !recording_.wrist0->samples.empty();
+  const double wrist_starts_s =
+      has_wrist ? 1e-9 * double(recording_.wrist0->samples.front().t_ns - start_ns) : 0.0;
+  arm_ = std::make_shared<HeldArm>(HeldArm{ArmData(recording_, name), wrist_starts_s});
+  has_wrist ? CompareWrist() : MakeWrist();
+}
+
+void HeldShaft::MakeWrist() {
+  WristStream wrist;
+  wrist.comment = "by the arm's joints";
+  wrist.rate_hz = recording_.joints0->rate_hz;
+  std::tie(wrist.position_noise_m, wrist.orientation_noise_rad) = WristNoise(recording_, Data());
+  std::vector<double> off_rad;
+  for (const auto& row : recording_.joints0->q) {
+    const Pose T_RW = WristByJoints(Data(), row.value).T_RW;
+    wrist.samples.push_back({row.t_ns, {T_RW.p, T_RW.Quaternion()}});
+    const Eigen::Vector3d to_port = (recording_.p_RP - T_RW.p).normalized();
+    off_rad.push_back(std::acos(std::clamp(to_port.dot(T_RW.R.col(0)), -1.0, 1.0)));
+  }
+  const double off = MedianOf(std::move(off_rad));
+  if (off > kAtPort_rad) {
+    for (auto& sample : wrist.samples) sample.value.q_RW.reset();
+    warnings_.push_back(
+        fmt::format("the last link's x axis is {:.2g} rad off the port in the middle: the shaft's "
+                    "orientation at the wrist is taken as unknown",
+                    off));
+  }
+  recording_.wrist0 = std::move(wrist);
+}
+
+void HeldShaft::CompareWrist() {
+  const TimeNs start_ns = recording_.joints0->q.front().t_ns;
+  std::vector<double> apart_m;
+  for (const auto& sample : recording_.wrist0->samples) {
+    const Where where = WhereAt(Data().joints, 1e-9 * double(sample.t_ns - start_ns));
+    const WristByJoints wrist(Data(), At(Data().joints.values, where).transpose());
+    apart_m.push_back((sample.value.p_RW - wrist.T_RW.p).norm());
+  }
+  const double apart = MedianOf(std::move(apart_m));
+  if (apart <= kFarApart_m) return;
+  warnings_.push_back(
+      fmt::format("wrist0 is {:.3g} mm from where joints0 and arm.yaml have it, in the middle: the "
+                  "wrist is taken from wrist0, what moves it from the joints",
+                  1e3 * apart));
+}
+
+diagnosis::EffectMakers HeldShaft::Effects() const {
+  diagnosis::EffectMakers makers;
+  Add(makers, arm_, MakeJointOffset);
+  Add(makers, arm_, MakeJointScale);
+  if (Data().Size() > 1) Add(makers, arm_, MakeJointCoupling);
+  makers.push_back([arm = arm_] { return MakeWristPlay(arm); });
+  const auto& known = Data().effort_known;
+  if (std::ranges::find(known, true) != known.end()) Add(makers, arm_, MakeJointCompliance);
+  if (Data().arm.convention != ArmConvention::kUrdf)
+    makers.push_back([arm = arm_] { return MakeWristGeometry(arm); });
+  return makers;
+}
+
+std::vector<std::string> HeldShaft::Names() const {
+  std::vector<std::string> names;
+  for (const auto& make : Effects()) names.push_back(make()->Name());
+  return names;
+}
+
+}  // namespace flextip::arms
