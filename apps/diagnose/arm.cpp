@@ -72,6 +72,8 @@ void Say(const Judgement& judged, const OutputFolder& output, const ArmRun& run)
 
 bool IsArmRecording(const fs::path& recording) {
   const auto has = [&](const char* sensor) { return fs::is_directory(recording / sensor); };
+  const bool has_shaft = has("em0") || has("vision0") || has("strain0");
+  if (has("joints0") && has_shaft) return false;  // of a shaft that an arm holds
   return has("joints0") || (has("joints_command0") && has("joints_seen0"));
 }
 

@@ -16,7 +16,8 @@ struct ArmRun {
   bool closed_loop = true;  ///< measure the gain on a simulated arm, too
 };
 
-/// Whether a recording holds an arm's joints: joints0, or joints_command0 with joints_seen0.
+/// Whether a recording holds an arm's joints (joints0, or joints_command0 with joints_seen0) and no
+/// shaft with sensors of its own.
 bool IsArmRecording(const std::filesystem::path& recording);
 
 void DiagnoseArm(const ArmRun& run);

@@ -129,6 +129,23 @@ Json LoopJson(const arms::ArmResult& result, const simulation::JointGain& gain) 
   return json;
 }
 
+/// The joints and the errors of each component, of the joints' own sensors.
+Json ArmJson(const arms::ArmResult& result) {
+  Json joints = Json::array();
+  for (std::size_t i = 0; i < result.joint_types.size(); ++i)
+    joints.push_back(
+        {{"joint", i + 1}, {"type", result.joint_types[i]}, {"finding", result.joint_findings[i]}});
+  Json components = Json::array();
+  for (const arms::ComponentScore& c : result.components)
+    components.push_back({{"channel", c.channel},
+                          {"component", c.component},
+                          {"noise", c.noise},
+                          {"memory", c.memory},
+                          {"base_rms", c.base},
+                          {"extended_rms", c.extended}});
+  return {{"joints", joints}, {"components", components}, {"not_told", result.not_told}};
+}
+
 }  // namespace
 
 std::vector<Figure> CurveFigures(const std::vector<arms::ComponentCurve>& curves) {
@@ -166,21 +183,23 @@ std::vector<Figure> ArmFigures(const arms::ArmResult& result) {
   return figures;
 }
 
+std::string HeldDiagnosisJson(const arms::HeldResult& result, const Arm& arm) {
+  Json json = Json::parse(DiagnosisJson(result.answer));
+  if (result.arm) {
+    json["arm"] = ArmJson(*result.arm);
+  } else {
+    for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+      const bool turns = arm.joints[i].type == JointType::kRevolute;
+      json["arm"]["joints"].push_back(
+          {{"joint", i + 1}, {"type", turns ? "revolute" : "prismatic"}, {"finding", ""}});
+    }
+  }
+  return json.dump(2) + "\n";
+}
+
 std::string ArmDiagnosisJson(const arms::ArmResult& result, const simulation::JointGain* gain) {
   Json json = Json::parse(DiagnosisJson(result.answer));
-  Json joints = Json::array();
-  for (std::size_t i = 0; i < result.joint_types.size(); ++i)
-    joints.push_back(
-        {{"joint", i + 1}, {"type", result.joint_types[i]}, {"finding", result.joint_findings[i]}});
-  Json components = Json::array();
-  for (const arms::ComponentScore& c : result.components)
-    components.push_back({{"channel", c.channel},
-                          {"component", c.component},
-                          {"noise", c.noise},
-                          {"memory", c.memory},
-                          {"base_rms", c.base},
-                          {"extended_rms", c.extended}});
-  json["arm"] = {{"joints", joints}, {"components", components}, {"not_told", result.not_told}};
+  json["arm"] = ArmJson(result);
   Json noise = Json::object();
   for (const arms::ComponentScore& c : result.components)
     noise[c.channel + "_" + c.component] = c.noise;

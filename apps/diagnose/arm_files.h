@@ -7,6 +7,7 @@
 
 #include "arms/diagnose/diagnose.h"
 #include "arms/diagnose/predict.h"
+#include "arms/held_shaft/diagnose_held.h"
 #include "report/figure.h"
 #include "simulation/closed_loop/joints/joint_gain.h"
 
@@ -16,6 +17,9 @@ namespace flextip {
 /// `closed_loop`.
 std::string ArmDiagnosisJson(const arms::ArmResult& result,
                              const simulation::JointGain* gain = nullptr);
+/// Returns diagnosis.json of an arm with the shaft that it holds: its `arm` has what the joints'
+/// own sensors say, or the joints' types alone.
+std::string HeldDiagnosisJson(const arms::HeldResult& result, const Arm& arm);
 /// Returns diagnosis.json of one of several.
 std::string ArmRecordingJson(const arms::RecordingAnswer& recording);
 

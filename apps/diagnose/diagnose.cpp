@@ -17,6 +17,7 @@
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/diagnose/arm.h"
+#include "apps/diagnose/held.h"
 #include "apps/diagnose/motion_options.h"
 #include "apps/diagnose/rank_helpers.h"
 #include "apps/diagnose/result_files.h"
@@ -56,8 +57,7 @@ simulation::ClosedLoopGain MeasureGain(const Recording& recording,
 }
 
 /// A recording as it was read, under its name.
-struct NamedRead {
-  InputRead read;
+struct NamedRead : ShaftInput {
   std::string name;
 };
 
@@ -85,7 +85,7 @@ std::vector<NamedRead> ReadAll(const Options& options, bool quiet) {
     RecordingInput input = options.input;
     input.recording = folder;
     const std::string name = UniqueName(folder, all);
-    all.push_back({ReadInput(input, UseOfDiagnose(), quiet), name});
+    all.push_back({ReadShaft(input, UseOfDiagnose(), quiet), name});
   }
   return all;
 }
@@ -136,12 +136,18 @@ void RunOne(const Options& options, const std::vector<NamedRead>& reads, bool qu
   OutputFolder output = OutputOf(options);
   output.Warn(read.warnings);
   output.Beware(FindingsJson(read.findings));
-  const diagnosis::DiagnosisResult result =
-      diagnosis::Diagnose(read.recording, options.input.recording.string(),
-                          {.without = options.without, .plan = options.plan.Limits()});
+  const diagnosis::DiagnoseOptions diagnose{.without = options.without,
+                                            .plan = options.plan.Limits()};
+  const std::string name = options.input.recording.string();
+  diagnosis::DiagnosisResult result;
+  if (reads.front().held) {
+    result = DiagnoseHeldShaft(reads.front(), name, diagnose, output.folder());
+  } else {
+    result = diagnosis::Diagnose(read.recording, name, diagnose);
+    const auto gain = GainOf(options, read.recording, result, output);
+    WriteDiagnosisFiles(output.folder(), DiagnosisJson(result, gain ? &*gain : nullptr), result);
+  }
   output.Warn(result.warnings);
-  const auto gain = GainOf(options, read.recording, result, output);
-  WriteDiagnosisFiles(output.folder(), DiagnosisJson(result, gain ? &*gain : nullptr), result);
   Judgement judged = diagnosis::JudgeDiagnosis(result);
   MentionFindings(read.findings, judged);
   Finish(options, reads, judged, SummaryOf(result), output, quiet);
@@ -205,6 +211,15 @@ std::vector<NamedRead> Joined(std::vector<NamedRead> reads) {
   return reads;
 }
 
+void RequireNotHeld(const std::vector<NamedRead>& reads) {
+  for (const NamedRead& one : reads) {
+    if (reads.size() > 1 && one.held) {
+      throw InputError(one.name +
+                       ": an arm holds the shaft (joints0), expected such a recording alone");
+    }
+  }
+}
+
 void RunArm(const Options& options, bool quiet) {
   if (options.one_session) throw InputError("--one-session is of shafts, found an arm");
   ArmRun run{{options.input.recording}, options.input.out, options.without, options.force, quiet};
@@ -216,6 +231,7 @@ void RunArm(const Options& options, bool quiet) {
 void RunHere(const Options& options, bool quiet, const diagnosis::Helpers& helpers) {
   if (IsArmRecording(options.input.recording)) return RunArm(options, quiet);
   std::vector<NamedRead> reads = ReadAll(options, quiet);
+  RequireNotHeld(reads);
   if (options.one_session) reads = Joined(std::move(reads));
   reads.size() == 1 ? RunOne(options, reads, quiet) : RunSeveral(options, reads, quiet, helpers);
 }

@@ -14,6 +14,7 @@
 #include "apps/common/length_option.h"
 #include "apps/common/output.h"
 #include "apps/common/progress.h"
+#include "apps/diagnose/held.h"
 #include "apps/estimate/figures.h"
 #include "core/error.h"
 #include "diagnosis/model/extended_instrument.h"
@@ -82,14 +83,18 @@ EstimatorOptions MakeOptions(const Recording& recording, const EstimateOptions& 
   return estimator;
 }
 
-Estimates EstimateAll(const Recording& recording, const EstimateOptions& options,
+Estimates EstimateAll(const ShaftInput& input, const EstimateOptions& options,
                       InstrumentEstimator& estimator, bool quiet) {
+  const Recording& recording = input.read.recording;
   Progress progress("estimate", EstimationTimes(recording).size(), quiet);
   const auto update = [&](std::size_t done, std::size_t) { progress.Update(done); };
   if (options.model.empty()) return EstimateRecording(recording, estimator, nullptr, update);
-  const diagnosis::ExtendedModel found = diagnosis::ReadModel(options.model);
-  diagnosis::ExtendedInstrument model(found, recording);
-  return EstimateRecording(diagnosis::WithoutLatency(recording, found), estimator, &model, update);
+  const diagnosis::ExtendedModel found = diagnosis::ReadModel(options.model, input.JointEffects());
+  const diagnosis::EffectMakers joints =
+      input.held ? input.held->EffectsFrom(found.start_ns) : diagnosis::EffectMakers{};
+  diagnosis::ExtendedInstrument model(found, recording, joints);
+  return EstimateRecording(diagnosis::WithoutLatency(recording, found, joints), estimator, &model,
+                           update);
 }
 
 /// Where the window says the port is, at the end.
@@ -160,7 +165,8 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
 }
 
 void RunEstimate(const EstimateOptions& options, bool quiet) {
-  const InputRead read = ReadInput(options.input, UseOfEstimate(), quiet);
+  const ShaftInput input = ReadShaft(options.input, UseOfEstimate(), quiet);
+  const InputRead& read = input.read;
   const Recording& recording = read.recording;
   if (!recording.wrist0) {
     throw InputError(options.input.recording.string() +
@@ -176,7 +182,7 @@ void RunEstimate(const EstimateOptions& options, bool quiet) {
     output.Warn("cam0 has not been tracked: run flextip track and pass its folder with --tracked");
   }
   InstrumentEstimator estimator(MakeOptions(recording, options), options.window_samples);
-  const Estimates estimates = EstimateAll(recording, options, estimator, quiet);
+  const Estimates estimates = EstimateAll(input, options, estimator, quiet);
   if (estimates.empty())
     throw WorkError(options.input.recording.string() + ": no sample could be estimated");
   CsvWriter csv(kColumns);

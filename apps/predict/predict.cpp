@@ -14,6 +14,7 @@
 #include "apps/common/judgement.h"
 #include "apps/common/output.h"
 #include "apps/diagnose/arm.h"
+#include "apps/diagnose/held.h"
 #include "apps/diagnose/result_files.h"
 #include "diagnosis/model/extended_model.h"
 #include "diagnosis/prediction/predict.h"
@@ -59,8 +60,9 @@ void Run(const Options& options, bool quiet) {
     return PredictArm({{options.input.recording}, options.input.out, {}, options.force, quiet},
                       options.model);
   }
-  const InputRead read = ReadInput(options.input, UseOfPredict(), quiet);
-  const diagnosis::ExtendedModel model = diagnosis::ReadModel(options.model);
+  const ShaftInput input = ReadShaft(options.input, UseOfPredict(), quiet);
+  const InputRead& read = input.read;
+  const diagnosis::ExtendedModel model = diagnosis::ReadModel(options.model, input.JointEffects());
   std::vector<std::filesystem::path> inputs = options.input.Files();
   inputs.push_back(options.model);
   CommandPaths paths = options.input.Paths();
@@ -69,8 +71,8 @@ void Run(const Options& options, bool quiet) {
                       {.force = options.force, .inputs = inputs, .paths = paths});
   output.Warn(read.warnings);
   output.Beware(FindingsJson(read.findings));
-  const diagnosis::Prediction found =
-      diagnosis::Predict(read.recording, options.input.recording.string(), model);
+  const diagnosis::Prediction found = diagnosis::Predict(
+      read.recording, options.input.recording.string(), model, input.JointEffects());
   output.Warn(found.warnings);
   WriteTextFile(output.folder() / "residuals.csv", ResidualsCsv(found.residuals));
   nlohmann::json summary = Summary(found, model);

@@ -100,17 +100,23 @@ void HeldShaft::CompareWrist() {
                   1e3 * apart));
 }
 
-diagnosis::EffectMakers HeldShaft::Effects() const {
+diagnosis::EffectMakers HeldShaft::Effects(const std::shared_ptr<const HeldArm>& arm) {
+  const ArmData& data = arm->data;
   diagnosis::EffectMakers makers;
-  Add(makers, arm_, MakeJointOffset);
-  Add(makers, arm_, MakeJointScale);
-  if (Data().Size() > 1) Add(makers, arm_, MakeJointCoupling);
-  makers.push_back([arm = arm_] { return MakeWristPlay(arm); });
-  const auto& known = Data().effort_known;
-  if (std::ranges::find(known, true) != known.end()) Add(makers, arm_, MakeJointCompliance);
-  if (Data().arm.convention != ArmConvention::kUrdf)
-    makers.push_back([arm = arm_] { return MakeWristGeometry(arm); });
+  Add(makers, arm, MakeJointOffset);
+  Add(makers, arm, MakeJointScale);
+  if (data.Size() > 1) Add(makers, arm, MakeJointCoupling);
+  makers.push_back([arm] { return MakeWristPlay(arm); });
+  const auto& known = data.effort_known;
+  if (std::ranges::find(known, true) != known.end()) Add(makers, arm, MakeJointCompliance);
+  if (data.arm.convention != ArmConvention::kUrdf)
+    makers.push_back([arm] { return MakeWristGeometry(arm); });
   return makers;
+}
+
+diagnosis::EffectMakers HeldShaft::EffectsFrom(TimeNs zero_ns) const {
+  const TimeNs start_ns = recording_.joints0->q.front().t_ns;
+  return Effects(std::make_shared<HeldArm>(HeldArm{arm_->data, 1e-9 * double(zero_ns - start_ns)}));
 }
 
 std::vector<std::string> HeldShaft::Names() const {

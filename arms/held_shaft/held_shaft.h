@@ -25,7 +25,9 @@ class HeldShaft {
   const Recording& WithWrist() const { return recording_; }
   /// What is wrong between encoders and wrist: the arm's effects as effects of the shaft's wrist,
   /// each by itself by the exact kinematics. Of the drags of `joint_backlash` there are none.
-  diagnosis::EffectMakers Effects() const;
+  diagnosis::EffectMakers Effects() const { return Effects(arm_); }
+  /// The same for a user to whom t = 0 is at `zero_ns`, as to a model of another recording.
+  diagnosis::EffectMakers EffectsFrom(TimeNs zero_ns) const;
   /// The names of these.
   std::vector<std::string> Names() const;
   const std::vector<std::string>& Warnings() const { return warnings_; }
@@ -33,6 +35,7 @@ class HeldShaft {
   const ArmData& Data() const { return arm_->data; }
 
  private:
+  static diagnosis::EffectMakers Effects(const std::shared_ptr<const HeldArm>& arm);
   void MakeWrist();
   void CompareWrist();
 

@@ -166,8 +166,8 @@ std::vector<std::vector<std::string>> ParameterRows(
     const std::vector<DiagnosedParameter>& parameters, double least_off) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& p : parameters) {
-    const auto unit = ShownUnitOf(p.name);
     for (std::size_t i = 0; i < p.value.size(); ++i) {
+      const auto unit = ShownUnitOf(p, i);
       const auto off = p.TolerancesOff(i);
       if (least_off > 0.0 && off.value_or(0.0) <= least_off) continue;
       const std::string component = ComponentName(p, i);

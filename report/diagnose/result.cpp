@@ -95,13 +95,22 @@ double UsualNominal(const std::string& name) {
   return name.ends_with("scale") || name.ends_with("gain") ? 1.0 : 0.0;
 }
 
+std::vector<bool> JointsThatTurn(const Json& json) {
+  std::vector<bool> turns;
+  for (const Json& joint : Member(Member(json, "arm"), "joints"))
+    turns.push_back(joint.value("type", "") == "revolute");
+  return turns;
+}
+
 std::vector<DiagnosedParameter> ParametersIn(const Json& json, const char* key) {
   std::vector<DiagnosedParameter> all;
+  const std::vector<bool> turns = JointsThatTurn(json);
   for (const auto& [effect, parameters] : Member(json, key).items()) {
     const Json& tolerances = Member(Member(json, "tolerances"), effect.c_str());
     const Json& nominals = Member(Member(json, "nominals"), effect.c_str());
     for (const auto& [name, stated] : parameters.items()) {
       DiagnosedParameter p{.effect = effect, .name = name};
+      p.joint_turns = turns;
       p.value = NumberOrList(Member(stated, "value"));
       p.is_list = Member(stated, "value").is_array();
       const std::size_t size = p.value.size();

@@ -18,6 +18,7 @@ struct DiagnosedParameter {
   std::vector<double> nominal = {};    ///< values of the base simulation
   std::vector<double> tolerance = {};  ///< one standard deviation of values within specification
   bool is_list = false;
+  std::vector<bool> joint_turns = {};  ///< of an arm's effect: which joints turn, the others slide
 
   /// How far component `i` is from nominal, in tolerances; nothing where it has none.
   std::optional<double> TolerancesOff(std::size_t i) const;

@@ -97,6 +97,25 @@ bool IsOfJoints(const DiagnosedParameter& parameter) {
           parameter.effect == "torque_drift");
 }
 
+ShownUnit ShownUnitOf(const DiagnosedParameter& parameter, std::size_t i) {
+  ShownUnit shown = ShownUnitOf(parameter.name);
+  if (!IsOfJoints(parameter) || i >= parameter.joint_turns.size()) return shown;
+  const bool turns = parameter.joint_turns[i];
+  const std::string& name = parameter.name;
+  if (name == "offset" || name == "width" || name == "window" || name == "start") {
+    shown.unit = turns ? "mrad" : "mm";
+    shown.per_si = 1e3;
+  } else if (name == "compliance") {
+    shown.unit = turns ? "mrad/Nm" : "mm/N";
+    shown.per_si = 1e3;
+  } else if (name == "coulomb") {
+    shown.unit = turns ? "Nm" : "N";
+  } else if (name == "viscous") {
+    shown.unit = turns ? "Nm s/rad" : "N s/m";
+  }
+  return shown;
+}
+
 std::string ComponentName(const DiagnosedParameter& parameter, std::size_t i) {
   const std::size_t size = parameter.value.size();
   if (!parameter.is_list) return "";

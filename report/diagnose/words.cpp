@@ -69,16 +69,18 @@ std::string InShort(const DiagnosedParameter& p) {
   }
   const std::size_t chosen = FurthestOff(p);
   const std::string component = ComponentName(p, chosen);
-  return shown.name + (component.empty() ? "" : " " + component) + " " +
-         WithDeviation(shown.per_si * p.value[chosen], shown.per_si * sd(chosen), shown.unit);
+  const ShownUnit unit = ShownUnitOf(p, chosen);
+  return unit.name + (component.empty() ? "" : " " + component) + " " +
+         WithDeviation(unit.per_si * p.value[chosen], unit.per_si * sd(chosen), unit.unit);
 }
 
-/// The effect's parameters in short, at most two; directions and phases mean little by themselves.
+/// The effect's parameters in short, at most two; directions, phases and where a play stood at
+/// first mean little by themselves.
 std::string ParametersInShort(const DiagnosedResult& result, const std::string& effect) {
   std::vector<std::string> texts;
   for (const auto& p : result.parameters) {
     if (p.effect != effect || texts.size() == 2) continue;
-    if (p.name.ends_with("axis") || p.name.starts_with("phase")) continue;
+    if (p.name.ends_with("axis") || p.name.starts_with("phase") || p.name == "start") continue;
     texts.push_back(InShort(p));
   }
   return Listed(texts, "and");

@@ -35,6 +35,8 @@ struct ShownUnit {
   double per_si = 1.0;    ///< shown = SI value times this
 };
 ShownUnit ShownUnitOf(const std::string& parameter);
+/// The same of component `i`: a number of an arm's joint has the unit of that joint.
+ShownUnit ShownUnitOf(const DiagnosedParameter& parameter, std::size_t i);
 
 /// "0.213 ± 0.011 mm": the digits of the standard deviation decide; without sd, three digits.
 std::string WithDeviation(double value, double sd, const std::string& unit);

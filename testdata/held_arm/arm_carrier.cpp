@@ -13,6 +13,7 @@ namespace {
 constexpr double kRate_hz = 200.0;
 constexpr double kSettles_s = 0.3;  // before the course begins: the plant comes to rest
 constexpr double kEncoderNoise_rad = 2e-5, kEncoderNoise_m = 5e-6;
+constexpr double kWristNoise_m = 1e-5;  // what these make of it
 
 bool Turns(const Arm& arm, int i) { return arm.joints[i].type == JointType::kRevolute; }
 
@@ -123,6 +124,7 @@ void ArmCarrier::Record(Recording& recording, TimeNs start_ns) {
                                                                 : kEncoderNoise_m);
   }
   JointStream commands = encoders;
+  recording.wrist0->position_noise_m = kWristNoise_m;
   for (auto& sample : recording.wrist0->samples) {
     const double t_s = 1e-9 * double(sample.t_ns - start_ns);
     Eigen::VectorXd q = EncodersAt(t_s);
