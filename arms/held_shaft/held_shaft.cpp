@@ -13,7 +13,8 @@
 namespace flextip::arms {
 namespace {
 
-constexpr double kAtPort_rad = 0.35;  // off the port that a last link may point
+constexpr double kAtPort_rad = 0.35;  // off the port that the link of a shaft may point
+constexpr double kFollows = 0.7;      // of the port's direction's motion that it then makes, too
 constexpr double kFarApart_m = 0.001;
 constexpr double kLeastNoise = 1e-7;  // m, rad
 
@@ -21,6 +22,29 @@ double MedianOf(std::vector<double> values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// How a link's direction goes with that to the port.
+struct Pointing {
+  double off_rad = 0.0;  ///< the median between them
+  double follows = 0.0;  ///< how much of the port's direction's motion the link makes; 0: no motion
+};
+
+Pointing PointingOf(const std::vector<Eigen::Vector3d>& links,
+                    const std::vector<Eigen::Vector3d>& to_port) {
+  Eigen::Vector3d mean_link = Eigen::Vector3d::Zero(), mean_port = mean_link;
+  std::vector<double> off_rad;
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    mean_link += links[k] / double(links.size());
+    mean_port += to_port[k] / double(links.size());
+    off_rad.push_back(std::acos(std::clamp(links[k].dot(to_port[k]), -1.0, 1.0)));
+  }
+  double with = 0.0, squares = 0.0;
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    with += (links[k] - mean_link).dot(to_port[k] - mean_port);
+    squares += (to_port[k] - mean_port).squaredNorm();
+  }
+  return {MedianOf(std::move(off_rad)), squares > 0.0 ? with / squares : 0.0};
 }
 
 /// Standard deviations of the wrist per axis, by those of the joints: of place and turn.
@@ -66,20 +90,21 @@ void HeldShaft::MakeWrist() {
   wrist.comment = "by the arm's joints";
   wrist.rate_hz = recording_.joints0->rate_hz;
   std::tie(wrist.position_noise_m, wrist.orientation_noise_rad) = WristNoise(recording_, Data());
-  std::vector<double> off_rad;
+  std::vector<Eigen::Vector3d> links, to_port;
   for (const auto& row : recording_.joints0->q) {
     const Pose T_RW = WristByJoints(Data(), row.value).T_RW;
     wrist.samples.push_back({row.t_ns, {T_RW.p, T_RW.Quaternion()}});
-    const Eigen::Vector3d to_port = (recording_.p_RP - T_RW.p).normalized();
-    off_rad.push_back(std::acos(std::clamp(to_port.dot(T_RW.R.col(0)), -1.0, 1.0)));
+    links.emplace_back(T_RW.R.col(0));
+    to_port.emplace_back((recording_.p_RP - T_RW.p).normalized());
   }
-  const double off = MedianOf(std::move(off_rad));
-  if (off > kAtPort_rad) {
+  const Pointing pointing = PointingOf(links, to_port);
+  if (pointing.off_rad > kAtPort_rad || std::abs(pointing.follows - 1.0) > 1.0 - kFollows) {
     for (auto& sample : wrist.samples) sample.value.q_RW.reset();
-    warnings_.push_back(
-        fmt::format("the last link's x axis is {:.2g} rad off the port in the middle: the shaft's "
-                    "orientation at the wrist is taken as unknown",
-                    off));
+    warnings_.push_back(fmt::format(
+        "the last link's x axis is {:.2g} rad off the port in the middle, and follows its "
+        "direction "
+        "by {:.2g} of the way: the shaft's orientation at the wrist is taken as unknown",
+        pointing.off_rad, pointing.follows));
   }
   recording_.wrist0 = std::move(wrist);
 }
@@ -106,7 +131,7 @@ diagnosis::EffectMakers HeldShaft::Effects(const std::shared_ptr<const HeldArm>&
   Add(makers, arm, MakeJointOffset);
   Add(makers, arm, MakeJointScale);
   if (data.Size() > 1) Add(makers, arm, MakeJointCoupling);
-  makers.push_back([arm] { return MakeWristPlay(arm); });
+  if (data.Size() <= kMostJointsOfPlay) makers.push_back([arm] { return MakeWristPlay(arm); });
   const auto& known = data.effort_known;
   if (std::ranges::find(known, true) != known.end()) Add(makers, arm, MakeJointCompliance);
   if (data.arm.convention != ArmConvention::kUrdf)

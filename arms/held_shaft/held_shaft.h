@@ -21,7 +21,8 @@ class HeldShaft {
   HeldShaft(Recording recording, const std::string& name);
 
   /// The recording, with wrist0 by the joints where it had none. Then it has the orientation where
-  /// the last link points at the port, as one does that the shaft is fixed to.
+  /// the last link points at the port and turns with its direction, as one does that the shaft is
+  /// fixed to.
   const Recording& WithWrist() const { return recording_; }
   /// What is wrong between encoders and wrist: the arm's effects as effects of the shaft's wrist,
   /// each by itself by the exact kinematics. Of the drags of `joint_backlash` there are none.

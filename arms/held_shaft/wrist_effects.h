@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <tuple>
 
 #include "arms/effects/effect.h"
 #include "diagnosis/model/effect.h"
@@ -28,6 +29,9 @@ struct WristByJoints {
 /// Of an arm's effect that adds shapes of the joints, linear in its parameters.
 std::unique_ptr<diagnosis::Effect> MakeWristEffect(const std::shared_ptr<const HeldArm>& data,
                                                    std::unique_ptr<ArmEffect> effect);
+
+/// Of an arm with more joints no play is replayed.
+inline constexpr int kMostJointsOfPlay = int(std::tuple_size_v<diagnosis::EffectMemory>) - 1;
 
 /// joint_backlash: each joint follows its encoder through a play. Where it stands at the first
 /// sample is each recording's own.

@@ -20,7 +20,7 @@ class WristPlay : public diagnosis::DirectEffect {
  public:
   explicit WristPlay(const std::shared_ptr<const HeldArm>& data)
       : wrist_(data), widths_(PerJoint(data->data, "joint_backlash.width", kSizes)) {
-    FLEXTIP_CHECK(std::size_t(data->data.Size()) < EffectMemory().size(), "a place for each joint");
+    FLEXTIP_CHECK(data->data.Size() <= kMostJointsOfPlay, "a place for each joint");
   }
 
   std::string Name() const override { return "joint_backlash"; }

@@ -6,6 +6,8 @@
 #include <functional>
 #include <random>
 
+#include "core/error.h"
+
 namespace flextip::bench {
 namespace {
 
@@ -162,6 +164,16 @@ HiddenArm Draw(const ArmCase& one) {
   hidden.sensors = kSensors[std::size_t(sensors)].name;
   hidden.streams = kSensors[std::size_t(sensors)].streams;
   return hidden;
+}
+
+void PutFault(const std::string& effect, double tolerances, std::mt19937_64& rng,
+              ArmFaults& faults) {
+  for (const Kind& kind : Kinds()) {
+    if (kind.effect != effect) continue;
+    kind.put(tolerances, rng, faults);
+    return;
+  }
+  throw InputError(effect + ": no fault of an arm is that effect");
 }
 
 Recording RecordingOf(const HiddenArm& hidden) {
