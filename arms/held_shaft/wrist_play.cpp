@@ -49,7 +49,7 @@ class WristPlay : public diagnosis::DirectEffect {
     for (int j = 0; j < n; ++j) {
       const double width = std::max(theta[j], kSmallest * widths_[std::size_t(j)].tolerance);
       const double start = std::clamp(theta[n + j], -0.5 * width, 0.5 * width);
-      double& joint = memory[std::size_t(1 + j)];
+      double& joint = memory[std::size_t(j) + 1];
       if (first) joint = encoder[j] + start;
       const double free = joint;
       joint = std::clamp(joint, encoder[j] - 0.5 * width, encoder[j] + 0.5 * width);
@@ -79,6 +79,7 @@ class WristPlay : public diagnosis::DirectEffect {
 
   std::vector<int> OwnParameters() const override {
     std::vector<int> own;
+    own.reserve(widths_.size());
     for (int j = 0; j < wrist_.Data().Size(); ++j) own.push_back(wrist_.Data().Size() + j);
     return own;
   }
