@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <random>
 #include <set>
 #include <string>
 #include <vector>
@@ -35,11 +34,6 @@ struct HiddenArm {
 /// Returns the same for the same case. Sizes are 6, 18 and 54 tolerances; sensors are some that can
 /// show the effects.
 HiddenArm Draw(const ArmCase& one);
-
-/// Puts an effect of so many tolerances in, of a SmallArm(): which joint and sign are drawn. Throws
-/// InputError for an effect that no fault is.
-void PutFault(const std::string& effect, double tolerances, std::mt19937_64& rng,
-              simulation::ArmFaults& faults);
 
 /// Returns the recording, without a word of what is in it.
 Recording RecordingOf(const HiddenArm& hidden);

@@ -12,12 +12,12 @@
 #include <set>
 
 #include "arms/held_shaft/diagnose_held.h"
-#include "bench/arm_matrix/draw.h"
 #include "bench/campaign/campaign.h"
 #include "bench/tool.h"
 #include "core/error.h"
 #include "recording/recording_writer.h"
 #include "testdata/held_arm/arm_carrier.h"
+#include "testdata/held_arm/faults.h"
 #include "testdata/hidden/recording.h"
 
 namespace flextip::bench {
@@ -76,7 +76,7 @@ Hidden Draw(const Case& one, std::uint64_t attempt) {
   const auto pick = std::size_t(one.number / 2);
   if (one.part == "arm" || one.part == "both") {
     hidden.effects.insert(kOfArm[pick % kOfArm.size()]);
-    PutFault(*hidden.effects.begin(), kPlain, rng, faults);
+    hidden::PutFault(*hidden.effects.begin(), kPlain, rng, faults);
   }
   hidden::HiddenOptions options;
   if (one.part == "shaft" || one.part == "both") {

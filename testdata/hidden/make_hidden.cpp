@@ -8,6 +8,8 @@
 #include "bench/tool.h"
 #include "core/error.h"
 #include "recording/text/text.h"
+#include "testdata/held_arm/arm_carrier.h"
+#include "testdata/held_arm/faults.h"
 #include "testdata/hidden/recording.h"
 
 namespace flextip::hidden {
@@ -20,7 +22,8 @@ struct Arguments {
   int count = 1;
   bool no_load = false, truth = false;
   int recordings = 1, begin = 1;
-  std::vector<std::string> later;
+  std::vector<std::string> later, arm;
+  bool no_wrist = false;
   std::filesystem::path out, label;
 };
 
@@ -103,6 +106,12 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--later", arguments.later, "Effects that begin with recording --begin")
       ->delimiter(',');
   app.add_option("--begin", arguments.begin, "Counted from 0")->check(CLI::PositiveNumber);
+  app.add_option(
+         "--arm", arguments.arm,
+         "An arm of three joints carries the wrist, with these effects of 18 tolerances, or "
+         "none; joints0 and joints_command0 are written")
+      ->delimiter(',');
+  app.add_flag("--no-wrist", arguments.no_wrist, "With --arm: leave out wrist0");
   app.add_flag("--truth", arguments.truth, "Write truth0 too");
   app.add_option("-o,--output", arguments.out, "Folder for rec_0000, rec_0001, ...")->required();
   app.add_option("--label", arguments.label, "File for the labels, outside that folder")
@@ -130,8 +139,27 @@ bool LiesIn(const std::filesystem::path& file, const std::filesystem::path& fold
   return !relative.empty() && *relative.begin() != "..";
 }
 
+/// One that an arm carries, where that was asked for.
+HiddenRecording MakeOne(const Arguments& arguments, std::uint64_t seed) {
+  if (arguments.arm.empty()) return MakeHidden(arguments.options, seed);
+  constexpr double kTolerances = 18.0;
+  std::mt19937_64 rng(seed);
+  simulation::ArmFaults faults;
+  for (const std::string& effect : arguments.arm)
+    if (effect != "none") PutFault(effect, kTolerances, rng, faults);
+  ArmCarrier carrier(simulation::SmallArm(), faults, !arguments.no_wrist, rng());
+  HiddenOptions options = arguments.options;
+  options.carrier = &carrier;
+  HiddenRecording hidden = MakeHidden(options, seed);
+  for (const std::string& effect : arguments.arm)
+    if (effect != "none") hidden.label.present.push_back(effect);
+  return hidden;
+}
+
 void Run(Arguments& arguments) {
   TakeEffects(arguments);
+  if (!arguments.arm.empty() && arguments.recordings > 1)
+    throw InputError("--arm is of single recordings, found --recordings");
   if (LiesIn(arguments.label, arguments.out)) {
     throw InputError(arguments.label.string() + ": labels belong outside " +
                      arguments.out.string());
@@ -151,7 +179,7 @@ void Run(Arguments& arguments) {
       }
       continue;
     }
-    const HiddenRecording hidden = MakeHidden(arguments.options, seed);
+    const HiddenRecording hidden = MakeOne(arguments, seed);
     WriteHidden(arguments.out / name, hidden, arguments.truth);
     labels[name] = Json(hidden, seed);
   }
