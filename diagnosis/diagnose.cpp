@@ -100,7 +100,7 @@ DiagnosisResult Diagnose(const Recording& recording, const std::string& name,
   const Selection& chosen = terms ? terms->selection : selection;
   const WeighedHypothesis& model = terms ? terms->weighed : known;
   if (NamesEffects(result.verdict))
-    DescribeAmbiguity(work.extended, selection, known, true, result);
+    DescribeAmbiguity(work.extended, selection, known, options.suggest_motion, result);
   if (options.plan)
     result.plan = PlanNextMotion(work.extended, selection, result.indistinguishable, *options.plan);
   if (terms) result.discovered = DescribeTerms(*terms, options.measure_gain);

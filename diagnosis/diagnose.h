@@ -21,6 +21,7 @@ struct DiagnoseOptions {
   std::vector<std::string> without;       ///< effects left out of the catalogue
   EffectMakers own_effects = {};          ///< of the user's own, judged like those of the catalogue
   bool discover = true;                   ///< looks for terms that the catalogue does not have
+  bool suggest_motion = true;             ///< looks for one that tells alike effects apart
   bool measure_gain = true;               ///< fits on parts of the recording, judged on the rest
   std::optional<MotionLimits> plan = {};  ///< the next motion is planned within these
 };

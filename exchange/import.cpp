@@ -6,6 +6,8 @@
 
 #include "exchange/formats/formats.h"
 #include "exchange/mapping_file.h"
+#include "exchange/streams/joints.h"
+#include "exchange/streams/names.h"
 #include "exchange/streams/sensor_settings.h"
 #include "exchange/streams/stream_settings.h"
 #include "recording/recording_writer.h"
@@ -27,8 +29,30 @@ void NeedInstrument(const ImportPlan& plan) {
   throw NotTold(fmt::format("no file says {}", fmt::join(keys, ", ")), keys);
 }
 
+/// What the files have of a shaft has no meaning without its instrument.
+void KeepJoints(ImportPlan& plan, ImportLog& log) {
+  log.Assume("instrument", "none, nor a port, was told: the arm's joints alone are imported");
+  std::erase_if(plan.streams, [](const auto& entry) { return !IsJointStream(entry.first); });
+  plan.cameras.clear();
+}
+
+/// The arm's file beside the joints.
+void AddArm(ImportPlan& plan, Imported& imported) {
+  plan.arm = std::filesystem::absolute(plan.arm).lexically_normal();
+  imported.recording.has_shaft = !IsOfArmAlone(plan);
+  const auto is_joints = [](const StreamLine& line) { return IsJointStream(line.name); };
+  if (std::ranges::none_of(imported.others, is_joints)) {
+    throw InputError(fmt::format(
+        "{}: no joints are in the files, expected joints0 or joints_command0", plan.arm.string()));
+  }
+  imported.writers.emplace_back(
+      [file = plan.arm, name = ArmFileName(plan)](const std::filesystem::path& folder) {
+        WriteTextFile(folder / name, ReadTextFile(file));
+      });
+}
+
 void TakeInstrument(ImportPlan& plan, Recording& recording, ImportLog& log) {
-  if (!plan.mass_per_length_kg_m) {
+  if (!plan.mass_per_length_kg_m && recording.has_shaft) {
     plan.mass_per_length_kg_m = 0.0;
     log.Assume("instrument.mass_per_length_kg_m", "0: the shaft's own weight is not modelled");
   }
@@ -36,11 +60,12 @@ void TakeInstrument(ImportPlan& plan, Recording& recording, ImportLog& log) {
     plan.gravity_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.81);
     log.Assume("gravity_m_s2", "0, 0, -9.81: R's z axis points up");
   }
+  recording.gravity_m_s2 = *plan.gravity_m_s2;
+  recording.tolerances = plan.tolerances;
+  if (!recording.has_shaft) return;
   recording.instrument = {*plan.length_m, *plan.outer_diameter_m, *plan.bending_stiffness_Nm2,
                           *plan.mass_per_length_kg_m, plan.stiffness_taper.value_or(0.0)};
   recording.p_RP = *plan.p_RP;
-  recording.gravity_m_s2 = *plan.gravity_m_s2;
-  recording.tolerances = plan.tolerances;
 }
 
 // Clocks that differ by more than the recording is long leave streams without a common time.
@@ -63,10 +88,11 @@ Imported Import(ImportPlan plan) {
   ImportLog& log = imported.log;
   log.assumed = std::exchange(plan.assumed, {});
   Streams streams;
-  log.Try([&] { NeedInstrument(plan); });
+  if (!IsOfArmAlone(plan)) log.Try([&] { NeedInstrument(plan); });
   if (!plan.session.empty()) AddDvrkSession(std::exchange(plan.session, {}), plan, log);
   FindTables(plan, log);
   FindTopics(plan, streams, log);
+  if (IsOfArmAlone(plan)) KeepJoints(plan, log);
   log.Try([&] { NeedSettings(plan); });
   ReadTables(plan, streams, log);
   ReadBags(plan, streams, log);
@@ -77,6 +103,7 @@ Imported Import(ImportPlan plan) {
   imported.skipped = std::move(streams.skipped);
   imported.others = std::move(streams.others);
   imported.writers = std::move(streams.writers);
+  if (!plan.arm.empty()) AddArm(plan, imported);
   TakeInstrument(plan, imported.recording, log);
   TakeSettings(plan, imported.recording, log);
   SayApart(imported.recording, log);

@@ -8,6 +8,11 @@ void ImportPlan::Told(const std::string& key) {
   });
 }
 
+bool IsOfArmAlone(const ImportPlan& plan) {
+  return !plan.arm.empty() && !plan.length_m && !plan.outer_diameter_m &&
+         !plan.bending_stiffness_Nm2 && !plan.p_RP;
+}
+
 std::vector<std::filesystem::path> FilesOf(const ImportPlan& plan) {
   std::vector<std::filesystem::path> files = plan.tables;
   const auto add = [&](const std::filesystem::path& file) {
@@ -22,6 +27,7 @@ std::vector<std::filesystem::path> FilesOf(const ImportPlan& plan) {
   }
   add(plan.session);
   add(plan.collar);
+  add(plan.arm);
   return files;
 }
 

@@ -55,6 +55,7 @@ struct ImportPlan {
   std::map<std::string, CameraPlan> cameras;  ///< cam0, cam1
   std::filesystem::path session;  ///< a folder of the dVRK's recorder: bags and cameras come of it
   std::filesystem::path collar;   ///< the tags, as a tags0/sensor.yaml
+  std::filesystem::path arm;      ///< whose joints they are: an arm.yaml or a URDF
   std::map<std::string, SensorSettings> sensors;  ///< of each stream
   std::optional<double> length_m, outer_diameter_m, bending_stiffness_Nm2, mass_per_length_kg_m,
       stiffness_taper;
@@ -65,6 +66,9 @@ struct ImportPlan {
   /// Forgets that `key`, or a part of it, was assumed: it is told now.
   void Told(const std::string& key);
 };
+
+/// Whether joints are imported and no shaft: an arm is told, and nothing of an instrument or port.
+bool IsOfArmAlone(const ImportPlan& plan);
 
 /// Every file that the plan names.
 std::vector<std::filesystem::path> FilesOf(const ImportPlan& plan);

@@ -132,6 +132,7 @@ void ReadFiles(const YamlMap& yaml, const fs::path& folder, ImportPlan& plan) {
     }
   }
   if (yaml.Has("collar")) plan.collar = PathIn(yaml, "collar", folder);
+  if (yaml.Has("arm")) plan.arm = PathIn(yaml, "arm", folder);
 }
 
 void ReadInstrument(const YamlMap& yaml, ImportPlan& plan) {

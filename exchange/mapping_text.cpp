@@ -75,6 +75,7 @@ std::string FilesText(const ImportPlan& plan) {
     text += fmt::format("  {}:\n", name) + Indented(CameraText(camera), "    ");
   }
   if (!plan.collar.empty()) text += fmt::format("collar: {}\n", YamlText(plan.collar.string()));
+  if (!plan.arm.empty()) text += fmt::format("arm: {}\n", YamlText(plan.arm.string()));
   return text;
 }
 

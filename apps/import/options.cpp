@@ -57,6 +57,14 @@ void AddFileOptions(CLI::App& command, ImportOptions& options) {
                   "Instrument, port and sensors; a recording.yaml is one")
       ->type_name("FILE.yaml")
       ->group("Files");
+  if (bags) {
+    command
+        .add_option("--arm", options.arm,
+                    "Whose joints they are: an arm.yaml or a URDF. Without instrument and port the "
+                    "joints alone are imported")
+        ->type_name("FILE")
+        ->group("Files");
+  }
   command.add_flag("--force", options.force, "Replace the folder of an earlier run")
       ->group("Files");
   command

@@ -15,7 +15,7 @@ namespace flextip {
 struct ImportOptions {
   std::string format;                         ///< csv, video, rosbag, mcap, dvrk
   std::vector<std::filesystem::path> inputs;  ///< tables, videos, bags, a session's folder
-  std::filesystem::path out, map, settings, collar;
+  std::filesystem::path out, map, settings, collar, arm;
   bool force = false, link = false, no_check = false;
   std::vector<std::string> streams, units, quaternions, orientations, axes, offsets, columns, sets;
   std::vector<std::string> cameras, poses, times, starts;  ///< FILE, or cam1=FILE

@@ -185,6 +185,7 @@ void TellCameras(const ImportOptions& options, ImportPlan& plan) {
     plan.Told(name + ".start");
   });
   if (!options.collar.empty()) plan.collar = options.collar;
+  if (!options.arm.empty()) plan.arm = options.arm;
   for (auto& [name, camera] : plan.cameras) {
     camera.link = camera.link || options.link;
     if (!options.rate_hz) continue;

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "arms/effects/effects.h"
+#include "core/error.h"
 
 namespace flextip::arms {
 namespace {
@@ -106,11 +107,17 @@ DiagnosisResult Together(const DiagnosisResult& shaft, const DiagnosisResult& ar
 
 HeldResult DiagnoseHeld(const HeldShaft& held, const Recording& recording, const std::string& name,
                         const diagnosis::DiagnoseOptions& options) {
+  if (options.plan) {
+    throw InputError(name +
+                     ": an arm holds the shaft, and a planned motion is of a wrist without joints: "
+                     "expected no plan");
+  }
   std::set<std::string> of_arm{"payload"};
   for (const auto& effect : MakeEffects(held.Data().arm)) of_arm.insert(effect->Name());
   const std::vector<std::string> joints = held.Names();
   diagnosis::DiagnoseOptions of_shaft = options;
   of_shaft.own_effects = held.Effects();
+  of_shaft.suggest_motion = false;  // of a motion that is imagined the joints are not known
   std::set<std::string> of_arm_alone = of_arm;
   for (const std::string& joint : joints) of_arm_alone.erase(joint);
   of_shaft.without = Known(options.without, of_arm_alone, false);

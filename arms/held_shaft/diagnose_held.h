@@ -21,7 +21,7 @@ struct HeldResult {
 /// `recording` is WithWrist() of `held`, maybe checked since. Two parts, whose measurements are
 /// apart: the arm's (commands against encoders, efforts, joints and poses seen from outside) and
 /// the shaft's, in which the joints move the wrist. Probabilities are multiplied. Throws as
-/// diagnosis::Diagnose does.
+/// diagnosis::Diagnose does, and InputError where a motion is to be planned.
 HeldResult DiagnoseHeld(const HeldShaft& held, const Recording& recording, const std::string& name,
                         const diagnosis::DiagnoseOptions& options = {});
 

@@ -9,6 +9,7 @@
 
 #include "arms/effects/effects.h"
 #include "arms/held_shaft/wrist_effects.h"
+#include "core/error.h"
 
 namespace flextip::arms {
 namespace {
@@ -78,11 +79,29 @@ bool HoldsShaft(const Recording& recording) {
 HeldShaft::HeldShaft(Recording recording, const std::string& name)
     : recording_(std::move(recording)) {
   const TimeNs start_ns = recording_.joints0->q.front().t_ns;
+  if (recording_.wrist0) LeaveOutWithoutJoints(name);
   const bool has_wrist = recording_.wrist0 && !recording_.wrist0->samples.empty();
   const double wrist_starts_s =
       has_wrist ? 1e-9 * double(recording_.wrist0->samples.front().t_ns - start_ns) : 0.0;
   arm_ = std::make_shared<HeldArm>(HeldArm{ArmData(recording_, name), wrist_starts_s});
   has_wrist ? CompareWrist() : MakeWrist();
+}
+
+/// Where the joints are is known between their first and last row alone.
+void HeldShaft::LeaveOutWithoutJoints(const std::string& name) {
+  constexpr TimeNs kNear_ns = 20'000'000;
+  const auto& joints = recording_.joints0->q;
+  auto& samples = recording_.wrist0->samples;
+  const std::size_t all = samples.size();
+  std::erase_if(samples, [&](const auto& sample) {
+    return sample.t_ns < joints.front().t_ns - kNear_ns ||
+           sample.t_ns > joints.back().t_ns + kNear_ns;
+  });
+  if (samples.size() == all) return;
+  if (samples.empty()) throw InputError(name + ": joints0 and wrist0 are of different times");
+  warnings_.push_back(
+      fmt::format("{} of {} samples of wrist0 are before or after joints0: left out",
+                  all - samples.size(), all));
 }
 
 void HeldShaft::MakeWrist() {

@@ -17,7 +17,8 @@ bool HoldsShaft(const Recording& recording);
 /// The wrist's frame W is the last link's, or K where the arm's file has T_LK.
 class HeldShaft {
  public:
-  /// Throws InputError for fewer than 20 rows of joints. `name` is the recording's in messages.
+  /// Throws InputError for fewer than 20 rows of joints, and for a wrist0 of another time. `name`
+  /// is the recording's in messages.
   HeldShaft(Recording recording, const std::string& name);
 
   /// The recording, with wrist0 by the joints where it had none. Then it has the orientation where
@@ -37,6 +38,7 @@ class HeldShaft {
 
  private:
   static diagnosis::EffectMakers Effects(const std::shared_ptr<const HeldArm>& arm);
+  void LeaveOutWithoutJoints(const std::string& name);
   void MakeWrist();
   void CompareWrist();
 

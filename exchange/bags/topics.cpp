@@ -113,7 +113,10 @@ class TopicChoice {
         candidates_[guess.stream].push_back({&topic, guess.rank});
       }
     }
-    Choose("wrist0");  // first: the others follow its namespace
+    if (IsOfArmAlone(plan_)) {
+      std::erase_if(candidates_, [](const auto& entry) { return !IsJointStream(entry.first); });
+    }
+    for (const char* first : {"wrist0", "joints0"}) Choose(first);  // others follow its namespace
     for (const auto& [stream, candidates] : candidates_) Choose(stream);
     SayUnused();
   }
@@ -150,17 +153,20 @@ class TopicChoice {
            !(found->second.topic.empty() && found->second.file.empty());
   }
 
-  std::string WristNamespace() const {
-    const auto wrist = plan_.streams.find("wrist0");
-    if (wrist == plan_.streams.end() || wrist->second.topic.empty()) return "";
-    return NamespaceOf(wrist->second.topic);
+  std::string ArmNamespace() const {
+    for (const char* stream : {"wrist0", "joints0"}) {
+      const auto told = plan_.streams.find(stream);
+      if (told != plan_.streams.end() && !told->second.topic.empty())
+        return NamespaceOf(told->second.topic);
+    }
+    return "";
   }
 
   void Choose(const std::string& stream) {
     const auto found = candidates_.find(stream);
     if (found == candidates_.end() || IsPlanned(stream)) return;
     std::vector<Candidate> best = found->second;
-    if (const std::string arm = WristNamespace(); !arm.empty()) {
+    if (const std::string arm = ArmNamespace(); !arm.empty()) {
       const bool of_arm = stream == "command0" || IsJointStream(stream);
       std::vector<Candidate> near;
       for (const auto& c : best) {

@@ -9,6 +9,7 @@
 #include "exchange/streams/names.h"
 #include "exchange/streams/noise.h"
 #include "exchange/streams/stream_settings.h"
+#include "recording/arm/arm_file.h"
 #include "recording/text/csv.h"
 #include "recording/text/text.h"
 #include "recording/text/yaml_map.h"
@@ -22,6 +23,35 @@ bool Slides(const std::string& joint) {
     if (std::find(hints.begin(), hints.end(), word) != hints.end()) return true;
   }
   return false;
+}
+
+std::vector<bool> SlidingByName(const JointSeries& series, ImportLog& log) {
+  std::vector<bool> prismatic;
+  std::string sliding;
+  for (const auto& name : series.names) {
+    prismatic.push_back(Slides(name));
+    if (Slides(name)) AppendItem(sliding, name);
+  }
+  log.Assume(series.stream + ".prismatic",
+             sliding.empty() ? "none, by the joints' names" : sliding + ", by their names");
+  return prismatic;
+}
+
+/// Efforts may be of the first joints alone.
+std::vector<bool> SlidingByArm(const JointSeries& series, const ImportPlan& plan, ImportLog& log) {
+  ReadLog read_log;
+  const Arm arm = ReadArm(plan.arm, read_log);
+  for (const std::string& warning : read_log.warnings) log.Warn(warning);
+  const std::size_t count = series.names.size(), expected = arm.joints.size();
+  if (series.stream == "torque0" ? count > expected : count != expected) {
+    throw InputError(fmt::format("{} has {} joints ({}), the arm of {} has {}", series.stream,
+                                 count, fmt::join(series.names, ", "), plan.arm.string(),
+                                 expected));
+  }
+  std::vector<bool> prismatic;
+  for (std::size_t i = 0; i < count; ++i)
+    prismatic.push_back(arm.joints[i].type == JointType::kPrismatic);
+  return prismatic;
 }
 
 std::vector<double> NoiseOf(const JointSeries& series, const std::string& key,
@@ -54,18 +84,19 @@ const char* NoiseKey(const JointSeries& series) {
 
 }  // namespace
 
+std::string ArmFileName(const ImportPlan& plan) {
+  if (plan.arm.empty()) return "";
+  return plan.arm.extension() == ".urdf" ? "arm.urdf" : "arm.yaml";
+}
+
 JointStream TakeJoints(JointSeries series, const ImportPlan& plan, ImportLog& log) {
   JointStream joints;
   Settings settings(series.stream, plan, log);
   joints.rate_hz = settings.Rate(series.t_ns);
   joints.noise = NoiseOf(series, NoiseKey(series), settings, log);
-  std::string sliding;
-  for (const auto& name : series.names) {
-    joints.prismatic.push_back(Slides(name));
-    if (Slides(name)) AppendItem(sliding, name);
-  }
-  log.Assume(series.stream + ".prismatic",
-             sliding.empty() ? "none, by the joints' names" : sliding + ", by their names");
+  joints.arm_file = ArmFileName(plan);
+  joints.prismatic =
+      plan.arm.empty() ? SlidingByName(series, log) : SlidingByArm(series, plan, log);
   joints.series = std::move(series);
   return joints;
 }
@@ -94,10 +125,11 @@ void WriteJoints(const std::filesystem::path& folder, const JointStream& joints)
   }
   WriteTextFile(folder / s.stream / "data.csv", csv.text());
   WriteTextFile(folder / s.stream / "sensor.yaml",
-                fmt::format("sensor_type: {}\ncomment: {}\nrate_hz: {}\n{}: {}\n",
+                fmt::format("sensor_type: {}\ncomment: {}\nrate_hz: {}\n{}: {}\n{}",
                             torques ? "torque" : "joints",
                             YamlText(fmt::format("joints {}", fmt::join(s.names, ", "))),
-                            YamlNumber(joints.rate_hz), NoiseKey(s), YamlNumbers(joints.noise)));
+                            YamlNumber(joints.rate_hz), NoiseKey(s), YamlNumbers(joints.noise),
+                            joints.arm_file.empty() ? "" : "arm: ../" + joints.arm_file + "\n"));
 }
 
 }  // namespace flextip::exchange

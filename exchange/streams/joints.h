@@ -25,10 +25,15 @@ struct JointStream {
   std::vector<bool> prismatic;
   std::vector<double> noise;
   double rate_hz = 0.0;
+  std::string arm_file;  ///< its name in the recording; empty: not told
 };
 
-/// Gives the series its rate and noises, told or measured; a joint whose name says that it slides
-/// (insertion, prismatic, linear) is one. All that is assumed is said. Throws NotTold.
+/// The name of the arm's file in the recording: "arm.yaml" or "arm.urdf"; empty where none is told.
+std::string ArmFileName(const ImportPlan& plan);
+
+/// Gives the series its rate and noises, told or measured. Which joints slide the arm's file says;
+/// without one, a joint whose name says so (insertion, prismatic, linear). All that is assumed is
+/// said. Throws NotTold, and InputError where the arm has another number of joints.
 JointStream TakeJoints(JointSeries series, const ImportPlan& plan, ImportLog& log);
 
 StreamLine Describe(const JointStream& joints);

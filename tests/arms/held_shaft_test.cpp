@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "arms/held_shaft/diagnose_held.h"
+#include "core/error.h"
 #include "diagnosis/diagnose.h"
 #include "diagnosis/samples/sample_set.h"
 #include "testdata/held_arm/arm_carrier.h"
@@ -99,6 +101,19 @@ TEST(HeldShaft, HasItsWristByTheJoints) {
   for (auto& sample : shifted.wrist0->samples) sample.value.p_RW.x() += 0.004;
   EXPECT_THAT(HeldShaft(shifted, "held").Warnings(),
               ElementsAre(testing::HasSubstr("wrist0 is 4 mm from where joints0")));
+}
+
+TEST(HeldShaft, WhatLacksJointsIsLeftOutOrRefused) {
+  Recording recording = Make({.seed = 6});
+  auto& rows = recording.joints0->q;
+  rows.resize(rows.size() - 60);
+  const HeldShaft held(recording, "held");
+  EXPECT_THAT(held.Warnings(), ElementsAre(testing::HasSubstr("59 of 600 samples of wrist0")));
+  EXPECT_EQ(held.WithWrist().wrist0->samples.size(), 541U);
+  EXPECT_THROW(DiagnoseHeld(held, held.WithWrist(), "held", {.plan = diagnosis::MotionLimits{}}),
+               InputError);
+  for (auto& row : rows) row.t_ns += 3'600'000'000'000;
+  EXPECT_THROW(HeldShaft(recording, "held"), InputError);
 }
 
 TEST(HeldShaft, HealthyOnesHaveNoCause) {

@@ -99,6 +99,50 @@ TEST_P(BagImport, JointsGoIntoAFolderOfTheirOwn) {
   EXPECT_EQ(imported.others[0].samples, static_cast<std::size_t>(kCount));
 }
 
+const std::filesystem::path kArm =
+    std::filesystem::path(FLEXTIP_SOURCE_DIR) / "testdata/arms/small/arm.yaml";
+
+TEST_P(BagImport, AnArmsFileComesAlongAndSaysWhichJointsSlide) {
+  ImportPlan plan = Plan();
+  plan.arm = kArm;
+  WriteImported(folder_ / "out", Import(plan));
+  const Recording read = ReadRecording(folder_ / "out").recording;
+  ASSERT_TRUE(read.arm && read.joints0 && read.wrist0);
+  EXPECT_EQ(read.arm->Size(), 3);
+  EXPECT_THAT(read.joints0->types,
+              ElementsAre(JointType::kRevolute, JointType::kRevolute, JointType::kPrismatic));
+  EXPECT_EQ(read.joints0->q.size(), std::size_t(kCount));
+  ImportPlan again;
+  ReadMapping(folder_ / "out/import.yaml", again);
+  EXPECT_EQ(again.arm, std::filesystem::absolute(kArm).lexically_normal());
+}
+
+TEST_P(BagImport, AnArmAloneNeedsNoInstrument) {
+  ImportPlan plan;
+  plan.bags = {BagFile(GetParam())};
+  plan.streams["joints0"].topic = "/PSM1/measured_js";
+  plan.arm = kArm;
+  const Imported imported = Import(plan);
+  WriteImported(folder_ / "out", imported);
+  const Recording read = ReadRecording(folder_ / "out").recording;
+  EXPECT_FALSE(read.has_shaft);
+  EXPECT_FALSE(read.wrist0 || read.em0 || read.cam0);
+  EXPECT_TRUE(read.arm && read.joints0);
+  EXPECT_THAT(imported.log.assumed.at("instrument"), HasSubstr("the arm's joints alone"));
+}
+
+TEST_P(BagImport, AnArmWithOtherJointsIsRefused) {
+  WriteText(folder_ / "two.yaml",
+            "format: flextip-arm\nversion: 1\nconvention: dh\njoints:\n"
+            "  - {type: revolute, a_m: 0.1, alpha_rad: 0, d_m: 0, theta_rad: 0}\n"
+            "  - {type: revolute, a_m: 0.1, alpha_rad: 0, d_m: 0, theta_rad: 0}\n");
+  ImportPlan plan = Plan();
+  plan.arm = folder_ / "two.yaml";
+  EXPECT_THAT(Refusal(plan),
+              testing::AllOf(HasSubstr("joints0 has 3 joints (yaw, pitch, insertion)"),
+                             HasSubstr("has 2")));
+}
+
 TEST_P(BagImport, PicturesComeBackPixelByPixel) {
   WriteImported(folder_ / "out", Import(Plan()));
   const auto read = ReadRecording(folder_ / "out");
