@@ -131,13 +131,16 @@ std::optional<simulation::ClosedLoopGain> GainOf(const Options& options, const R
   return MeasureGain(recording, diagnosis::FromResult(result), output);
 }
 
+diagnosis::DiagnoseOptions DiagnoseOptionsOf(const Options& options) {
+  return {.without = options.without, .plan = options.plan.Limits()};
+}
+
 void RunOne(const Options& options, const std::vector<NamedRead>& reads, bool quiet) {
   const InputRead& read = reads.front().read;
   OutputFolder output = OutputOf(options);
   output.Warn(read.warnings);
   output.Beware(FindingsJson(read.findings));
-  const diagnosis::DiagnoseOptions diagnose{.without = options.without,
-                                            .plan = options.plan.Limits()};
+  const diagnosis::DiagnoseOptions diagnose = DiagnoseOptionsOf(options);
   const std::string name = options.input.recording.string();
   diagnosis::DiagnosisResult result;
   if (reads.front().held) {
@@ -151,10 +154,6 @@ void RunOne(const Options& options, const std::vector<NamedRead>& reads, bool qu
   Judgement judged = diagnosis::JudgeDiagnosis(result);
   MentionFindings(read.findings, judged);
   Finish(options, reads, judged, SummaryOf(result), output, quiet);
-}
-
-diagnosis::DiagnoseOptions SeveralOptions(const Options& options) {
-  return {.without = options.without, .plan = options.plan.Limits()};
 }
 
 std::vector<diagnosis::NamedRecording> RecordingsOf(const std::vector<NamedRead>& reads) {
@@ -175,7 +174,7 @@ void RunSeveral(const Options& options, const std::vector<NamedRead>& reads, boo
   const std::vector<diagnosis::NamedRecording> recordings = RecordingsOf(reads);
   output.Beware(FindingsJson(findings));
   const diagnosis::SeveralResult several =
-      diagnosis::DiagnoseSeveral(recordings, SeveralOptions(options), helpers);
+      diagnosis::DiagnoseSeveral(recordings, DiagnoseOptionsOf(options), helpers);
   output.Warn(several.common.warnings);
   const auto gain = GainOf(options, recordings.front().recording, several.common, output);
   WriteDiagnosisFiles(output.folder(), DiagnosisJson(several, gain ? &*gain : nullptr),
@@ -240,7 +239,9 @@ void Run(const Options& options, bool quiet) {
   if (!RanksShareTheWork()) return RunHere(options, quiet, {});
   const RankHelpers ranks;
   if (ranks.IsFirst()) return RunHere(options, quiet, ranks.Ask());
-  ranks.Serve(SeveralOptions(options), [&] { return RecordingsOf(ReadAll(options, true)); });
+  Options silent = options;  // the first rank says what the check finds
+  silent.input.silent = true;
+  ranks.Serve(DiagnoseOptionsOf(options), [&] { return RecordingsOf(ReadAll(silent, true)); });
 }
 
 }  // namespace

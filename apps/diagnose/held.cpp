@@ -13,15 +13,17 @@ diagnosis::EffectMakers ShaftInput::JointEffects() const {
   return held ? held->Effects() : diagnosis::EffectMakers{};
 }
 
-ShaftInput ReadShaft(const RecordingInput& input, const plausibility::CommandUse& use, bool quiet) {
+ShaftInput ReadShaft(const RecordingInput& input, const plausibility::CommandUse& use, bool quiet,
+                     bool needs_joints) {
   ShaftInput shaft{ReadInput(input), nullptr};
-  if (arms::HoldsShaft(shaft.read.recording)) {
+  if (arms::HoldsShaft(shaft.read.recording) && (needs_joints || !shaft.read.recording.wrist0)) {
     shaft.held = std::make_shared<arms::HeldShaft>(shaft.read.recording, input.recording.string());
     shaft.read.recording = shaft.held->WithWrist();
     shaft.read.warnings.insert(shaft.read.warnings.end(), shaft.held->Warnings().begin(),
                                shaft.held->Warnings().end());
   }
-  shaft.read.findings = CheckInput({input.no_check, quiet}, use, shaft.read.recording);
+  shaft.read.findings =
+      CheckInput({input.no_check, quiet, input.silent}, use, shaft.read.recording);
   return shaft;
 }
 

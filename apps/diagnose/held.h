@@ -1,4 +1,4 @@
-// A recording of a shaft, which an arm may hold: how `diagnose` and `predict` read it.
+// A recording of a shaft, which an arm may hold: how `diagnose`, `predict` and `estimate` read it.
 #pragma once
 
 #include <memory>
@@ -16,8 +16,10 @@ struct ShaftInput {
   diagnosis::EffectMakers JointEffects() const;
 };
 
-/// As ReadInput does. The check is of the recording with its wrist.
-ShaftInput ReadShaft(const RecordingInput& input, const plausibility::CommandUse& use, bool quiet);
+/// As ReadInput does. The check is of the recording with its wrist. With `needs_joints` off, an arm
+/// is looked at only where wrist0 is absent.
+ShaftInput ReadShaft(const RecordingInput& input, const plausibility::CommandUse& use, bool quiet,
+                     bool needs_joints = true);
 
 /// Diagnoses a shaft that an arm holds and writes the files of both parts into `folder`:
 /// diagnosis.json, model.yaml of what moves the wrist and bends the shaft, and where joints have

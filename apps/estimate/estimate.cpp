@@ -165,7 +165,7 @@ nlohmann::json Summary(const EstimateOptions& options, const Recording& recordin
 }
 
 void RunEstimate(const EstimateOptions& options, bool quiet) {
-  const ShaftInput input = ReadShaft(options.input, UseOfEstimate(), quiet);
+  const ShaftInput input = ReadShaft(options.input, UseOfEstimate(), quiet, !options.model.empty());
   const InputRead& read = input.read;
   const Recording& recording = read.recording;
   if (!recording.wrist0) {

@@ -92,9 +92,12 @@ DiagnosisResult Together(const DiagnosisResult& shaft, const DiagnosisResult& ar
     if (!Has(both.parameters, fit.effect)) within.push_back(fit);
   both.within_tolerance = std::move(within);
   both.nominal = Joined(shaft.nominal, arm.nominal);
-  both.covariance.resize(0, 0);  // of a list that is no longer the shaft's
-  both.indistinguishable.insert(both.indistinguishable.end(), arm.indistinguishable.begin(),
-                                arm.indistinguishable.end());
+  both.covariance.resize(0, 0);                      // of a list that is no longer the shaft's
+  for (const auto& group : arm.indistinguishable) {  // one of each effect
+    const auto is_of_same = [&](const auto& own) { return own.front() == group.front(); };
+    if (std::ranges::none_of(both.indistinguishable, is_of_same))
+      both.indistinguishable.push_back(group);
+  }
   for (const std::string& name : arm.catalogue)
     if (std::ranges::find(both.catalogue, name) == both.catalogue.end())
       both.catalogue.push_back(name);

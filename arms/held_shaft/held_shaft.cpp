@@ -72,7 +72,7 @@ void Add(diagnosis::EffectMakers& makers, const std::shared_ptr<const HeldArm>& 
 }  // namespace
 
 bool HoldsShaft(const Recording& recording) {
-  return recording.joints0 && recording.has_shaft &&
+  return recording.joints0 && !recording.joints0->q.empty() && recording.has_shaft &&
          (recording.em0 || recording.vision0 || recording.strain0);
 }
 

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "arms/held_shaft/diagnose_held.h"
 #include "core/error.h"
 #include "diagnosis/diagnose.h"
@@ -114,6 +116,30 @@ TEST(HeldShaft, WhatLacksJointsIsLeftOutOrRefused) {
                InputError);
   for (auto& row : rows) row.t_ns += 3'600'000'000'000;
   EXPECT_THROW(HeldShaft(recording, "held"), InputError);
+}
+
+TEST(HeldShaft, TheAnswersOfBothPartsAreMultiplied) {
+  diagnosis::DiagnosisResult shaft, arm;
+  shaft.probabilities = {{{"stiffness"}, 0.8, 0.0}, {{"none"}, 0.2, 0.0}};
+  shaft.presence = {{"stiffness", 0.8}};
+  shaft.indistinguishable = {{"stiffness"}};
+  arm.probabilities = {{{"servo_lag"}, 0.6, 0.0}, {{"none"}, 0.3, 0.0}, {{"unknown"}, 0.1, 0.0}};
+  arm.presence = {{"servo_lag", 0.6}};
+  arm.indistinguishable = {{"servo_lag", "command_latency"}};
+  const auto both = Together(shaft, arm);
+  EXPECT_THAT(both.verdict, ElementsAre("servo_lag", "stiffness"));
+  std::map<diagnosis::Verdict, double> p;
+  for (const auto& h : both.probabilities) p[h.verdict] = h.probability;
+  EXPECT_NEAR((p[{"servo_lag", "stiffness"}]), 0.48, 1e-12);
+  EXPECT_NEAR(p[{"stiffness"}], 0.24, 1e-12);
+  EXPECT_NEAR(p[{"servo_lag"}], 0.12, 1e-12);
+  EXPECT_NEAR(p[{"none"}], 0.06, 1e-12);
+  EXPECT_NEAR(p[{"unknown"}], 0.1, 1e-12);
+  EXPECT_EQ(both.credible_set.size(), 4U);  // 0.48 + 0.24 + 0.12 + 0.1
+  EXPECT_EQ(both.presence.at("servo_lag"), 0.6);
+  EXPECT_EQ(both.indistinguishable.size(), 2U);
+  // What both parts name has one group.
+  EXPECT_EQ(Together(both, arm).indistinguishable.size(), 2U);
 }
 
 TEST(HeldShaft, HealthyOnesHaveNoCause) {

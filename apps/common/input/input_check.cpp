@@ -38,7 +38,8 @@ std::vector<Finding> CheckInput(const InputCheck& check, const plausibility::Com
   all.insert(all.end(), found.beware.begin(), found.beware.end());
   for (const Finding& f : all) {
     const bool wrong = f.severity == plausibility::Severity::kWrong;
-    if (wrong || !check.quiet) fmt::print(stderr, "{}", FindingText(wrong ? "wrong" : "beware", f));
+    if (check.silent || (check.quiet && !wrong)) continue;
+    fmt::print(stderr, "{}", FindingText(wrong ? "wrong" : "beware", f));
   }
   return all;
 }

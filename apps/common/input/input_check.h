@@ -12,8 +12,9 @@ namespace flextip {
 
 /// How a command has its recording checked.
 struct InputCheck {
-  bool skip = false;   ///< --no-check
-  bool quiet = false;  ///< doubts are not printed
+  bool skip = false;    ///< --no-check
+  bool quiet = false;   ///< doubts are not printed
+  bool silent = false;  ///< nothing is
 };
 
 /// Adds --no-check. `skip` must outlive the parsing.

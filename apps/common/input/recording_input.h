@@ -17,6 +17,7 @@ struct RecordingInput {
   std::filesystem::path tracked;  ///< a result of flextip track; empty: the recording's own tips
   CalibrationFiles calibrations;
   bool no_check = false;
+  bool silent = false;  ///< what the check finds is not printed: another process says it
 
   /// Everything that is read, for OutputFolder.
   std::vector<std::filesystem::path> Files() const;
