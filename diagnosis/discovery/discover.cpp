@@ -117,8 +117,14 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     const std::vector<Candidate> candidates = FindCandidates(all, states, options.fast_waves_only);
     if (candidates.empty()) break;
     Candidate best = candidates.front();
-    const double least = std::max(options.least_part * base, options.least_left * all.cost);
-    if (best.criterion < options.worth || best.gain < least) break;
+    const double least_left = options.least_left * all.cost;
+    const double least = std::max(options.least_part * base, least_left);
+    const auto completes = [&](const Candidate& one) {
+      return one.gain >= least_left && std::ranges::any_of(options.completed, [&](const Term& of) {
+               return SameForm(one.term, of);
+             });
+    };
+    if (best.criterion < options.worth || (best.gain < least && !completes(best))) break;
     const auto constant = std::ranges::find_if(candidates, [&](const Candidate& one) {
       return one.term.target == best.term.target && one.term.shape == TermShape::kConstant;
     });
@@ -126,9 +132,10 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     const auto matters = [&](const Candidate& one) {
       const bool varies = one.term.shape != TermShape::kConstant;
       const bool is_much = varies && one.gain - of_constant >= options.much_left * all.cost;
-      return one.criterion >= options.worth && one.gain >= least &&
-             (is_much ||
-              HalfRange(one.term, states.at(one.term.target)) >= options.least_tolerances);
+      if (one.criterion < options.worth) return false;
+      if (completes(one)) return true;
+      return one.gain >= least && (is_much || HalfRange(one.term, states.at(one.term.target)) >=
+                                                  options.least_tolerances);
     };
     // What varies too little may stand beside a constant that does not.
     if (!matters(best) && constant != candidates.end() && matters(*constant)) best = *constant;

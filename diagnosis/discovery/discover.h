@@ -19,6 +19,9 @@ struct DiscoverOptions {
   double least_left = 0.04;
   double least_tolerances = 3.0;  ///< half of a term's range, in the target's tolerances
   double much_left = 0.1;  ///< of what the model leaves: what varies so much matters at any size
+  /// Terms whose form a further one may complete (a wave's overtone), at any size that is not
+  /// little of what the model leaves.
+  std::vector<Term> completed = {};
   bool fast_waves_only = false;  ///< periodic terms as fast as noise, alone
   double alike = 9.0;            ///< twice the log odds within which forms cannot be told apart
   int bags = 8;

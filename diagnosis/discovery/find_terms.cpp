@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "diagnosis/heldout.h"
 #include "diagnosis/samples/noise_level.h"
 
 namespace flextip::diagnosis {
@@ -83,10 +84,10 @@ class TermChoice {
   /// Nothing where a term far from small was right only as long as it is small: fitted, it leaves
   /// more than before.
   std::unique_ptr<TermModel> Make() {
-    constexpr double kWorse = 1.5;  // the noise is taken anew with the terms
     auto model = Found();
-    if (model && model->extended.ChiSquaredPerDof() > kWorse * best_.ChiSquaredPerDof()) return {};
-    return model;
+    if (!model || LeavesMore(*model, best_)) return {};
+    auto more = WithFurther(*model);
+    return more && !LeavesMore(*more, model->extended) ? std::move(more) : std::move(model);
   }
 
  private:
@@ -99,6 +100,35 @@ class TermChoice {
     const std::vector<FoundTerm> found = Joined(fast_, beside_.terms);
     if (found.empty()) return {};
     return FitTerms(base_, best_, selection_, Effects(), found, options_);
+  }
+
+  static bool LeavesMore(const TermModel& model, const Replay& before) {
+    constexpr double kWorse = 1.5;  // the noise is taken anew with the terms
+    return model.extended.ChiSquaredPerDof() > kWorse * before.ChiSquaredPerDof();
+  }
+
+  static double HeldOutError(const TermModel& model) {
+    return MeasureHeldOut(model.base, model.extended, model.selection, model.weighed)
+        .gain.heldout_error_ratio;
+  }
+
+  /// Once the terms are fitted, what they hid can be seen: a form that is only near, the rest of a
+  /// law that the library has no shape for. They count where they tell of stretches that they were
+  /// not fitted to.
+  std::unique_ptr<TermModel> WithFurther(const TermModel& model) const {
+    DiscoverOptions options;
+    options.most_terms -= int(model.found.size());
+    if (options.most_terms <= 0) return {};
+    for (const FoundTerm& one : model.found) options.completed.push_back(one.term);
+    const WeighedHypothesis& known = model.weighed;
+    const Eigen::VectorXd sd = model.layout.Widened(known.hypothesis.effects, known.scales);
+    const TermSearch further = SearchTerms(model.extended, sd, {}, options);
+    if (further.terms.empty()) return {};
+    std::vector<int> effects = known.hypothesis.effects;
+    std::erase_if(effects, [&](int b) { return b >= model.first_term; });
+    auto more = FitTerms(base_, model.extended, selection_, effects,
+                         Joined(model.Fitted(), further.terms), options_);
+    return more && HeldOutError(*more) < HeldOutError(model) ? std::move(more) : nullptr;
   }
 
   const std::vector<int>& Effects() const { return known_.hypothesis.effects; }

@@ -26,15 +26,18 @@ Rows MayMissOf(const Selection& selection) {
   return sd.cwiseProduct(terms.cwiseSqrt());
 }
 
-/// `theta` of a layout with the terms' values between the effects and the nuisances.
-Eigen::VectorXd WithTerms(const Eigen::VectorXd& theta, const ParameterLayout& from,
-                          const TermModel& model) {
-  const Eigen::Index effects = model.layout.Blocks()[model.first_term].first;
+/// `theta` of a layout, with fewer terms or none, with the terms' values between the effects and
+/// the nuisances.
+Eigen::VectorXd WithTerms(const Eigen::VectorXd& theta, const TermModel& model) {
+  const auto& blocks = model.layout.Blocks();
+  const Eigen::Index effects = blocks[model.first_term].first;
+  const auto& last = blocks[model.first_term + int(model.found.size()) - 1];
+  const Eigen::Index nuisances = model.layout.Size() - last.first - last.size;
   Eigen::VectorXd all = Eigen::VectorXd::Zero(model.layout.Size());
   all.head(effects) = theta.head(effects);
-  all.tail(from.Size() - effects) = theta.tail(from.Size() - effects);
+  all.tail(nuisances) = theta.tail(nuisances);
   for (std::size_t i = 0; i < model.found.size(); ++i) {
-    const auto& block = model.layout.Blocks()[model.first_term + int(i)];
+    const auto& block = blocks[model.first_term + int(i)];
     all.segment(block.first, block.size) =
         static_cast<const DiscoveredTerm&>(*block.effect).Theta();
   }
@@ -72,6 +75,16 @@ Verdict TermModel::Named() const {
   return names.empty() ? Verdict{"none"} : names;
 }
 
+std::vector<FoundTerm> TermModel::Fitted() const {
+  std::vector<FoundTerm> fitted = found;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const auto& block = layout.Blocks()[first_term + int(i)];
+    fitted[i].term = static_cast<const DiscoveredTerm&>(*block.effect)
+                         .With(extended.Theta().segment(block.first, block.size));
+  }
+  return fitted;
+}
+
 TermModel::TermModel(const SampleSet& samples, Catalogue catalogue, int terms)
     : layout(samples, std::move(catalogue)),
       base(samples, layout),
@@ -101,7 +114,7 @@ std::unique_ptr<TermModel> FitTerms(const Replay& base, const Replay& from,
   Replay& replay = model->extended;
   replay.TakeSettings(from);
   replay.SetForces(from.Forces());
-  if (!replay.Evaluate(WithTerms(from.Theta(), from.Layout(), *model))) return {};
+  if (!replay.Evaluate(WithTerms(from.Theta(), *model))) return {};
   const Rows may_miss = MayMissOf(selection);
   const Hypothesis hypothesis = HypothesisOf(*model, effects);
   Eigen::MatrixXd basis;
@@ -111,7 +124,8 @@ std::unique_ptr<TermModel> FitTerms(const Replay& base, const Replay& from,
                                             {.basis = basis,
                                              .may_miss = may_miss,
                                              .rounds = kRounds,
-                                             .scans = twice == 0 ? kScans : 0});
+                                             .scans = twice == 0 ? kScans : 0,
+                                             .scan_own = true});
     GoTo(replay, model->layout, fit.place);
     if (twice == 1) break;
     replay.SetNoiseScale(NoiseScale(replay));
@@ -120,7 +134,7 @@ std::unique_ptr<TermModel> FitTerms(const Replay& base, const Replay& from,
   Weigh(basis, may_miss, hypothesis, *model);
   model->base.TakeSettings(replay);
   model->base.SetForces(base.Forces());
-  Eigen::VectorXd theta = WithTerms(base.Theta(), base.Layout(), *model);
+  Eigen::VectorXd theta = WithTerms(base.Theta(), *model);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const auto& block = model->layout.Blocks()[model->first_term + int(i)];
     theta.segment(block.first, block.size).setZero();

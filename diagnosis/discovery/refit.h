@@ -22,14 +22,17 @@ struct TermModel {
 
   /// The effects' names; {"none"} where there are terms alone.
   Verdict Named() const;
+  /// The terms as they are fitted.
+  std::vector<FoundTerm> Fitted() const;
 
   TermModel(const SampleSet& samples, Catalogue catalogue, int terms);
   TermModel(const TermModel&) = delete;
   TermModel& operator=(const TermModel&) = delete;
 };
 
-/// Fits `effects` (blocks of `from`'s layout) and `found` from where `from` stands; `base` stands
-/// at the base simulation. Null where the instrument has no equilibrium there.
+/// Fits `effects` (blocks of `from`'s layout) and `found` from where `from` stands, which may have
+/// terms of its own: those of `found` are in their place. `base` stands at the base simulation.
+/// Null where the instrument has no equilibrium there.
 std::unique_ptr<TermModel> FitTerms(const Replay& base, const Replay& from,
                                     const Selection& selection, const std::vector<int>& effects,
                                     const std::vector<FoundTerm>& found,

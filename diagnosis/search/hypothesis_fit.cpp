@@ -40,15 +40,15 @@ Eigen::VectorXd Plausible(Eigen::VectorXd mode, const ParameterLayout& layout) {
   return mode;
 }
 
-/// Scans the parameters that call for it, but those of effects that are fitted anyway. Returns
-/// whether there was any.
-bool Scan(Replay& replay, ParameterLayout& layout, const Hypothesis& hypothesis) {
+/// The blocks whose scanned parameters are looked for anew: those of effects that are fitted anyway
+/// are not, unless said.
+std::vector<int> ToScan(const ParameterLayout& layout, const Hypothesis& hypothesis, bool own_too) {
   std::vector<int> blocks = layout.ScannedBlocks();
-  std::erase_if(blocks, [&](int block) {
-    return std::ranges::find(hypothesis.effects, block) != hypothesis.effects.end();
-  });
-  ScanAgain(replay, layout, blocks);
-  return !blocks.empty();
+  if (!own_too)
+    std::erase_if(blocks, [&](int block) {
+      return std::ranges::find(hypothesis.effects, block) != hypothesis.effects.end();
+    });
+  return blocks;
 }
 
 }  // namespace
@@ -134,8 +134,11 @@ HypothesisFit FitHypothesis(Replay& replay, ParameterLayout& layout, const Hypot
   HypothesisFit fit;
   fit.hypothesis = hypothesis;
   std::optional<LinearProblem> here;
+  Eigen::VectorXd prior_sd;
+  const std::vector<int> to_scan = ToScan(layout, hypothesis, fit_options.scan_own);
   for (int round = 0; round < fit_options.rounds; ++round) {
-    const bool scan = round > 0 && round < fit_options.scans && Scan(replay, layout, hypothesis);
+    const bool scan = round > 0 && round < fit_options.scans && !to_scan.empty();
+    if (scan) ScanAgain(replay, layout, to_scan, prior_sd);
     if (scan || !here) here = ProblemHere(replay, fit_options.basis, options);
     const bool far = fit_options.scans > 0 && round == 0;
     const Rows may_miss = far ? MayMiss(here->residual_size, options.first_discrepancy, options)
@@ -144,6 +147,7 @@ HypothesisFit FitHypothesis(Replay& replay, ParameterLayout& layout, const Hypot
     fit.log_posterior = weighing.LogPosterior() - weighing.promised;
     fit.distance = weighing.distance;
     fit.place = PlaceOf(replay);
+    prior_sd = weighing.prior_sd;
     if (round > 0 && round >= fit_options.scans && weighing.distance < kAtRest) break;
     const double behind = fit_options.worth - weighing.LogPosterior();
     if (round > 1 && behind > kHopeless) break;

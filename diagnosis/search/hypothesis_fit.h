@@ -70,6 +70,7 @@ struct FitOptions {
   Rows may_miss = Rows::Zero();
   int rounds = 4;
   int scans = 0;          ///< rounds, from the second on, that scan parameters such as a frequency
+  bool scan_own = false;  ///< and those of the hypothesis' own effects
   double worth = -1e300;  ///< log posterior below which, clearly, the fit is given up
 };
 

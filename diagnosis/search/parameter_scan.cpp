@@ -134,8 +134,8 @@ class Scan {
         z_(rows_.e + rows_.X * replay.Theta()),
         Xz_(rows_.X.transpose() * z_) {}
 
-  /// Returns the best value for block `block`.
-  double Best(int block) const;
+  /// Returns the best value for block `block`, the others of prior deviations `sd`.
+  double Best(int block, Eigen::VectorXd sd) const;
 
  private:
   /// Returns the whitened rows' derivatives by the scanned inputs (a column each).
@@ -178,11 +178,10 @@ SampleProducts Scan::ProductsWith(const Eigen::MatrixXd& B, const Eigen::VectorX
   return products;
 }
 
-double Scan::Best(int block) const {
+double Scan::Best(int block, Eigen::VectorXd sd) const {
   const ScannedParameter scanned = ScannedOf(replay_, block);
   const auto& own = replay_.Layout().Blocks()[block];
   // The effect's own parameters at an earlier value are to be found again.
-  Eigen::VectorXd sd = replay_.Layout().Tolerances();
   sd.segment(own.first, own.size).setZero();
   Eigen::MatrixXd M = sd.asDiagonal() * H_ * sd.asDiagonal();
   M.diagonal().array() += 1.0;
@@ -220,13 +219,14 @@ double Scan::Best(int block) const {
 
 }  // namespace
 
-void ScanAgain(Replay& replay, ParameterLayout& layout, const std::vector<int>& blocks) {
+void ScanAgain(Replay& replay, ParameterLayout& layout, const std::vector<int>& blocks,
+               const Eigen::VectorXd& prior_sd) {
   std::optional<Scan> scan;
   for (const int block : blocks) {
     if (!scan) scan.emplace(replay);
     const ScannedParameter scanned = ScannedOf(replay, block);
     const auto& own = layout.Blocks()[block];
-    const double found = scan->Best(block);
+    const double found = scan->Best(block, prior_sd);
     Eigen::VectorXd theta = replay.Theta();
     const double now = own.effect->ScanCentre() + theta[own.first + scanned.correction];
     if (std::abs(found - now) < kSameValue * scanned.resolution) continue;

@@ -40,7 +40,7 @@ class Search {
     LeaveOutFarSamples();
     Temper();
     if (tempered_by_ == 1.0) replay_.FixNoiseModel();
-    ScanAgain(replay_, layout_, layout_.ScannedBlocks());
+    ScanAgain(replay_, layout_, layout_.ScannedBlocks(), layout_.Tolerances());
     base_ = PlaceOf(replay_);
     base_state_ = replay_.Save();
     basis_ = GenericBasis(replay_);

@@ -37,7 +37,7 @@ void LeaveOutFar(Replay& replay, Member& member) {
 void Scan(Member& member, Replay& replay, const Fleet& fleet, bool shared_too) {
   std::vector<int> blocks = member.layout.ScannedBlocks();
   if (!shared_too) std::erase_if(blocks, [&](int b) { return !fleet.SharedOf(b).empty(); });
-  ScanAgain(replay, member.layout, blocks);
+  ScanAgain(replay, member.layout, blocks, member.layout.Tolerances());
 }
 
 MemberState Do(const ToBase& task, Fleet& fleet, Member& member, const SelectionOptions& options) {

@@ -18,7 +18,7 @@ double FoundIn(const SampleSet& samples) {
   Replay replay(samples, layout);
   EXPECT_TRUE(replay.Evaluate(Eigen::VectorXd::Zero(layout.Size())));
   const int block = layout.Find("port_motion");
-  ScanAgain(replay, layout, {block});
+  ScanAgain(replay, layout, {block}, layout.Tolerances());
   return layout.Blocks()[block].effect->ScanCentre();
 }
 
