@@ -124,7 +124,10 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
                return SameForm(one.term, of);
              });
     };
-    if (best.criterion < options.worth || (best.gain < least && !completes(best))) break;
+    const auto counts = [&](const Candidate& one) {
+      return one.criterion >= options.worth && (one.gain >= least || completes(one));
+    };
+    if (!counts(best)) break;
     const auto constant = std::ranges::find_if(candidates, [&](const Candidate& one) {
       return one.term.target == best.term.target && one.term.shape == TermShape::kConstant;
     });
@@ -132,10 +135,9 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     const auto matters = [&](const Candidate& one) {
       const bool varies = one.term.shape != TermShape::kConstant;
       const bool is_much = varies && one.gain - of_constant >= options.much_left * all.cost;
-      if (one.criterion < options.worth) return false;
-      if (completes(one)) return true;
-      return one.gain >= least && (is_much || HalfRange(one.term, states.at(one.term.target)) >=
-                                                  options.least_tolerances);
+      return counts(one) &&
+             (completes(one) || is_much ||
+              HalfRange(one.term, states.at(one.term.target)) >= options.least_tolerances);
     };
     // What varies too little may stand beside a constant that does not.
     if (!matters(best) && constant != candidates.end() && matters(*constant)) best = *constant;

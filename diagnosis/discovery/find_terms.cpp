@@ -112,9 +112,9 @@ class TermChoice {
         .gain.heldout_error_ratio;
   }
 
-  /// Once the terms are fitted, what they hid can be seen: a form that is only near, the rest of a
-  /// law that the library has no shape for. They count where they tell of stretches that they were
-  /// not fitted to.
+  /// With the terms that show once those of `model` are fitted: a form that is only near hid the
+  /// rest of a law, a wave its overtone. Null where there are none, and where they do not tell of
+  /// stretches that they were not fitted to.
   std::unique_ptr<TermModel> WithFurther(const TermModel& model) const {
     DiscoverOptions options;
     options.most_terms -= int(model.found.size());
