@@ -1,6 +1,8 @@
 #include "diagnosis/evidence/force_volume.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -21,16 +23,28 @@ std::vector<int> Compliances(const Replay& replay) {
   return found;
 }
 
+/// One sample of each of `kSamples` equal stretches, each at another place of its stretch: every
+/// so many samples would meet a slower sensor always, or never.
+std::vector<std::size_t> Few(std::size_t all) {
+  std::vector<std::size_t> few;
+  const double stretch = std::max(1.0, double(all) / double(kSamples));
+  for (std::size_t i = 0; i < std::min(all, kSamples); ++i) {
+    const double turns = double(i) * std::numbers::phi;
+    few.push_back(std::size_t((double(i) + turns - std::floor(turns)) * stretch));
+  }
+  return few;
+}
+
 /// A few of a replay's samples, with their forces.
 class Thinned {
  public:
   explicit Thinned(const Replay& replay)
-      : stride_(std::max<std::size_t>(1, replay.Samples().size() / kSamples)),
-        samples_(Take(replay.Set(), stride_)),
+      : few_(Few(replay.Samples().size())),
+        one_is_(double(replay.Samples().size()) / double(few_.size())),
+        samples_(Take(replay.Set(), few_)),
         replay_(samples_, replay.Layout()) {
     std::vector<Eigen::Vector3d> forces_N;
-    for (std::size_t k = 0; k < replay.Samples().size(); k += stride_)
-      forces_N.push_back(replay.Samples()[k].f_tip_N);
+    for (const std::size_t k : few_) forces_N.push_back(replay.Samples()[k].f_tip_N);
     replay_.TakeSettings(replay);
     replay_.LeaveOut({});
     replay_.SetForces(forces_N);
@@ -41,20 +55,20 @@ class Thinned {
   std::optional<double> At(const Eigen::VectorXd& theta) {
     if (!replay_.EvaluateWithForces(theta)) return {};
     const std::vector<double> shares = replay_.Whiten().force_share;
-    return double(stride_) * std::accumulate(shares.begin(), shares.end(), 0.0);
+    return one_is_ * std::accumulate(shares.begin(), shares.end(), 0.0);
   }
 
  private:
-  static SampleSet Take(const SampleSet& samples, std::size_t stride) {
+  static SampleSet Take(const SampleSet& samples, const std::vector<std::size_t>& few) {
     SampleSet thin = samples;
     thin.samples.clear();
-    for (std::size_t k = 0; k < samples.samples.size(); k += stride)
-      thin.samples.push_back(samples.samples[k]);
+    for (const std::size_t k : few) thin.samples.push_back(samples.samples[k]);
     thin.resolved_in_time = false;  // rates do not matter here
     return thin;
   }
 
-  std::size_t stride_;
+  std::vector<std::size_t> few_;
+  double one_is_;  ///< samples of the recording
   SampleSet samples_;
   Replay replay_;
 };

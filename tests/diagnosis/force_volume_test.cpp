@@ -83,6 +83,25 @@ TEST_F(ForceVolumeTest, IsWhatDrawnNoiseLosesToAYieldingTip) {
   EXPECT_NEAR(volume, mean, 5.0 * std::sqrt(variance / kDraws));
 }
 
+// Of a long recording few samples are asked. A camera of half the wrist's rate is in half of them.
+TEST(ForceVolumeOfALongRecording, CountsSensorsAsOftenAsTheyAreThere) {
+  for (const double duration_s : {8.0, 10.0, 12.0}) {
+    const SampleSet samples = SmallSamples(duration_s, false, 64);
+    const ParameterLayout layout(samples, MakeCatalogue(samples));
+    Replay replay(samples, layout);
+    const auto taken_at = [&](double compliance_m_N) {
+      Eigen::VectorXd theta = Eigen::VectorXd::Zero(layout.Size());
+      theta[layout.Blocks()[layout.Find("tip_compliance")].first] = compliance_m_N;
+      EXPECT_TRUE(replay.EvaluateWithForces(theta));
+      const std::vector<double> shares = replay.Whiten().force_share;
+      return std::accumulate(shares.begin(), shares.end(), 0.0);
+    };
+    const double rigid = taken_at(0.0), yielding = taken_at(3e-4);
+    ASSERT_GT(yielding - rigid, 20.0);
+    EXPECT_NEAR(ForceVolume(replay) / (yielding - rigid), 1.0, 0.1) << duration_s;
+  }
+}
+
 /// The first parameter of an effect, of the catalogue or not.
 int FirstOf(const ParameterLayout& layout, const std::string& name) {
   for (const auto& block : layout.Blocks())
