@@ -75,13 +75,14 @@ class Thinned {
 
 }  // namespace
 
-double ForceVolume(const Replay& replay) {
+double ForceVolume(const Replay& replay, double squares, double rows) {
   if (replay.Set().has_load) return 0.0;
   Thinned thin(replay);
   Eigen::VectorXd rigid = replay.Theta();
   for (const int j : Compliances(replay)) rigid[j] = 0.0;
   const auto here = thin.At(replay.Theta()), reference = thin.At(rigid);
-  return here && reference ? *here - *reference : 0.0;
+  if (!here || !reference) return 0.0;
+  return (*here - *reference) * std::min(1.0, squares / std::max(1.0, rows - *here));
 }
 
 }  // namespace flextip::diagnosis

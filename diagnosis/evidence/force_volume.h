@@ -12,8 +12,9 @@
 
 namespace flextip::diagnosis {
 
-/// To be put back on the squared residual: rows taken up in all samples (from every so many of
-/// them).
-double ForceVolume(const Replay& replay);
+/// To be put back on the squared residual: rows taken up in all samples (from a few of them) by the
+/// compliances, times the variance of the noise that is there, `squares` over the rows that are
+/// left of `rows`. Data sheets say rather too much of it; more than stated is not noise.
+double ForceVolume(const Replay& replay, double squares, double rows);
 
 }  // namespace flextip::diagnosis

@@ -71,7 +71,12 @@ Eigen::VectorXd GenericSd(const LinearProblem& problem, const Rows& may_miss) {
 LinearProblem ProblemHere(const Replay& replay, const Eigen::MatrixXd& basis,
                           const SelectionOptions& options) {
   LinearProblem problem = MakeLinearProblem(replay, basis, options.blocks);
-  problem.total.volume = ForceVolume(replay);
+  const NormalSums& sums = problem.total;
+  const auto P = Eigen::Index(problem.parameters);
+  const Eigen::VectorXd& theta = replay.Theta();
+  const double squares = sums.c - 2.0 * sums.g.head(P).dot(theta) +
+                         theta.dot(sums.H.topLeftCorner(P, P) * theta);
+  problem.total.volume = ForceVolume(replay, squares, double(sums.rows));
   for (NormalSums& block : problem.blocks)
     block.volume = problem.total.volume * double(block.rows) / double(problem.total.rows);
   return problem;

@@ -174,20 +174,33 @@ class Search {
     return tried_.Count() < kMostFits + more * kFitsAnEffect;
   }
 
-  /// Whatever looks better from the best place than the best itself is fitted from there.
+  /// Whatever looks better from the best place than the best itself is fitted from there: also what
+  /// was fitted from elsewhere and ended where it looks worse, once from each place.
   void FitRivals() {
+    std::vector<Hypothesis> from_here;
+    Hypothesis here = tried_.Best().hypothesis;
     for (rivals_left_ = true; MayFitMore();) {
+      if (tried_.Best().hypothesis != here) from_here.clear();
+      here = tried_.Best().hypothesis;
       const Weighing weighing = WeighKnown();
       const ScoredHypothesis* rival = nullptr;
       double log_rival = tried_.Best().log_posterior - kRival;
       for (const auto& s : weighing.scored) {
-        const double log = s.log_posterior + weighing.log_none + tried_.Shortfall(s, weighing);
-        if (tried_.Find(s.weighed.hypothesis) != nullptr || log < log_rival) continue;
+        const Hypothesis& h = s.weighed.hypothesis;
+        double log = s.log_posterior + weighing.log_none;
+        if (const HypothesisFit* tried = tried_.Find(h)) {
+          const bool was_here = h == here || std::ranges::find(from_here, h) != from_here.end();
+          if (was_here || log < tried->log_posterior + kRival) continue;
+        } else {
+          log += tried_.Shortfall(s, weighing);
+        }
+        if (log < log_rival) continue;
         rival = &s;
         log_rival = log;
       }
       rivals_left_ = rival != nullptr;
       if (!rivals_left_) return;
+      from_here.push_back(rival->weighed.hypothesis);
       FitFromHere(rival->weighed.hypothesis, kFitRounds);
     }
   }

@@ -63,7 +63,7 @@ TEST_F(ForceVolumeTest, ASamplesShareIsWhatItsNoiseLoses) {
 
 TEST_F(ForceVolumeTest, IsWhatDrawnNoiseLosesToAYieldingTip) {
   const WhitenedRows stiff = RowsAt(0.0), compliant = RowsAt(kCompliance_m_N);
-  const double volume = ForceVolume(replay_);
+  const double volume = ForceVolume(replay_, 1.0, 1.0);
   EXPECT_GT(volume, 10.0);
   std::mt19937_64 random(62);
   std::normal_distribution<double> normal;
@@ -98,7 +98,7 @@ TEST(ForceVolumeOfALongRecording, CountsSensorsAsOftenAsTheyAreThere) {
     };
     const double rigid = taken_at(0.0), yielding = taken_at(3e-4);
     ASSERT_GT(yielding - rigid, 20.0);
-    EXPECT_NEAR(ForceVolume(replay) / (yielding - rigid), 1.0, 0.1) << duration_s;
+    EXPECT_NEAR(ForceVolume(replay, 1.0, 1.0) / (yielding - rigid), 1.0, 0.1) << duration_s;
   }
 }
 
@@ -142,7 +142,7 @@ TEST(ForcePrior, IsNarrowAlongTheShaftUnderAConstantLoad) {
 
 TEST_F(ForceVolumeTest, IsNothingWithoutACompliance) {
   ASSERT_TRUE(replay_.Evaluate(Compliant(0.0)));
-  EXPECT_EQ(ForceVolume(replay_), 0.0);
+  EXPECT_EQ(ForceVolume(replay_, 1.0, 1.0), 0.0);
 }
 
 TEST(KnownLoad, TakesUpTheSameNoiseWhateverYields) {
@@ -161,7 +161,7 @@ TEST(KnownLoad, TakesUpTheSameNoiseWhateverYields) {
     for (std::size_t k = 0; k < stiff.units.size(); ++k)
       if (stiff.Rows(k) > 0)
         largest = std::max(largest, (stiff.units[k] - compliant.units[k]).norm());
-    EXPECT_EQ(ForceVolume(replay), 0.0);
+    EXPECT_EQ(ForceVolume(replay, 1.0, 1.0), 0.0);
     return largest;
   };
   EXPECT_GT(change(), 1e-3);
