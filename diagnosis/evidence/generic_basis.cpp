@@ -7,8 +7,9 @@
 namespace flextip::diagnosis {
 namespace {
 
-constexpr double kSlow_m_s = 0.004;  // sliding is told from rest at about this speed
-constexpr int kWaves = 4;            // half periods over the recording
+constexpr double kSlow_m_s = 0.004;      // sliding is told from rest at about this speed
+constexpr int kWaves = 4;                // half periods over the recording
+constexpr Eigen::Index kNeighbours = 4;  // on either side, that say what an unknown force is
 
 /// Central differences over two samples.
 Eigen::VectorXd Rate(const SampleSet& samples, const Eigen::VectorXd& value) {
@@ -19,6 +20,19 @@ Eigen::VectorXd Rate(const SampleSet& samples, const Eigen::VectorXd& value) {
     rate[k] = (value[b] - value[a]) / (samples.samples[b].t_s - samples.samples[a].t_s);
   }
   return rate;
+}
+
+/// The mean of the samples around each, without itself: an unknown force is found from the sample's
+/// own sensors, and with their noise in it any of them would seem to follow it.
+Eigen::VectorXd OfNeighbours(const Eigen::VectorXd& value) {
+  const auto n = value.size();
+  Eigen::VectorXd around = value;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::Index first = std::max<Eigen::Index>(0, k - kNeighbours);
+    const Eigen::Index count = std::min(n - 1, k + kNeighbours) - first;
+    if (count > 0) around[k] = (value.segment(first, count + 1).sum() - value[k]) / double(count);
+  }
+  return around;
 }
 
 void Append(std::vector<Eigen::VectorXd>& columns, const Eigen::VectorXd& column) {
@@ -53,6 +67,10 @@ std::vector<Regressor> Regressors(const Replay& replay) {
   for (int i = 0; i < 3; ++i) {
     const Eigen::VectorXd rate = Rate(set, wrist.col(i));
     wrist_speed = i == 0 ? rate.cwiseAbs2().eval() : (wrist_speed + rate.cwiseAbs2()).eval();
+  }
+  if (!set.has_load) {
+    port_force = OfNeighbours(port_force);
+    load = OfNeighbours(load);
   }
   const Eigen::Vector3d mean = direction.colwise().mean().transpose().normalized();
   Eigen::Index along = 0;

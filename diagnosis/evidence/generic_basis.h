@@ -16,7 +16,8 @@ struct Regressor {
   Eigen::VectorXd value;  ///< in its own unit
 };
 
-/// Insertion depth, direction, sliding and wrist speed, load, time: of the last replay.
+/// Insertion depth, direction, sliding and wrist speed, load, time: of the last replay. An unknown
+/// force is that of the samples around.
 std::vector<Regressor> Regressors(const Replay& replay);
 
 /// Columns are functions of the regressors (powers, signs, waves in time), one row a sample,

@@ -38,7 +38,7 @@ bool Replay::TryForce(std::size_t k, const Eigen::Vector3d& f_N, EffectRodSolver
   sample.ok = true;
   sample.f_tip_N = f_N;
   sample.compared = Compare(samples_, sample.measured, sample.inputs, f_N,
-                            {solved.at, Geometry::Zero(), Geometry::Zero()}, solved.by_inputs);
+                            {solved.at, sample.rate, sample.bend}, solved.by_inputs);
   return true;
 }
 

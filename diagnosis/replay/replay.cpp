@@ -269,9 +269,12 @@ void Replay::CompareSamples() {
       if (!sample.ok) continue;
       const Eigen::Vector3d expected_N =
           Around(k, [&](std::size_t j) -> Eigen::Vector3d { return replayed_[j].f_tip_N; });
+      const TimedGeometry timed = WithRate(k);
+      sample.rate = timed.rate;
+      sample.bend = timed.bend;
       sample.compared =
           Compare(samples_, sample.measured, sample.inputs, ForceOnTip(sample.f_tip_N, expected_N),
-                  WithRate(k), ExpectedDerivatives(k));
+                  timed, ExpectedDerivatives(k));
       const Eigen::Vector4d bends = ExpectedMoments(k);
       for (int i = 0; i < 4; ++i) {
         if (!sample.measured.Has(row::kStrain + i)) continue;

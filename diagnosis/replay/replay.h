@@ -29,6 +29,9 @@ struct ReplayedSample {
   Eigen::Vector3d f_tip_N = Eigen::Vector3d::Zero();
   DiagnosisSample measured;  ///< what the sensors say of this time, latency taken off
   SampleResidual compared;
+  /// Of the geometry, by the second, as it was last compared: a force is fitted to what sensors say
+  /// of their own times.
+  Geometry rate = Geometry::Zero(), bend = Geometry::Zero();
   double force_merit = 0.0;  ///< squared residual that an unknown force was fitted to
 };
 
