@@ -175,22 +175,31 @@ class Search {
     GoTo(fleet_, best_.place);
   }
 
-  /// Whatever looks better from the best place than the best itself is fitted from there.
+  /// Whatever looks better from the best place than the best itself is fitted from there: also what
+  /// was fitted from elsewhere and ended where it looks worse, once from each place.
   void FitRivals() {
+    std::vector<JointHypothesis> from_here;
+    JointHypothesis here = best_.weighed.hypothesis;
     for (rivals_left_ = true; selection_.fits < kMostFits;) {
       Settle();
-      const auto scored =
-          WeighAll(EvidenceHere(fleet_), fleet_, best_.weighed.hypothesis, options_);
+      if (!(best_.weighed.hypothesis == here)) from_here.clear();
+      here = best_.weighed.hypothesis;
+      const auto scored = WeighAll(EvidenceHere(fleet_), fleet_, here, options_);
       const JointScored* rival = nullptr;
       double log_rival = best_.log_posterior - kRival;
       for (const JointScored& s : scored) {
-        const double log = s.log_posterior + Shortfall(s, scored);
-        if (Tried(s.weighed.hypothesis) != nullptr || log < log_rival) continue;
+        const JointHypothesis& h = s.weighed.hypothesis;
+        const JointFit* tried = Tried(h);
+        const bool was_here = h == here || std::ranges::find(from_here, h) != from_here.end();
+        if (tried && (was_here || s.log_posterior < tried->log_posterior + kRival)) continue;
+        const double log = s.log_posterior + (tried ? 0.0 : Shortfall(s, scored));
+        if (log < log_rival) continue;
         rival = &s;
         log_rival = log;
       }
       rivals_left_ = rival != nullptr;
       if (!rivals_left_) return;
+      from_here.push_back(rival->weighed.hypothesis);
       Keep(FitJointly(workers_, rival->weighed.hypothesis, kFitRounds, best_.log_posterior,
                       kJointlyAtRest));
     }
