@@ -195,6 +195,7 @@ class Replay {
   double along_prior_;  // of an unknown force along the shaft, in units of EI / L^2
   int failed_ = 0;
   bool own_derivatives_ = false;
+  bool motion_known_ = false;  // the samples have rates to fit unknown forces by
 };
 
 }  // namespace flextip::diagnosis

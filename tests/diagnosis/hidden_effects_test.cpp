@@ -182,6 +182,27 @@ TEST(StrongFriction, IsNamedThoughItsFormIsAnother) {
   EXPECT_EQ(result.verdict, Verdict{"port_friction"}) << Answers(result);
 }
 
+/// With an unknown load the noise that the forces take up decided which cause was named. These are
+/// the recordings on which it was found to be so.
+TEST(UnknownLoad, NoiseThatForcesTakeUpIsNoCause) {
+  using hidden::MotionFamily;
+  for (const auto& [effect, size, seed, family] :
+       {std::tuple("", kPlain, 1268217914, MotionFamily::kHeldOut),
+        std::tuple("wrist_compliance", kPlain, 1213069986, MotionFamily::kAny),
+        std::tuple("tip_compliance", kPlain, 429672325, MotionFamily::kAny),
+        std::tuple("tip_compliance", kStrong, 683941117, MotionFamily::kAny)}) {
+    hidden::HiddenOptions options{.size = size};
+    if (*effect != '\0') options.effects = {effect};
+    options.with_load = false;
+    options.scene.family = family;
+    const DiagnosisResult result =
+        Diagnose(hidden::MakeHidden(options, std::uint64_t(seed)).recording, "unknown load",
+                 {.without = {}, .measure_gain = false});
+    EXPECT_EQ(result.verdict, Verdict{*effect == '\0' ? "none" : effect})
+        << seed << ": " << Answers(result);
+  }
+}
+
 /// Two or four other causes together take the part of one that the catalogue lacks, or none does. A
 /// term without a name says it as well, and is simpler. These are the recordings on which it was
 /// found to be otherwise.

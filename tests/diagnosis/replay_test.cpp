@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/diagnosis/small_recording.h"
@@ -139,6 +140,36 @@ TEST(ReplayForces, OfSamplesThatAreNotJudgedDoNotSpoilThoseBeside) {
 }
 
 /// One sample's force far off: alone it would stay in a wrong minimum, whatever stretch it begins.
+// The EM sensor speaks late and of times between the samples: a force fitted to where the shaft was
+// at the samples would follow the motion.
+TEST(ReplayForces, AreFittedToWhatSensorsSayOfTheirOwnTimes) {
+  hidden::HiddenOptions options{
+      .effects = {"em_latency"}, .size = hidden::EffectSize::kStrong, .exact = true};
+  options.with_load = false;
+  options.noise_free = true;
+  options.scene = {
+      .motion = hidden::MotionKind::kSines, .load = hidden::LoadKind::kHungMass, .duration_s = 6.0};
+  const hidden::HiddenRecording hidden = hidden::MakeHidden(options, 72);
+  const SampleSet samples = MakeSampleSet(hidden.recording, "small");
+  const ParameterLayout layout(samples, MakeCatalogue(samples));
+  Replay replay(samples, layout);
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(layout.Size());
+  theta[layout.Blocks()[layout.Find("em_latency")].first] =
+      hidden.label.parameters.at("em_latency").at("delay_s")[0];
+  const Eigen::Vector3d& hung_N = hidden.scene.load.mean_N;
+  const Instrument& shaft = samples.instrument;
+  for (const auto& block : layout.Blocks())
+    if (block.effect->Name() == "mean_load")
+      theta.segment<3>(block.first) =
+          hung_N / (shaft.bending_stiffness_Nm2 / std::pow(shaft.length_m, 2));
+  ASSERT_TRUE(replay.Evaluate(theta));
+  const auto forces_N = replay.Forces();
+  double largest_N = 0.0;
+  for (std::size_t k = 20; k + 20 < forces_N.size(); ++k)
+    largest_N = std::max(largest_N, (forces_N[k] - hung_N).norm());
+  EXPECT_LT(largest_N / hung_N.norm(), 0.1);  // 1.8 where they were fitted to the samples' times
+}
+
 TEST(ReplayForces, AreMendedFromTheNeighbours) {
   const SampleSet samples = SmallSamples(8.0, false, 44);
   const ParameterLayout layout(samples, MakeCatalogue(samples));
