@@ -15,14 +15,19 @@ constexpr double kHopeless = 40.0;   // in log odds, after two rounds
 constexpr double kMostUntold = 3.0;  // times a promise that may come beyond it, after one round
 constexpr double kFarthest = 6.0;    // typical sizes
 
+/// What parameters `theta` leave of the squares, without generic terms.
+double SquaresLeft(const NormalSums& sums, const Eigen::VectorXd& theta) {
+  const auto P = theta.size();
+  return sums.c - 2.0 * sums.g.head(P).dot(theta) + theta.dot(sums.H.topLeftCorner(P, P) * theta);
+}
+
 /// Minus twice the log of how likely parameters `theta` are, the generic terms at their best.
 double Merit(const LinearProblem& problem, const Eigen::VectorXd& theta,
              const Eigen::VectorXd& prior_sd, const Eigen::VectorXd& generic_sd) {
   const NormalSums& sums = problem.total;
   const auto P = theta.size(), G = sums.g.size() - P;
-  const double merit = sums.c - 2.0 * sums.g.head(P).dot(theta) +
-                       theta.dot(sums.H.topLeftCorner(P, P) * theta) + sums.volume +
-                       theta.cwiseQuotient(prior_sd).squaredNorm();
+  const double merit =
+      SquaresLeft(sums, theta) + sums.volume + theta.cwiseQuotient(prior_sd).squaredNorm();
   const Eigen::VectorXd left =
       generic_sd.asDiagonal() * (sums.g.tail(G) - sums.H.bottomLeftCorner(G, P) * theta);
   Eigen::MatrixXd M =
@@ -71,12 +76,8 @@ Eigen::VectorXd GenericSd(const LinearProblem& problem, const Rows& may_miss) {
 LinearProblem ProblemHere(const Replay& replay, const Eigen::MatrixXd& basis,
                           const SelectionOptions& options) {
   LinearProblem problem = MakeLinearProblem(replay, basis, options.blocks);
-  const NormalSums& sums = problem.total;
-  const auto P = Eigen::Index(problem.parameters);
-  const Eigen::VectorXd& theta = replay.Theta();
-  const double squares = sums.c - 2.0 * sums.g.head(P).dot(theta) +
-                         theta.dot(sums.H.topLeftCorner(P, P) * theta);
-  problem.total.volume = ForceVolume(replay, squares, double(sums.rows));
+  const double squares = SquaresLeft(problem.total, replay.Theta());
+  problem.total.volume = ForceVolume(replay, squares, double(problem.total.rows));
   for (NormalSums& block : problem.blocks)
     block.volume = problem.total.volume * double(block.rows) / double(problem.total.rows);
   return problem;

@@ -140,6 +140,16 @@ TEST(ForcePrior, IsNarrowAlongTheShaftUnderAConstantLoad) {
   EXPECT_LT(known_mean - 2.0, 0.5 * (unknown_mean - 2.0)) << unknown_mean << ' ' << known_mean;
 }
 
+// Data sheets say rather too much noise. What is more than they say is not noise.
+TEST_F(ForceVolumeTest, IsOfTheNoiseThatIsThere) {
+  ASSERT_TRUE(replay_.EvaluateWithForces(Compliant(kCompliance_m_N)));
+  constexpr double kMany = 1e9;  // rows, beside which those taken up are few
+  const double stated = ForceVolume(replay_, kMany, kMany);
+  EXPECT_GT(stated, 10.0);
+  EXPECT_NEAR(ForceVolume(replay_, 0.5 * kMany, kMany) / stated, 0.5, 1e-3);
+  EXPECT_EQ(ForceVolume(replay_, 4.0 * kMany, kMany), stated);
+}
+
 TEST_F(ForceVolumeTest, IsNothingWithoutACompliance) {
   ASSERT_TRUE(replay_.Evaluate(Compliant(0.0)));
   EXPECT_EQ(ForceVolume(replay_, 1.0, 1.0), 0.0);
