@@ -185,8 +185,11 @@ class Search {
       if (!(best_.weighed.hypothesis == here)) from_here.clear();
       here = best_.weighed.hypothesis;
       const auto scored = WeighAll(EvidenceHere(fleet_), fleet_, here, options_);
-      const JointScored* rival = nullptr;
+      // At rest, what the problem still promises to the best is promised to all, and not had.
       double log_rival = best_.log_posterior - kRival;
+      for (const JointScored& s : scored)
+        if (s.weighed.hypothesis == here) log_rival = std::max(log_rival, s.log_posterior - kRival);
+      const JointScored* rival = nullptr;
       for (const JointScored& s : scored) {
         const JointHypothesis& h = s.weighed.hypothesis;
         const JointFit* tried = Tried(h);
