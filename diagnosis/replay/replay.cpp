@@ -34,11 +34,7 @@ Replay::Replay(const SampleSet& samples, const ParameterLayout& layout)
 }
 
 bool Replay::Evaluate(const Eigen::VectorXd& theta) {
-  if (samples_.has_load) return EvaluateBy(theta, [this] { SolveRods(); });
-  const auto fit = [this] { FitForces(); };
-  // The first time nothing says yet how the shaft moves.
-  if (!motion_known_ && samples_.resolved_in_time) motion_known_ = EvaluateBy(theta, fit);
-  return EvaluateBy(theta, fit);
+  return EvaluateBy(theta, [this] { samples_.has_load ? SolveRods() : FitForces(); });
 }
 
 bool Replay::EvaluateWithForces(const Eigen::VectorXd& theta) {

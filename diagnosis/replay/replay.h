@@ -63,7 +63,8 @@ class Replay {
   Replay(const SampleSet& samples, const ParameterLayout& layout);
 
   /// Predicts all samples with parameters `theta`. Unknown tip forces are fitted sample by sample,
-  /// from where they were. False where more than a tenth of the samples have no equilibrium.
+  /// from where they were, to how the shaft moved in the replay before (the first time: not). False
+  /// where more than a tenth of the samples have no equilibrium.
   bool Evaluate(const Eigen::VectorXd& theta);
   /// The same with the forces left as they are.
   bool EvaluateWithForces(const Eigen::VectorXd& theta);
@@ -195,7 +196,6 @@ class Replay {
   double along_prior_;  // of an unknown force along the shaft, in units of EI / L^2
   int failed_ = 0;
   bool own_derivatives_ = false;
-  bool motion_known_ = false;  // the samples have rates to fit unknown forces by
 };
 
 }  // namespace flextip::diagnosis

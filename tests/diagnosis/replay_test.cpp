@@ -162,7 +162,7 @@ TEST(ReplayForces, AreFittedToWhatSensorsSayOfTheirOwnTimes) {
     if (block.effect->Name() == "mean_load")
       theta.segment<3>(block.first) =
           hung_N / (shaft.bending_stiffness_Nm2 / std::pow(shaft.length_m, 2));
-  ASSERT_TRUE(replay.Evaluate(theta));
+  for (int twice = 0; twice < 2; ++twice) ASSERT_TRUE(replay.Evaluate(theta));
   const auto forces_N = replay.Forces();
   double largest_N = 0.0;
   for (std::size_t k = 20; k + 20 < forces_N.size(); ++k)
