@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "diagnosis/model/catalogue.h"
@@ -32,10 +33,10 @@ TEST(Regressors, AnUnknownForcesNoiseIsNotInThem) {
   Eigen::VectorXd noise(Eigen::Index(samples.samples.size()) - 2 * kFar);
   for (Eigen::Index k = 0; k < noise.size(); ++k)
     noise[k] = load(k + kFar) - 0.5 * (load(k) + load(k + 2 * kFar));
-  for (const Regressor& regressor : Regressors(replay))
-    if (regressor.name == "load") {
-      EXPECT_LT(std::abs(Correlation(regressor.value.segment(kFar, noise.size()), noise)), 0.2);
-    }
+  const auto regressors = Regressors(replay);
+  const auto of_load = std::ranges::find(regressors, "load", &Regressor::name);
+  ASSERT_NE(of_load, regressors.end());
+  EXPECT_LT(std::abs(Correlation(of_load->value.segment(kFar, noise.size()), noise)), 0.2);
 }
 
 }  // namespace

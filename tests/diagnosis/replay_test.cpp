@@ -139,7 +139,6 @@ TEST(ReplayForces, OfSamplesThatAreNotJudgedDoNotSpoilThoseBeside) {
   EXPECT_LT(largest(n - 3, n), 2.0 * largest(n - 23, n - 3));
 }
 
-/// One sample's force far off: alone it would stay in a wrong minimum, whatever stretch it begins.
 // The EM sensor speaks late and of times between the samples: a force fitted to where the shaft was
 // at the samples would follow the motion.
 TEST(ReplayForces, AreFittedToWhatSensorsSayOfTheirOwnTimes) {
@@ -170,6 +169,7 @@ TEST(ReplayForces, AreFittedToWhatSensorsSayOfTheirOwnTimes) {
   EXPECT_LT(largest_N / hung_N.norm(), 0.1);  // 1.8 where they were fitted to the samples' times
 }
 
+/// One sample's force far off: alone it would stay in a wrong minimum, whatever stretch it begins.
 TEST(ReplayForces, AreMendedFromTheNeighbours) {
   const SampleSet samples = SmallSamples(8.0, false, 44);
   const ParameterLayout layout(samples, MakeCatalogue(samples));
