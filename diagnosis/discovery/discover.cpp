@@ -10,6 +10,7 @@ namespace flextip::diagnosis {
 namespace {
 
 constexpr int kMostQuiet = 3;
+constexpr double kMostlyConstant = 0.98;  // of what a form explains: the rest is another term
 
 std::vector<double> Weights(int blocks, int parity) {
   std::vector<double> weight(static_cast<std::size_t>(blocks), 1.0);
@@ -117,7 +118,8 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     const std::vector<Candidate> candidates = FindCandidates(all, states, options.fast_waves_only);
     if (candidates.empty()) break;
     Candidate best = candidates.front();
-    const double least_left = options.least_left * all.cost;
+    const bool is_first = before.empty() && search.terms.empty();
+    const double least_left = (is_first ? options.least_left_first : options.least_left) * all.cost;
     const double least = std::max(options.least_part * base, least_left);
     const auto completes = [&](const Candidate& one) {
       return one.gain >= least_left && std::ranges::any_of(options.completed, [&](const Term& of) {
@@ -140,7 +142,9 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
               HalfRange(one.term, states.at(one.term.target)) >= options.least_tolerances);
     };
     // What varies too little may stand beside a constant that does not.
-    if (!matters(best) && constant != candidates.end() && matters(*constant)) best = *constant;
+    if (constant != candidates.end() && matters(*constant) &&
+        (!matters(best) || of_constant >= kMostlyConstant * best.gain))
+      best = *constant;
     const double variance = VarianceLeft(all, best.gain);
     if (!matters(best)) {
       if (++quiet > kMostQuiet) break;

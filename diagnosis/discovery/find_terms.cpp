@@ -17,7 +17,11 @@ constexpr double kMostOf = 0.7;    // of what several effects explain: terms tha
 /// effects is less likely beforehand than terms.
 constexpr double kBetterThanSeveral = 0.0;
 /// Where nothing is named no effect's form can be a little off: a weaker term counts.
-constexpr double kLeastBesideNone = 0.025;
+constexpr double kLeastBesideNone = 0.004;
+
+DiscoverOptions BesideNone() {
+  return {.least_part = kLeastBesideNone, .least_left_first = kLeastBesideNone};
+}
 
 /// Whether a term is what one of `effects` says already: friction by a hysteresis of the depth is
 /// that of a bristle (Dahl), which sticks.
@@ -93,7 +97,7 @@ class TermChoice {
  private:
   std::unique_ptr<TermModel> Found() {
     DiscoverOptions options;
-    if (Effects().empty()) options.least_left = kLeastBesideNone;
+    if (Effects().empty()) options = BesideNone();
     beside_ = SearchTerms(best_, KnownSd(), fast_, options);
     if (const auto alone = InPlaceOfEffects())
       return FitTerms(base_, bare_, selection_, {}, Joined(fast_, alone->terms), options_);
@@ -139,8 +143,11 @@ class TermChoice {
     if (Effects().empty()) return {};
     // Terms that need not hold explain more than those that do, and are found in a third of the
     // time: mostly they say already that the effects are better.
-    if (!IsBetter(SearchTerms(bare_, NoneSd(), fast_, {.certify = false}))) return {};
-    TermSearch alone = SearchTerms(bare_, NoneSd(), fast_);
+    DiscoverOptions options = BesideNone();
+    options.certify = false;
+    if (!IsBetter(SearchTerms(bare_, NoneSd(), fast_, options))) return {};
+    options.certify = true;
+    TermSearch alone = SearchTerms(bare_, NoneSd(), fast_, options);
     if (!IsBetter(alone) || IsSaidBy(best_.Layout(), Effects(), alone)) return {};
     return alone;
   }

@@ -13,6 +13,7 @@ using S = TermShape;
 constexpr int kThresholds = 24;
 constexpr double kForceDeviations = 20.0;
 constexpr double kFastest_hz = 25.0, kShortest_m = 0.006;
+constexpr double kFastestStamp_hz = 1.0;  // faster is jitter, and a slow sensor's alias
 constexpr std::size_t kMostWaves = 2500;
 
 /// The values of a variable over the recording, of one component, sorted.
@@ -69,6 +70,10 @@ class Grid {
 
   std::vector<Term> Make() {
     Add(S::kConstant, V::kTime, {});
+    if (IsOfTime()) {  // a clock knows of nothing but time
+      AddScalar(V::kTime);
+      return std::move(terms_);
+    }
     for (const V variable : {V::kTime, V::kInsertionDepth, V::kSlidingVelocity, V::kWristSpeed,
                              V::kPortForce, V::kLoad, V::kDistanceToCamera})
       if (Fits(variable)) AddScalar(variable);
@@ -92,6 +97,9 @@ class Grid {
 
   bool IsOfVision() const {
     return target_ == TermTarget::kVisionPosition || target_ == TermTarget::kVisionDirection;
+  }
+  bool IsOfTime() const {
+    return target_ == TermTarget::kEmTime || target_ == TermTarget::kVisionTime;
   }
   bool HasOwnValue() const {
     switch (target_) {
@@ -147,7 +155,8 @@ class Grid {
       for (int i = 1; i < kThresholds; ++i)
         for (const double part : {0.02, 0.05, 0.1, 0.2, 0.4})
           Add(S::kAfter, variable, {part * range, spread.At(double(i) / kThresholds)});
-      AddWaves(variable, range, std::min(kFastest_hz, 0.49 / std::max(1e-6, set_.period_s)));
+      const double fastest_hz = IsOfTime() ? kFastestStamp_hz : kFastest_hz;
+      AddWaves(variable, range, std::min(fastest_hz, 0.49 / std::max(1e-6, set_.period_s)));
     }
     if (variable == V::kInsertionDepth) AddWaves(variable, range, 1.0 / kShortest_m);
     const bool has_past = variable == V::kInsertionDepth || variable == V::kLoad;
@@ -179,7 +188,8 @@ class Grid {
   void AddVectors() {
     Add(S::kLinear, V::kPosition, {});
     Add(S::kLinear, V::kOrientation, {});
-    if (IsOfVision() && set_.has_camera) Add(S::kLinear, V::kImagePosition, {});
+    if (!IsOfVision() || !set_.has_camera) return;
+    for (const S shape : {S::kLinear, S::kQuadratic, S::kRadial}) Add(shape, V::kImagePosition, {});
   }
 
   void AddOwnValue() {
@@ -262,6 +272,8 @@ std::vector<TermTarget> TargetsOf(const SampleSet& set) {
   add(TermTarget::kFriction, true);
   add(TermTarget::kShaftLoad, true);
   add(TermTarget::kCurvature, true);
+  add(TermTarget::kEmTime, set.has_em && set.resolved_in_time);
+  add(TermTarget::kVisionTime, set.has_tip && set.resolved_in_time);
   return targets;
 }
 

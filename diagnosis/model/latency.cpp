@@ -2,20 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "core/rotation.h"
+#include "diagnosis/effects/discovered/term_columns.h"
 #include "diagnosis/model/extended_effect.h"
 
 namespace flextip::diagnosis {
 namespace {
 
+/// A stamp's error by a term of the time.
+double ValueOf(const Term& term, double t_s) {
+  TermState state;
+  state.t_s = state.scalar[static_cast<std::size_t>(TermVariable::kTime)] = t_s;
+  EffectMemory none{};
+  double value = term.offset.size() > 0 ? term.offset[0] : 0.0;
+  if (term.Columns() == 0) return value;
+  return value + term.amplitude.row(0).dot(ColumnsAt(term, state, none).row(0));
+}
+
 struct Delay {
   double value_s = 0.0, sd_s = 0.0;
   double growth = 0.0, growth_sd = 0.0;  ///< in each second since the recording's start
   TimeNs start_ns = 0;
+  std::vector<Term> terms = {};  ///< of the time alone
 
   double SinceStart_s(TimeNs t_ns) const { return 1e-9 * static_cast<double>(t_ns - start_ns); }
-  double At(TimeNs t_ns) const { return value_s + growth * SinceStart_s(t_ns); }
+  double At(TimeNs t_ns) const {
+    double delay_s = value_s + growth * SinceStart_s(t_ns);
+    for (const Term& term : terms) delay_s += ValueOf(term, SinceStart_s(t_ns));
+    return delay_s;
+  }
   double SdAt(TimeNs t_ns) const { return std::hypot(sd_s, growth_sd * SinceStart_s(t_ns)); }
 };
 
@@ -40,10 +58,16 @@ Delay DelayBy(const std::vector<EffectFit>& effects, int delay_input, TimeNs sta
   return delay;
 }
 
+/// Where an error jumps, samples keep their order: one that would come before the last comes
+/// right after it.
 template <class Samples>
 void MoveStamps(Samples& samples, const Delay& delay) {
-  for (auto& sample : samples)
+  TimeNs next_ns = std::numeric_limits<TimeNs>::min();
+  for (auto& sample : samples) {
     sample.t_ns -= static_cast<TimeNs>(std::llround(1e9 * delay.At(sample.t_ns)));
+    sample.t_ns = std::max(next_ns, sample.t_ns);
+    next_ns = sample.t_ns + 1;
+  }
 }
 
 /// Two neighbours of a sample and the seconds between them; the same at the series' ends.
@@ -105,8 +129,12 @@ Recording WithoutLatency(Recording recording, const ExtendedModel& model, const 
   const auto by = [&](const std::vector<EffectFit>& effects, int delay_input) {
     return DelayBy(effects, delay_input, model.start_ns, own);
   };
-  const Delay em = by(model.effects, sample_input::kEmDelay);
-  const Delay camera = by(model.effects, sample_input::kCameraDelay);
+  Delay em = by(model.effects, sample_input::kEmDelay);
+  Delay camera = by(model.effects, sample_input::kCameraDelay);
+  for (const Term& term : model.discovered) {
+    if (term.target == TermTarget::kEmTime) em.terms.push_back(term);
+    if (term.target == TermTarget::kVisionTime) camera.terms.push_back(term);
+  }
   const Delay em_within = by(model.within_tolerance, sample_input::kEmDelay);
   const Delay camera_within = by(model.within_tolerance, sample_input::kCameraDelay);
   for (auto* stream : {&recording.em0, &recording.em1}) {

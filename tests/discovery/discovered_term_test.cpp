@@ -53,11 +53,25 @@ TEST(DiscoveredTerm, HasTheColumnsOfItsShape) {
   EXPECT_DOUBLE_EQ(Column(TermShape::kAfter, {2.0, 2.0}, v), 0.0);
 }
 
+TEST(DiscoveredTerm, HasTheProductsOfAVectorsComponents) {
+  TermState state;
+  state.image = Eigen::Vector2d(0.3, -0.4);
+  const auto row = [&](TermShape shape) {
+    EffectMemory memory{};
+    return Eigen::VectorXd(
+        ColumnsAt(EmTerm(shape, TermVariable::kImagePosition, {}), state, memory).row(2));
+  };
+  Eigen::VectorXd products(5);
+  products << 0.3, -0.4, 0.3 * 0.3, 0.3 * -0.4, -0.4 * -0.4;
+  EXPECT_LT((row(TermShape::kQuadratic) - products).norm(), 1e-15);
+  // As Brown's first radial coefficient moves a ray.
+  EXPECT_LT((row(TermShape::kRadial) - 0.25 * Eigen::Vector2d(0.3, -0.4)).norm(), 1e-15);
+}
+
 TEST(DiscoveredTerm, SplinesAddUpToOneWithinTheirRangeAndFadeOutside) {
   const auto sum = [](double v) {
     double all = 0.0;
-    for (Eigen::Index j = 0; j < kMostTermColumns; ++j)
-      all += Column(TermShape::kSmooth, {1.0, 3.0}, v, j);
+    for (Eigen::Index j = 0; j < kSplines; ++j) all += Column(TermShape::kSmooth, {1.0, 3.0}, v, j);
     return all;
   };
   for (const double v : {1.0, 1.2, 1.9, 2.5, 3.0}) EXPECT_NEAR(sum(v), 1.0, 1e-12) << v;

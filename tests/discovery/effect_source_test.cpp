@@ -18,6 +18,9 @@ EffectPointer MakeEmMetal();
 EffectPointer MakePortJump();
 EffectPointer MakeSoftDepth();
 EffectPointer MakeSeenSlope();
+EffectPointer MakeSeenBowl();
+EffectPointer MakeSeenLens();
+EffectPointer MakeFrameJump();
 EffectPointer MakeLoadPlane();
 EffectPointer MakeEmConstant();
 
@@ -35,10 +38,10 @@ SampleInputs Acted(const Effect& effect, const Eigen::VectorXd& theta, const Ins
 
 TEST(EffectSource, DoesWhatTheTermDoes) {
   const SampleSet samples = SmallSamples(3.0, true, 8);
-  const EffectPointer written[] = {MakeGageHum(),   MakeGageLimit(), MakeWristPlay(),
-                                   MakeGageGlue(),  MakeLoadCreep(), MakeEmMetal(),
-                                   MakePortJump(),  MakeSoftDepth(), MakeSeenSlope(),
-                                   MakeLoadPlane(), MakeEmConstant()};
+  const EffectPointer written[] = {
+      MakeGageHum(),  MakeGageLimit(), MakeWristPlay(), MakeGageGlue(),  MakeLoadCreep(),
+      MakeEmMetal(),  MakePortJump(),  MakeSoftDepth(), MakeSeenSlope(), MakeSeenBowl(),
+      MakeSeenLens(), MakeFrameJump(), MakeLoadPlane(), MakeEmConstant()};
   const auto terms = SourceTerms();
   ASSERT_EQ(std::size(written), terms.size());
   EffectRodSolver solver;

@@ -1,5 +1,5 @@
-// What stands beside a discovered term: hidden forms, made by the plant, diagnosed as a whole.
-// Seeds were chosen before any was run.
+// What discovered terms say, and what stands beside them: hidden forms, made by the plant,
+// diagnosed as a whole. Seeds were chosen before any was run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,6 +48,31 @@ TEST(HiddenTerm, AThreadHasItsOvertone) {
   const Term &wave = result.discovered[0].term, &overtone = result.discovered[1].term;
   EXPECT_NEAR(overtone.at[0] / wave.at[0], 3.0, 0.5);
   EXPECT_NEAR(overtone.amplitude.norm() / wave.amplitude.norm(), 1.0 / 9.0, 0.05);
+}
+
+// What the catalogue has no name for here (the cause is taken out) is found where it is: in the
+// stamps, by its time, not as something that goes with speed.
+TEST(HiddenTerm, LateFramesWithoutANameAreStampsThatAreOff) {
+  const hidden::HiddenRecording hidden = Hidden("camera_latency", 83);
+  const DiagnosisResult result = Diagnose(hidden.recording, "recording",
+                                          {.without = {"camera_latency"}, .measure_gain = false});
+  EXPECT_EQ(result.verdict, Verdict{"unknown"});
+  ASSERT_FALSE(result.discovered.empty());
+  const Term& term = result.discovered[0].term;
+  EXPECT_EQ(term.target, TermTarget::kVisionTime);
+  ASSERT_EQ(term.shape, TermShape::kConstant);
+  EXPECT_NEAR(term.offset[0], hidden.label.parameters.at("camera_latency").at("delay_s")[0], 0.003);
+}
+
+// Some milliseconds over the recording: little of all that is left, and beside no name enough.
+TEST(HiddenTerm, AClockWithoutANameIsAStampThatDrifts) {
+  const hidden::HiddenRecording hidden = Hidden("camera_clock", 84);
+  const DiagnosisResult result =
+      Diagnose(hidden.recording, "recording", {.without = {"camera_clock"}, .measure_gain = false});
+  EXPECT_EQ(result.verdict, Verdict{"unknown"});
+  ASSERT_EQ(result.discovered.size(), 1U);
+  EXPECT_EQ(result.discovered[0].term.target, TermTarget::kVisionTime);
+  EXPECT_EQ(result.discovered[0].name.depends_on, std::vector<std::string>{"time"});
 }
 
 }  // namespace

@@ -42,6 +42,26 @@ TEST(TermModel, IsReadAsItWasWritten) {
   }
 }
 
+TEST(TermModel, AStampDependsOnTimeAlone) {
+  const auto file = std::filesystem::temp_directory_path() / "flextip_term_stamp.yaml";
+  ExtendedModel model;
+  for (const TermVariable on : {TermVariable::kTime, TermVariable::kLoad}) {
+    model.discovered = {{TermTarget::kVisionTime,
+                         TermShape::kLinear,
+                         on,
+                         {1.0},
+                         Eigen::MatrixXd::Constant(1, 1, 1e-4),
+                         {}}};
+    WriteModel(file, model);
+    if (on == TermVariable::kTime) {
+      EXPECT_EQ(ReadModel(file).discovered.size(), 1U);
+    } else {
+      EXPECT_THROW(ReadModel(file), InputError);
+    }
+  }
+  std::filesystem::remove(file);
+}
+
 TEST(TermModel, ATermWithoutMeaningIsRefused) {
   const std::string text = ModelYaml(SteppingModel(SmallHidden(2.0, true, 3).recording));
   const auto file = std::filesystem::temp_directory_path() / "flextip_term_wrong.yaml";

@@ -218,6 +218,39 @@ TEST(WithoutLatency, TakesAClocksOwnRateOff) {
   EXPECT_EQ(moved.em0->samples[1].t_ns, kStart_ns + 20'004'000'000);
 }
 
+TEST(WithoutLatency, TakesTheTermOfAStampOff) {
+  using diagnosis::TermShape;
+  constexpr TimeNs kStart_ns = 5'000'000'000, kSecond_ns = 1'000'000'000;
+  Recording recording;
+  recording.em0.emplace();
+  recording.vision0.emplace();
+  for (int i = 0; i < 4; ++i) {
+    recording.em0->samples.push_back({kStart_ns + i * kSecond_ns, {}});
+    recording.vision0->tips.push_back({kStart_ns + i * kSecond_ns, {}});
+  }
+  diagnosis::ExtendedModel model;
+  model.start_ns = kStart_ns;
+  // Frames are stamped 3 s late from 1.5 s on, EM readings 2 ms in every second from 1 s on.
+  model.discovered = {{diagnosis::TermTarget::kVisionTime,
+                       TermShape::kStep,
+                       diagnosis::TermVariable::kTime,
+                       {1.5, 0.01},
+                       Eigen::MatrixXd::Constant(1, 1, 3.0),
+                       {}},
+                      {diagnosis::TermTarget::kEmTime,
+                       TermShape::kLinear,
+                       diagnosis::TermVariable::kTime,
+                       {1.0},
+                       Eigen::MatrixXd::Constant(1, 1, 0.002),
+                       {}}};
+  const Recording moved = diagnosis::WithoutLatency(recording, model);
+  EXPECT_EQ(moved.em0->samples[3].t_ns, kStart_ns + 3 * kSecond_ns - 4'000'000);
+  EXPECT_EQ(moved.vision0->tips[1].t_ns, kStart_ns + kSecond_ns);
+  // Taken before the last one, by the term: they keep their order.
+  EXPECT_EQ(moved.vision0->tips[2].t_ns, kStart_ns + kSecond_ns + 1);
+  EXPECT_EQ(moved.vision0->tips[3].t_ns, kStart_ns + kSecond_ns + 2);
+}
+
 // Sensors that move along x at 0.1 m/s and turn about z at 0.5 rad/s, stamped 2 +- 1 ms late.
 TEST(WithoutLatency, MovesValuesWithinTolerance) {
   constexpr double kSpeed_m_s = 0.1, kTurning_rad_s = 0.5, kDelay_s = 0.002, kSd_s = 0.001;

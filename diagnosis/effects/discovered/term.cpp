@@ -18,9 +18,11 @@ constexpr TermTargetInfo kTargets[kTermTargets] = {
     {"load0_force_N", "the load cell", kForce, 3, -1.0, 5e-3, "N", "R"},
     {"port_position_m", "the port", kPort, 3, 1.0, 1e-4, "m", "R"},
     {"stiffness", "the stiffness (its logarithm)", kStiffness, 1, 1.0, 0.02, "", "shaft"},
-    {"port_friction", "the friction of the port", kPortFriction, 1, 1.0, 0.03, "", "shaft"},
+    {"port_friction", "the friction of the port", kPortFriction, 1, 1.0, 0.06, "", "shaft"},
     {"shaft_load_N_m", "a load along the shaft beyond the port", kInside, 3, 1.0, 0.02, "N_m", "R"},
     {"curvature_1_m", "the shaft's own curvature", kCurvature, 2, 1.0, 0.003, "1_m", "instrument"},
+    {"em0_time_s", "the stamp of the EM readings", kEmDelay, 1, 1.0, 5e-4, "s", "stamps"},
+    {"vision0_time_s", "the stamp of the frames", kCameraDelay, 1, 1.0, 5e-4, "s", "stamps"},
 };
 
 constexpr const char* kVariableNames[kTermVariables] = {
@@ -36,9 +38,9 @@ constexpr const char* kFormNames[kTermForms] = {"constant",   "linear",   "quadr
                                                 "hysteresis", "decaying", "other"};
 
 constexpr const char* kShapeNames[kTermShapes] = {
-    "constant", "linear",      "quadratic",     "periodic",    "step",  "beyond",
-    "below",    "band",        "tanh",          "exponential", "after", "relaxing",
-    "play",     "smooth_play", "inverse_power", "past_plane",  "smooth"};
+    "constant", "linear",      "quadratic",     "periodic",    "step",   "beyond",
+    "below",    "band",        "tanh",          "exponential", "after",  "relaxing",
+    "play",     "smooth_play", "inverse_power", "past_plane",  "smooth", "radial"};
 
 template <class Enum, class NameOf>
 std::optional<Enum> Named(std::string_view name, int count, NameOf name_of) {
@@ -74,7 +76,10 @@ int ShapeParameters(TermShape shape, TermVariable variable) {
     case TermShape::kConstant:
       return 0;
     case TermShape::kLinear:
+    case TermShape::kQuadratic:
       return Dimension(variable) == 1 ? 1 : 0;
+    case TermShape::kRadial:
+      return 0;
     case TermShape::kStep:
     case TermShape::kExponential:
     case TermShape::kAfter:
@@ -93,12 +98,16 @@ int ShapeColumns(TermShape shape, TermVariable variable) {
     case TermShape::kConstant:
       return 0;
     case TermShape::kLinear:
+    case TermShape::kRadial:
       return Dimension(variable);
-    case TermShape::kQuadratic:
+    case TermShape::kQuadratic: {
+      const int n = Dimension(variable);
+      return n + n * (n + 1) / 2;
+    }
     case TermShape::kPeriodic:
       return 2;
     case TermShape::kSmooth:
-      return kMostTermColumns;
+      return kSplines;
     default:
       return 1;
   }
@@ -143,6 +152,7 @@ TermForm FormOf(const Term& term) {
     case TermShape::kInversePower:
       return TermForm::kDecaying;
     case TermShape::kSmooth:
+    case TermShape::kRadial:
       return TermForm::kOther;
   }
   return TermForm::kOther;

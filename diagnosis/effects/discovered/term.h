@@ -27,8 +27,10 @@ enum class TermTarget : std::uint8_t {
   kFriction,
   kShaftLoad,
   kCurvature,
+  kEmTime,
+  kVisionTime,
 };
-inline constexpr int kTermTargets = 13;
+inline constexpr int kTermTargets = 15;
 
 struct TermTargetInfo {
   const char* channel;  ///< name in results
@@ -80,7 +82,7 @@ const char* Name(TermForm form);
 enum class TermShape : std::uint8_t {
   kConstant,      ///< no column: the offset alone
   kLinear,        ///< v - at[0]; of a vector a column each component, without at
-  kQuadratic,     ///< v - at[0], and its square
+  kQuadratic,     ///< v - at[0], and its square; of a vector its components and their products
   kPeriodic,      ///< sine and cosine of 2 pi at[0] v
   kStep,          ///< 0 to 1 at at[0], within about at[1]
   kBeyond,        ///< v - at[0] where that is positive
@@ -95,11 +97,13 @@ enum class TermShape : std::uint8_t {
   kInversePower,  ///< distance from the place at[0..2] (over 0.1 m) to the power -at[3]
   kPastPlane,     ///< how far the place is beyond the plane of normal at[0..2] at at[3]
   kSmooth,        ///< cubic B-splines between at[0] and at[1], fading to zero outside
+  kRadial,        ///< of a vector: each component times the square of its length
 };
-inline constexpr int kTermShapes = 17;
+inline constexpr int kTermShapes = 18;
 const char* Name(TermShape shape);
 
-inline constexpr int kMostTermInputs = 4, kMostTermColumns = 7;
+inline constexpr int kMostTermInputs = 4, kMostTermColumns = 9;
+inline constexpr int kSplines = 7;  ///< of a smooth term
 
 struct Term {
   TermTarget target = TermTarget::kEmPosition;

@@ -52,9 +52,11 @@ double Delay(TermTarget target, const DiagnosisSample& z) {
   switch (target) {
     case TermTarget::kEmPosition:
     case TermTarget::kEmOrientation:
+    case TermTarget::kEmTime:
       return z.dt_em_s;
     case TermTarget::kVisionPosition:
     case TermTarget::kVisionDirection:
+    case TermTarget::kVisionTime:
       return z.dt_tip_s;
     case TermTarget::kStrain:
       return z.dt_strain_s;
@@ -86,7 +88,7 @@ void TakeShape(TermTarget target, const Instant& now, TermState& state) {
 
 /// Cubic B-splines on equal steps from 0 to 1, clamped outside.
 double Spline(int i, double x) {
-  constexpr double kStep = 1.0 / (kMostTermColumns - 3);
+  constexpr double kStep = 1.0 / (kSplines - 3);
   const double u = std::clamp(x, 0.0, 1.0) / kStep - (i - 1);
   const double r = std::abs(u);
   if (r >= 2.0) return 0.0;
@@ -132,7 +134,7 @@ void FillColumns(const Term& term, double v, Eigen::Index row, TermColumns& colu
     case TermShape::kSmooth: {
       const double x = (v - at[0]) / (at[1] - at[0]), outside = std::max({0.0, -x, x - 1.0});
       const double fade = std::max(0.0, 1.0 - outside / kFade);
-      for (int i = 0; i < kMostTermColumns; ++i) columns(row, i) = fade * Spline(i, x);
+      for (int i = 0; i < kSplines; ++i) columns(row, i) = fade * Spline(i, x);
       return;
     }
     default:
@@ -155,6 +157,29 @@ double Remembered(const Term& term, double v, double dt_s, Eigen::Index row, Eff
     kept = std::clamp(kept, v - term.at[0], v + term.at[0]);
   }
   return v - kept;
+}
+
+bool IsOfVector(TermShape shape) {
+  return shape == TermShape::kLinear || shape == TermShape::kQuadratic ||
+         shape == TermShape::kRadial;
+}
+
+/// The columns of a shape of all components of a vector.
+void FillOfVector(const Term& term, const Eigen::VectorXd& v, TermColumns& columns) {
+  const Eigen::Index n = v.size();
+  if (term.shape == TermShape::kRadial) {
+    columns.row(0) = v.squaredNorm() * v.transpose();
+    return;
+  }
+  columns.row(0).head(n) = v.transpose();
+  if (term.shape != TermShape::kQuadratic) return;
+  for (Eigen::Index i = 0, at = n; i < n; ++i)
+    for (Eigen::Index j = i; j < n; ++j) columns(0, at++) = v[i] * v[j];
+}
+
+Eigen::VectorXd VectorOf(TermVariable variable, const TermState& state) {
+  if (variable == TermVariable::kImagePosition) return state.image;
+  return variable == TermVariable::kOrientation ? state.orientation : state.position;
 }
 
 double ScalarOf(TermVariable variable, const TermState& state) {
@@ -204,11 +229,8 @@ TermColumns ColumnsAt(const Term& term, const TermState& state, EffectMemory& me
     } else if (term.shape == TermShape::kPastPlane) {
       const Eigen::Vector3d normal(term.at[0], term.at[1], term.at[2]);
       columns(row, 0) = std::max(0.0, normal.normalized().dot(state.position) - term.at[3]);
-    } else if (term.shape == TermShape::kLinear && Dimension(term.variable) > 1 && !by_input) {
-      if (term.variable == TermVariable::kPosition) columns.row(row) = state.position.transpose();
-      if (term.variable == TermVariable::kOrientation)
-        columns.row(row) = state.orientation.transpose();
-      if (term.variable == TermVariable::kImagePosition) columns.row(row) = state.image.transpose();
+    } else if (IsOfVector(term.shape) && Dimension(term.variable) > 1 && !by_input) {
+      FillOfVector(term, VectorOf(term.variable, state), columns);
     } else {
       FillColumns(term, v, row, columns);
     }

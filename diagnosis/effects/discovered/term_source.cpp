@@ -29,6 +29,8 @@ constexpr TargetSource kSources[kTermTargets] = {
     {"kFriction", "kPortFriction", "samples.Duration() > 0.0"},
     {"kShaftLoad", "kInside", "samples.Duration() > 0.0"},
     {"kCurvature", "kCurvature", "samples.Duration() > 0.0"},
+    {"kEmTime", "kEmDelay", "samples.has_em"},
+    {"kVisionTime", "kCameraDelay", "samples.has_tip"},
 };
 
 const TargetSource& SourceOf(const Term& term) { return kSources[static_cast<int>(term.target)]; }
@@ -54,6 +56,29 @@ std::string VariableSource(const Term& term) {
   return fmt::format("state.scalar[{}]", static_cast<int>(term.variable));
 }
 
+/// The state's vector, of a term that has a column each of its components.
+std::string VectorSource(const Term& term) {
+  return term.variable == TermVariable::kPosition      ? "state.position"
+         : term.variable == TermVariable::kOrientation ? "state.orientation"
+                                                       : "state.image";
+}
+
+std::vector<std::string> ComponentSources(const Term& term) {
+  std::vector<std::string> columns(static_cast<std::size_t>(Dimension(term.variable)));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    columns[i] = fmt::format("{}[{}]", VectorSource(term), i);
+  return columns;
+}
+
+/// The components of a vector, then their products.
+std::vector<std::string> ProductSources(const Term& term) {
+  std::vector<std::string> columns = ComponentSources(term);
+  const std::size_t n = columns.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i; j < n; ++j) columns.push_back(columns[i] + " * " + columns[j]);
+  return columns;
+}
+
 /// The columns as C++, of `v`.
 std::vector<std::string> ColumnSources(const Term& term) {
   switch (term.shape) {
@@ -61,16 +86,16 @@ std::vector<std::string> ColumnSources(const Term& term) {
       return {};
     case TermShape::kLinear: {
       if (Dimension(term.variable) == 1 || term.IsByInput()) return {"v - kAt[0]"};
-      const char* vector = term.variable == TermVariable::kPosition      ? "position"
-                           : term.variable == TermVariable::kOrientation ? "orientation"
-                                                                         : "image";
-      std::vector<std::string> columns;
-      columns.reserve(static_cast<std::size_t>(Dimension(term.variable)));
-      for (int j = 0; j < Dimension(term.variable); ++j)
-        columns.push_back(fmt::format("state.{}[{}]", vector, j));
+      return ComponentSources(term);
+    }
+    case TermShape::kRadial: {
+      std::vector<std::string> columns = ComponentSources(term);
+      for (std::string& column : columns)
+        column = fmt::format("{}.squaredNorm() * {}", VectorSource(term), column);
       return columns;
     }
     case TermShape::kQuadratic:
+      if (Dimension(term.variable) > 1) return ProductSources(term);
       return {"v - kAt[0]", "(v - kAt[0]) * (v - kAt[0])"};
     case TermShape::kPeriodic:
       return {"std::sin(2.0 * std::numbers::pi * kAt[0] * v)",
@@ -99,9 +124,8 @@ std::vector<std::string> ColumnSources(const Term& term) {
       return {"std::max(0.0, normal.normalized().dot(state.position) - kAt[3])"};
     case TermShape::kSmooth: {
       std::vector<std::string> columns;
-      columns.reserve(kMostTermColumns);
-      for (int j = 0; j < kMostTermColumns; ++j)
-        columns.push_back(fmt::format("fade * Spline({}, x)", j));
+      columns.reserve(kSplines);
+      for (int j = 0; j < kSplines; ++j) columns.push_back(fmt::format("fade * Spline({}, x)", j));
       return columns;
     }
   }
@@ -111,10 +135,9 @@ std::vector<std::string> ColumnSources(const Term& term) {
 /// What stands before the columns, of each input `i`.
 std::string Before(const Term& term) {
   std::string text;
-  const bool has_v =
-      term.shape != TermShape::kConstant && term.shape != TermShape::kInversePower &&
-      term.shape != TermShape::kPastPlane &&
-      !(term.shape == TermShape::kLinear && ShapeParameters(term.shape, term.variable) == 0);
+  const bool has_v = term.shape != TermShape::kConstant && term.shape != TermShape::kInversePower &&
+                     term.shape != TermShape::kPastPlane &&
+                     (Dimension(term.variable) == 1 || term.IsByInput());
   if (has_v)
     text += fmt::format("      const double v = {};  // {}\n", VariableSource(term),
                         Name(term.variable));

@@ -58,7 +58,8 @@ Eigen::VectorXd Swing(const Term& term) {
 Eigen::VectorXd Leading(const Term& term) {
   if (term.shape == TermShape::kConstant) return term.offset;
   if (term.shape == TermShape::kPeriodic) return Swing(term);
-  if (term.shape == TermShape::kQuadratic) return term.amplitude.col(1);
+  if (term.shape == TermShape::kQuadratic && term.amplitude.cols() == 2)
+    return term.amplitude.col(1);
   if (term.amplitude.cols() == 1) return term.amplitude.col(0);
   const SymmetricEigen axes(Eigen::MatrixXd(term.amplitude * term.amplitude.transpose()));
   return axes.vectors.col(axes.vectors.cols() - 1);
@@ -99,9 +100,18 @@ Numbers Amplitudes(const Term& term) {
       add(Suffixed("slope", Over(unit, by)), along(0));
       break;
     case TermShape::kQuadratic:
+      if (term.amplitude.cols() > 2) {
+        const Eigen::Index linear = Dimension(term.variable);
+        add(Suffixed("slope", Over(unit, by)), term.amplitude.leftCols(linear).norm());
+        add("curvature", term.amplitude.rightCols(term.amplitude.cols() - linear).norm());
+        return n;
+      }
       add(Suffixed("slope", Over(unit, by)), along(0));
       add("curvature", along(1));
       break;
+    case TermShape::kRadial:
+      add(Suffixed("bend", unit), term.amplitude.norm());
+      return n;
     case TermShape::kPeriodic: {
       add(Suffixed("amplitude", unit), Swing(term).norm());
       double phase = PhaseOf(term) + (direction.dot(Swing(term)) < 0.0 ? std::numbers::pi : 0.0);
@@ -257,6 +267,10 @@ std::string TextOf(const Term& term) {
       return fmt::format(
           "{} goes off where the place is beyond a plane of normal ({:.2f}, {:.2f}, {:.2f}) in R",
           what, term.at[0], term.at[1], term.at[2]);
+    case TermShape::kRadial:
+      return fmt::format(
+          "{} is off by the cube of {}, as through a lens", what,
+          term.variable == TermVariable::kImagePosition ? "the place in the image" : on);
     case TermShape::kSmooth:
       return fmt::format("{} changes smoothly with {} between {} and {}; no simple form fits", what,
                          on, at(0), at(1));
