@@ -19,7 +19,7 @@ struct DiscoverOptions {
   double least_left = 0.04;
   /// The same of a first term where nothing is named: no form that is there can be a little off.
   double least_left_first = least_left;
-  double least_tolerances = 1.5;  ///< half of a term's range, in the target's tolerances
+  double least_tolerances = 3.0;  ///< half of a term's range, in the target's tolerances
   double much_left = 0.1;  ///< of what the model leaves: what varies so much matters at any size
   /// Terms whose form a further one may complete (a wave's overtone), at any size that is not
   /// little of what the model leaves.

@@ -16,11 +16,10 @@ constexpr double kMostOf = 0.7;    // of what several effects explain: terms tha
 /// The same, fitted in full, where several effects take the part: each of the many combinations of
 /// effects is less likely beforehand than terms.
 constexpr double kBetterThanSeveral = 0.0;
-/// Where nothing is named no effect's form can be a little off: a weaker term counts.
-constexpr double kLeastBesideNone = 0.004;
 
+/// Where nothing is named no effect's form can be a little off: a weaker and a smaller term counts.
 DiscoverOptions BesideNone() {
-  return {.least_part = kLeastBesideNone, .least_left_first = kLeastBesideNone};
+  return {.least_part = 0.004, .least_left_first = 0.004, .least_tolerances = 1.5};
 }
 
 /// Whether a term is what one of `effects` says already: friction by a hysteresis of the depth is
