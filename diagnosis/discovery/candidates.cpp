@@ -15,7 +15,8 @@ namespace {
 constexpr std::size_t kExact = 4;     // of a kind, that are looked at exactly
 constexpr std::size_t kRefined = 24;  // kinds
 constexpr int kRefinements = 14;
-constexpr double kScanned = 15.0;     // twice the log of how many waves were tried
+constexpr double kScanned = 15.0;           // twice the log of how many waves were tried
+constexpr double kMostTolerances = 1000.0;  // half of a range: beyond that nothing is near linear
 constexpr double kLastResort = 30.0;  // a smooth form must be better than a simple one by so much
 
 /// Series of waves in ascending frequency: each from the last by a turn of every sample's phase.
@@ -204,7 +205,27 @@ std::vector<Candidate> FindCandidates(const WeightedProblem& weighted, const Sta
   });
   rank();
   if (all.size() > kRefined) all.resize(kRefined);
+  std::erase_if(all, [&](const Candidate& one) {
+    return HalfRange(one.term, states.at(one.term.target)) > kMostTolerances;
+  });
   return all;
+}
+
+double HalfRange(const Term& term, const std::vector<TermState>& states) {
+  const double tolerance = InfoOf(term.target).tolerance;
+  if (term.shape == TermShape::kConstant) return term.offset.norm() / tolerance;
+  const TermSeries series = SeriesOf(term, states);
+  const Eigen::Index n = term.Inputs();
+  Eigen::VectorXd half(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Eigen::VectorXd by = Eigen::VectorXd::Zero(series.rows());
+    for (Eigen::Index j = 0; j < term.Columns(); ++j)
+      by += term.amplitude(i, j) * series.col(term.IsByInput() ? j * n + i : j);
+    std::sort(by.begin(), by.end());
+    const auto last = double(by.size() - 1);
+    half[i] = 0.5 * (by[Eigen::Index(0.99 * last)] - by[Eigen::Index(0.01 * last)]);
+  }
+  return half.norm() / tolerance;
 }
 
 }  // namespace flextip::diagnosis

@@ -19,10 +19,15 @@ using StatesByTarget = std::map<TermTarget, std::vector<TermState>>;
 
 /// Returns one candidate of each target, shape and variable that may matter, best first. A gain
 /// counts in the variance that the best candidate leaves, at least the noise's; each number found
-/// costs the logarithm of the samples.
+/// costs the logarithm of the samples. What would have to be absurdly large is left out: where a
+/// target hardly moves anything, its linear share means nothing.
 /// `fast_waves_only`: periodic ones alone, and only those as fast as noise.
 std::vector<Candidate> FindCandidates(const WeightedProblem& weighted, const StatesByTarget& states,
                                       bool fast_waves_only = false);
+
+/// Returns half of the range of the term's part that varies, but for the hundredth of the samples
+/// at either end, in the target's tolerances; of a constant, its size.
+double HalfRange(const Term& term, const std::vector<TermState>& states);
 
 /// The variance (of whitened rows) that the best leaves, at least one.
 double VarianceLeft(const WeightedProblem& weighted, double gain);

@@ -63,25 +63,6 @@ std::vector<Candidate> RivalsOf(const std::vector<Candidate>& candidates, double
   return rivals;
 }
 
-/// Half of the range of the term's part that varies, but for the hundredth of the samples at either
-/// end, in the target's tolerances; of a constant, its size.
-double HalfRange(const Term& term, const std::vector<TermState>& states) {
-  const double tolerance = InfoOf(term.target).tolerance;
-  if (term.shape == TermShape::kConstant) return term.offset.norm() / tolerance;
-  const TermSeries series = SeriesOf(term, states);
-  const Eigen::Index n = term.Inputs();
-  Eigen::VectorXd half(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    Eigen::VectorXd by = Eigen::VectorXd::Zero(series.rows());
-    for (Eigen::Index j = 0; j < term.Columns(); ++j)
-      by += term.amplitude(i, j) * series.col(term.IsByInput() ? j * n + i : j);
-    std::sort(by.begin(), by.end());
-    const auto last = double(by.size() - 1);
-    half[i] = 0.5 * (by[Eigen::Index(0.99 * last)] - by[Eigen::Index(0.01 * last)]);
-  }
-  return half.norm() / tolerance;
-}
-
 /// What the base leaves with its parameters within their tolerances.
 double BaseCost(const Replay& replay, int blocks) {
   const ResidualProblem problem(replay, replay.Layout().Tolerances(), blocks);

@@ -69,6 +69,10 @@ class Grid {
       : target_(target), states_(states), set_(set), inputs_(InfoOf(target).inputs) {}
 
   std::vector<Term> Make() {
+    // Where the port hardly presses, friction times the load cell's noise would be all there is.
+    if (target_ == TermTarget::kFriction && set_.has_load &&
+        IsNoise(V::kPortForce, SpreadOf(states_, V::kPortForce)))
+      return {};
     Add(S::kConstant, V::kTime, {});
     if (IsOfTime()) {  // a clock knows of nothing but time
       AddScalar(V::kTime);

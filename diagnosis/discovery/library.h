@@ -11,7 +11,7 @@ namespace flextip::diagnosis {
 std::vector<TermTarget> TargetsOf(const SampleSet& set);
 
 /// Returns the candidates for `target`, `states` being what its variables were. All with a constant
-/// beside them; the first is the constant alone.
+/// beside them; the first is the constant alone. None of a friction where nothing presses.
 std::vector<Term> Library(TermTarget target, const std::vector<TermState>& states,
                           const SampleSet& set);
 

@@ -146,6 +146,8 @@ TEST(Library, HasForcesAsVariablesOnlyWhereTheLoadIsMeasuredAndNotNoise) {
       of_forces +=
           term.variable == TermVariable::kLoad || term.variable == TermVariable::kPortForce;
     EXPECT_EQ(of_forces > 0, has_load && !is_noise);
+    // Friction times a port's force that is noise is that noise.
+    EXPECT_EQ(Library(TermTarget::kFriction, states, set).empty(), has_load && is_noise);
   }
 }
 
