@@ -74,7 +74,7 @@ class Grid {
         IsNoise(V::kPortForce, SpreadOf(states_, V::kPortForce)))
       return {};
     Add(S::kConstant, V::kTime, {});
-    if (IsOfTime()) {  // a clock knows of nothing but time
+    if (IsStamp(target_)) {  // a clock knows of nothing but time
       AddScalar(V::kTime);
       return std::move(terms_);
     }
@@ -101,9 +101,6 @@ class Grid {
 
   bool IsOfVision() const {
     return target_ == TermTarget::kVisionPosition || target_ == TermTarget::kVisionDirection;
-  }
-  bool IsOfTime() const {
-    return target_ == TermTarget::kEmTime || target_ == TermTarget::kVisionTime;
   }
   bool HasOwnValue() const {
     switch (target_) {
@@ -159,7 +156,7 @@ class Grid {
       for (int i = 1; i < kThresholds; ++i)
         for (const double part : {0.02, 0.05, 0.1, 0.2, 0.4})
           Add(S::kAfter, variable, {part * range, spread.At(double(i) / kThresholds)});
-      const double fastest_hz = IsOfTime() ? kFastestStamp_hz : kFastest_hz;
+      const double fastest_hz = IsStamp(target_) ? kFastestStamp_hz : kFastest_hz;
       AddWaves(variable, range, std::min(fastest_hz, 0.49 / std::max(1e-6, set_.period_s)));
     }
     if (variable == V::kInsertionDepth) AddWaves(variable, range, 1.0 / kShortest_m);

@@ -57,8 +57,7 @@ Term ReadTerm(const YamlMap& map) {
     const std::vector<double> offset = map.Numbers("offset", inputs);
     term.offset = Eigen::Map<const Eigen::VectorXd>(offset.data(), term.Inputs());
   }
-  const bool is_stamp = *target == TermTarget::kEmTime || *target == TermTarget::kVisionTime;
-  if (is_stamp && (*variable != TermVariable::kTime || HasMemory(*shape)))
+  if (IsStamp(*target) && (*variable != TermVariable::kTime || HasMemory(*shape)))
     throw map.Error("variable", "expected time alone: a stamp depends on nothing else");
   map.TextOr("text", "");
   const auto unasked = map.Unasked();

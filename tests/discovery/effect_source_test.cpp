@@ -20,6 +20,7 @@ EffectPointer MakeSoftDepth();
 EffectPointer MakeSeenSlope();
 EffectPointer MakeSeenBowl();
 EffectPointer MakeSeenLens();
+EffectPointer MakeEmLate();
 EffectPointer MakeFrameJump();
 EffectPointer MakeLoadPlane();
 EffectPointer MakeEmConstant();
@@ -41,7 +42,7 @@ TEST(EffectSource, DoesWhatTheTermDoes) {
   const EffectPointer written[] = {
       MakeGageHum(),  MakeGageLimit(), MakeWristPlay(), MakeGageGlue(),  MakeLoadCreep(),
       MakeEmMetal(),  MakePortJump(),  MakeSoftDepth(), MakeSeenSlope(), MakeSeenBowl(),
-      MakeSeenLens(), MakeFrameJump(), MakeLoadPlane(), MakeEmConstant()};
+      MakeSeenLens(), MakeEmLate(),    MakeFrameJump(), MakeLoadPlane(), MakeEmConstant()};
   const auto terms = SourceTerms();
   ASSERT_EQ(std::size(written), terms.size());
   EffectRodSolver solver;
@@ -60,6 +61,11 @@ TEST(EffectSource, DoesWhatTheTermDoes) {
       EXPECT_LT(difference.norm(), 1e-12) << name << " " << k;
     }
   }
+}
+
+TEST(EffectSource, AStampThatIsLateIsALatency) {
+  EXPECT_EQ(MakeEmLate()->DelayInput(), sample_input::kEmDelay);
+  EXPECT_EQ(MakeSeenLens()->DelayInput(), -1);
 }
 
 TEST(EffectSource, ThreeInputsThatSwingAreScanned) {

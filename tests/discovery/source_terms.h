@@ -36,6 +36,7 @@ inline std::vector<std::pair<std::string, Term>> SourceTerms() {
       SourceTerm("seen_slope", T::kVisionPosition, S::kLinear, V::kImagePosition, {}),
       SourceTerm("seen_bowl", T::kVisionPosition, S::kQuadratic, V::kImagePosition, {}),
       SourceTerm("seen_lens", T::kVisionPosition, S::kRadial, V::kImagePosition, {}),
+      SourceTerm("em_late", T::kEmTime, S::kConstant, V::kTime, {}),
       SourceTerm("frame_jump", T::kVisionTime, S::kStep, V::kTime, {1.0, 0.1}),
       SourceTerm("load_plane", T::kShaftLoad, S::kPastPlane, V::kPosition, {0.1, 0.2, 0.9, 0.02}),
       SourceTerm("em_constant", T::kEmOrientation, S::kConstant, V::kTime, {})};

@@ -52,6 +52,9 @@ std::optional<Enum> Named(std::string_view name, int count, NameOf name_of) {
 }  // namespace
 
 const TermTargetInfo& InfoOf(TermTarget target) { return kTargets[static_cast<int>(target)]; }
+bool IsStamp(TermTarget target) {
+  return target == TermTarget::kEmTime || target == TermTarget::kVisionTime;
+}
 const char* Name(TermVariable variable) { return kVariableNames[static_cast<int>(variable)]; }
 const char* Name(TermForm form) { return kFormNames[static_cast<int>(form)]; }
 const char* Name(TermShape shape) { return kShapeNames[static_cast<int>(shape)]; }

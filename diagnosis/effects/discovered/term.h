@@ -43,6 +43,8 @@ struct TermTargetInfo {
   const char* frame;    ///< "R", or whose numbers these are
 };
 const TermTargetInfo& InfoOf(TermTarget target);
+/// Returns whether the target is when a sensor says that it read: of time alone.
+bool IsStamp(TermTarget target);
 
 enum class TermVariable : std::uint8_t {
   kTime,

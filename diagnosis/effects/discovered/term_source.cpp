@@ -303,7 +303,12 @@ class {0} : public DirectEffect {{
   text +=
       "    }\n    memory[0] = 1.0;  // begun; what StateAt and the shape go on from\n"
       "    memory[5] = state.t_s;\n  }\n"
-      "  bool NeedsPortPlace() const override { return true; }\n\n protected:\n"
+      "  bool NeedsPortPlace() const override { return true; }\n";
+  if (IsStamp(term.target) && amplitudes == 0)  // what estimate takes off the stamps
+    text += fmt::format("  int DelayInput() const override {{ return sample_input::{}; }}\n",
+                        source.input);
+  text +=
+      "\n protected:\n"
       "  std::vector<Named> Names() const override {\n    return {";
   if (amplitudes > 0) text += fmt::format("{{\"amplitude\", {}}}", amplitudes);
   if (offset) text += fmt::format("{}{{\"offset\", {}}}", amplitudes > 0 ? ", " : "", n);
