@@ -42,6 +42,9 @@ TermRegion RegionOf(const Term& term, const Replay& replay) {
   return region;
 }
 
+/// Of what a sample says in the mean: one that says less of the target would show its noise alone.
+constexpr double kLeastSaid = 0.1;
+
 /// What the term's variable is on the picture's axis.
 double AxisOf(const Term& term, const TermState& state, Eigen::Index input) {
   switch (term.variable) {
@@ -71,13 +74,14 @@ TermPicture PictureOf(const Term& term, const Replay& replay) {
   if (term.IsByInput()) direction = Eigen::VectorXd::Unit(term.Inputs(), main);
   const Eigen::VectorXd by = problem.ByTarget(term.target) * direction;
   const Eigen::VectorXd left = problem.LeftHere();
+  const double typical = by.squaredNorm() / double(std::max<std::size_t>(1, states.size()));
   TermPicture picture;
   EffectMemory memory{};
   for (std::size_t k = 0; k < states.size(); ++k) {
     const TermColumns columns = ColumnsAt(term, states[k], memory);
     const int first = problem.FirstRowOfSample(k), count = problem.FirstRowOfSample(k + 1) - first;
     const double squares = by.segment(first, count).squaredNorm();
-    if (count == 0 || !(squares > 0.0)) continue;
+    if (count == 0 || !(squares > kLeastSaid * typical)) continue;
     double value = term.offset.size() > 0 ? direction.dot(term.offset) : 0.0;
     for (Eigen::Index i = 0; i < direction.size(); ++i)
       value += direction[i] * term.amplitude.row(i).dot(columns.row(i));

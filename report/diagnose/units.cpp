@@ -55,8 +55,10 @@ std::string SpokenHypothesis(const std::string& name) {
 
 std::string SpokenChannel(const std::string& channel) {
   std::string name = ShownUnitOf(channel).name;
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kNames{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kNames{
       {{"wrist0 orientation", "wrist direction"},
+       {"em0 time", "EM stamps"},
+       {"vision0 time", "frames' stamps"},
        {"em0 ", "EM "},
        {"em1 orientation", "port direction"},
        {"strain0 moment", "strain"},

@@ -157,6 +157,11 @@ TEST(DiscoveredTerm, IsSaidInWordsAndUnits) {
   EXPECT_EQ(parameters[1].name, "phase_rad");
   EXPECT_NEAR(parameters[1].value[0], 0.5 * std::numbers::pi, 1e-9);
   EXPECT_EQ(parameters[2].name, "frequency_hz");
+  Term slope = EmTerm(TermShape::kLinear, TermVariable::kTime, {1.0});
+  slope.amplitude = Eigen::Vector3d(0.0, 4e-5, 3e-5);
+  EXPECT_EQ(TextOf(slope), "the EM position changes in proportion to time, by 0.05 mm per s");
+  slope.variable = TermVariable::kOwnValue;
+  EXPECT_EQ(TextOf(slope), "the EM position changes by 5e-05 of its own value");
   EXPECT_EQ(FormOf(swing), TermForm::kPeriodic);
 }
 

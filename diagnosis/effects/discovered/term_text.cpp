@@ -24,12 +24,24 @@ std::string Shown(double value, const std::string& unit) {
   return fmt::format("{:.3g} {}", value, unit);
 }
 
+/// What a term adds: as Shown, a time in milliseconds.
+std::string ShownSize(double value, const std::string& unit) {
+  return unit == "s" ? fmt::format("{:.3g} ms", 1e3 * value) : Shown(value, unit);
+}
+
+/// " per m/s"; nothing where a slope has no unit below.
+std::string Per(const std::string& unit) {
+  if (unit.empty()) return "";
+  return " per " + (unit == "m_s" ? "m/s" : unit);
+}
+
 std::string Spoken(TermVariable variable) {
   std::string name = Name(variable);
   std::replace(name.begin(), name.end(), '_', ' ');
   if (variable == TermVariable::kOwnValue) return "its own value";
   if (variable == TermVariable::kPosition) return "the place";
   if (variable == TermVariable::kPortForce) return "the port's force";
+  if (variable == TermVariable::kImagePosition) return "the place in the image";
   return variable == TermVariable::kTime ? name : "the " + name;
 }
 
@@ -218,14 +230,15 @@ std::string TextOf(const Term& term) {
   const std::string what = info.spoken, on = Spoken(term.variable);
   const auto parameters = Amplitudes(term);
   const double size = parameters.values.empty() ? 0.0 : parameters.values[0];
-  const std::string much = Shown(std::abs(size), unit);
+  const std::string much = ShownSize(std::abs(size), unit);
   const auto at = [&](std::size_t i) { return Shown(term.at[i], by); };
   switch (term.shape) {
     case TermShape::kConstant:
       return fmt::format("{} is off by {} everywhere", what, much);
     case TermShape::kLinear:
-      return fmt::format("{} changes in proportion to {}, by {:.3g} (SI units)", what, on,
-                         std::abs(size));
+      if (unit == by && term.variable != TermVariable::kTime)
+        return fmt::format("{} changes by {:.3g} of {}", what, std::abs(size), on);
+      return fmt::format("{} changes in proportion to {}, by {}{}", what, on, much, Per(by));
     case TermShape::kQuadratic:
       return fmt::format("{} changes with {} as a parabola", what, on);
     case TermShape::kPeriodic:
@@ -268,9 +281,7 @@ std::string TextOf(const Term& term) {
           "{} goes off where the place is beyond a plane of normal ({:.2f}, {:.2f}, {:.2f}) in R",
           what, term.at[0], term.at[1], term.at[2]);
     case TermShape::kRadial:
-      return fmt::format(
-          "{} is off by the cube of {}, as through a lens", what,
-          term.variable == TermVariable::kImagePosition ? "the place in the image" : on);
+      return fmt::format("{} is off by the cube of {}, as through a lens", what, on);
     case TermShape::kSmooth:
       return fmt::format("{} changes smoothly with {} between {} and {}; no simple form fits", what,
                          on, at(0), at(1));
