@@ -100,8 +100,9 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     if (candidates.empty()) break;
     Candidate best = candidates.front();
     const bool is_first = before.empty() && search.terms.empty();
-    const double least_left = (is_first ? options.least_left_first : options.least_left) * all.cost;
-    const double least = std::max(options.least_part * base, least_left);
+    const LeastTerm& limit = is_first ? options.least_first : options.least;
+    const double least_left = limit.left * all.cost;
+    const double least = std::max(limit.part * base, least_left);
     const auto completes = [&](const Candidate& one) {
       return one.gain >= least_left && std::ranges::any_of(options.completed, [&](const Term& of) {
                return SameForm(one.term, of);
@@ -118,9 +119,8 @@ TermSearch SearchTerms(const Replay& replay, const Eigen::VectorXd& prior_sd,
     const auto matters = [&](const Candidate& one) {
       const bool varies = one.term.shape != TermShape::kConstant;
       const bool is_much = varies && one.gain - of_constant >= options.much_left * all.cost;
-      return counts(one) &&
-             (completes(one) || is_much ||
-              HalfRange(one.term, states.at(one.term.target)) >= options.least_tolerances);
+      return counts(one) && (completes(one) || is_much ||
+                             HalfRange(one.term, states.at(one.term.target)) >= limit.tolerances);
     };
     // What varies too little may stand beside a constant that does not.
     if (constant != candidates.end() && matters(*constant) &&

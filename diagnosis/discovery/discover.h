@@ -8,18 +8,22 @@
 
 namespace flextip::diagnosis {
 
+/// What is less is no term.
+struct LeastTerm {
+  /// Of what the base within its tolerances leaves, squared: less does not matter.
+  double part = 0.01;
+  /// Of what the model leaves, noise included, squared: two hundredths of the error.
+  double left = 0.04;
+  double tolerances = 3.0;  ///< half of its range, in the target's tolerances
+};
+
 struct DiscoverOptions {
   int blocks = 20;
   int most_terms = 3;
   double most_false = 0.01;  ///< of a term: the probability that it is none
   double worth = 12.0;       ///< twice the log odds of the best form against no term
-  /// Of what the base within its tolerances leaves, squared: less does not matter.
-  double least_part = 0.01;
-  /// Of what the model leaves, noise included, squared: two hundredths of the error.
-  double least_left = 0.04;
-  /// The same of a first term where nothing is named: no form that is there can be a little off.
-  double least_left_first = least_left;
-  double least_tolerances = 3.0;  ///< half of a term's range, in the target's tolerances
+  LeastTerm least = {};
+  LeastTerm least_first = least;  ///< of a first term, no other being known before
   double much_left = 0.1;  ///< of what the model leaves: what varies so much matters at any size
   /// Terms whose form a further one may complete (a wave's overtone), at any size that is not
   /// little of what the model leaves.

@@ -19,7 +19,7 @@ constexpr double kBetterThanSeveral = 0.0;
 
 /// Where nothing is named no effect's form can be a little off: a weaker and a smaller term counts.
 DiscoverOptions BesideNone() {
-  return {.least_part = 0.004, .least_left_first = 0.004, .least_tolerances = 1.5};
+  return {.least_first = {.part = 0.004, .left = 0.004, .tolerances = 1.5}};
 }
 
 /// Whether a term is what one of `effects` says already: friction by a hysteresis of the depth is

@@ -86,10 +86,10 @@ TEST(DiscoverySearch, LeavesOutATermThatHardlyMatters) {
       if (Seconds(sample.t_ns, recording) > 7.3)
         sample.value += Eigen::Vector4d(0.001, 0.0, -0.0006, 0.0);
   });
-  const auto sure = base.Find({.least_part = 0.0, .least_left = 0.0, .least_tolerances = 0.0});
+  const auto sure = base.Find({.least = {.part = 0.0, .left = 0.0, .tolerances = 0.0}});
   ASSERT_EQ(sure.size(), 1U);
   EXPECT_EQ(sure[0].term.target, TermTarget::kStrain);
-  EXPECT_TRUE(base.Find({.least_part = 0.0, .least_tolerances = 0.0}).empty());
+  EXPECT_TRUE(base.Find({.least = {.part = 0.0, .tolerances = 0.0}}).empty());
 }
 
 TEST(DiscoverySearch, FindsNothingInNoise) {
