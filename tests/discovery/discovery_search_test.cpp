@@ -35,8 +35,8 @@ struct BaseReplay {
     return MakeSampleSet(recording, "disturbed");
   }
 
-  std::vector<FoundTerm> Find(DiscoverOptions options = {}) {
-    options.most_terms = 1;
+  std::vector<FoundTerm> Find(DiscoverOptions options = {}, int most_terms = 1) {
+    options.most_terms = most_terms;
     return SearchTerms(replay, layout.Tolerances(), {}, options).terms;
   }
 };
@@ -61,6 +61,22 @@ TEST(DiscoverySearch, FindsAStepOfTheGages) {
   EXPECT_NEAR(term.amplitude(0, 0), 0.01, 5e-4);
   EXPECT_NEAR(term.amplitude(2, 0), -0.006, 5e-4);
   EXPECT_LT(found[0].false_discovery, 0.005);
+}
+
+/// The gages and the EM position each jump by a little.
+TEST(DiscoverySearch, TheFirstTermAloneMayBeSmall) {
+  BaseReplay base(12.0, 23, [](Recording& recording) {
+    for (auto& sample : recording.strain0->moments_Nm)
+      if (Seconds(sample.t_ns, recording) > 7.3)
+        sample.value += Eigen::Vector4d(0.0015, 0.0, -0.0009, 0.0);
+    for (auto& sample : recording.em0->samples)
+      if (Seconds(sample.t_ns, recording) > 4.1)
+        sample.value.p_RS += Eigen::Vector3d(0.0, 0.00025, 0.0);
+  });
+  const LeastTerm any{.part = 0.0, .left = 0.0, .tolerances = 0.0};
+  EXPECT_EQ(base.Find({}, 2).size(), 0U);
+  EXPECT_EQ(base.Find({.least_first = any}, 2).size(), 1U);
+  EXPECT_EQ(base.Find({.least = any}, 2).size(), 2U);
 }
 
 TEST(DiscoverySearch, FindsASwingOfTheEmOrientation) {
