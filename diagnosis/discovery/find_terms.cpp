@@ -84,25 +84,34 @@ class TermChoice {
     bare_.SetNoiseScale(model->extended.NoiseScales());
   }
 
-  /// Nothing where a term far from small was right only as long as it is small: fitted, it leaves
-  /// more than before.
+  /// Where terms far from small were right only as long as they are small, they leave, fitted, more
+  /// than before: then the first of them alone, or nothing.
   std::unique_ptr<TermModel> Make() {
-    auto model = Found();
-    if (!model || LeavesMore(*model, best_)) return {};
+    const Choice choice = Choose();
+    std::unique_ptr<TermModel> model;
+    for (std::vector<FoundTerm> terms = choice.terms; !terms.empty() && !model;) {
+      model = FitTerms(base_, *choice.from, selection_, choice.effects, terms, options_);
+      if (model && LeavesMore(*model, best_)) model.reset();
+      terms.resize(terms.size() > fast_.size() + 1 ? fast_.size() + 1 : 0);
+    }
+    if (!model) return {};
     auto more = WithFurther(*model);
     return more && !LeavesMore(*more, model->extended) ? std::move(more) : std::move(model);
   }
 
  private:
-  std::unique_ptr<TermModel> Found() {
+  struct Choice {
+    const Replay* from;
+    std::vector<int> effects;
+    std::vector<FoundTerm> terms;
+  };
+
+  Choice Choose() {
     DiscoverOptions options;
     if (Effects().empty()) options = BesideNone();
     beside_ = SearchTerms(best_, KnownSd(), fast_, options);
-    if (const auto alone = InPlaceOfEffects())
-      return FitTerms(base_, bare_, selection_, {}, Joined(fast_, alone->terms), options_);
-    const std::vector<FoundTerm> found = Joined(fast_, beside_.terms);
-    if (found.empty()) return {};
-    return FitTerms(base_, best_, selection_, Effects(), found, options_);
+    if (const auto alone = InPlaceOfEffects()) return {&bare_, {}, Joined(fast_, alone->terms)};
+    return {&best_, Effects(), Joined(fast_, beside_.terms)};
   }
 
   static bool LeavesMore(const TermModel& model, const Replay& before) {
