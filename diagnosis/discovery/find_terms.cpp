@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kNoisier = 1.15;  // times the data sheets' noise: something fast may be in it
 constexpr double kBetter = 20.0;   // twice the log odds by which terms alone must beat the effects
+constexpr double kWorse = 1.5;     // times what was left: the noise is taken anew with the terms
 constexpr double kMostOf = 0.7;    // of what several effects explain: terms that are worth a fit
 /// The same, fitted in full, where several effects take the part: each of the many combinations of
 /// effects is less likely beforehand than terms.
@@ -91,7 +92,8 @@ class TermChoice {
     std::unique_ptr<TermModel> model;
     for (std::vector<FoundTerm> terms = choice.terms; !terms.empty() && !model;) {
       model = FitTerms(base_, *choice.from, selection_, choice.effects, terms, options_);
-      if (model && LeavesMore(*model, best_)) model.reset();
+      const bool is_all = terms.size() == choice.terms.size();
+      if (model && LeavesMore(*model, best_, is_all ? kWorse : 1.0)) model.reset();
       terms.resize(terms.size() > fast_.size() + 1 ? fast_.size() + 1 : 0);
     }
     if (!model) return {};
@@ -114,9 +116,8 @@ class TermChoice {
     return {&best_, Effects(), Joined(fast_, beside_.terms)};
   }
 
-  static bool LeavesMore(const TermModel& model, const Replay& before) {
-    constexpr double kWorse = 1.5;  // the noise is taken anew with the terms
-    return model.extended.ChiSquaredPerDof() > kWorse * before.ChiSquaredPerDof();
+  static bool LeavesMore(const TermModel& model, const Replay& before, double worse = kWorse) {
+    return model.extended.ChiSquaredPerDof() > worse * before.ChiSquaredPerDof();
   }
 
   static double HeldOutError(const TermModel& model) {
