@@ -15,9 +15,10 @@ namespace {
 constexpr std::size_t kExact = 4;     // of a kind, that are looked at exactly
 constexpr std::size_t kRefined = 24;  // kinds
 constexpr int kRefinements = 14;
-constexpr double kScanned = 15.0;           // twice the log of how many waves were tried
-constexpr double kMostTolerances = 1000.0;  // half of a range: beyond that nothing is near linear
+constexpr double kScanned = 15.0;     // twice the log of how many waves were tried
 constexpr double kLastResort = 30.0;  // a smooth form must be better than a simple one by so much
+/// Half of a range: beyond that nothing is near linear.
+constexpr double kMostTolerances = 1000.0;
 
 /// Series of waves in ascending frequency: each from the last by a turn of every sample's phase.
 class WaveWalk {

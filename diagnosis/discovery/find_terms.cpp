@@ -88,13 +88,11 @@ class TermChoice {
   /// Where terms far from small were right only as long as they are small, they leave, fitted, more
   /// than before: then the first of them alone, or nothing.
   std::unique_ptr<TermModel> Make() {
-    const Choice choice = Choose();
-    std::unique_ptr<TermModel> model;
-    for (std::vector<FoundTerm> terms = choice.terms; !terms.empty() && !model;) {
-      model = FitTerms(base_, *choice.from, selection_, choice.effects, terms, options_);
-      const bool is_all = terms.size() == choice.terms.size();
-      if (model && LeavesMore(*model, best_, is_all ? kWorse : 1.0)) model.reset();
-      terms.resize(terms.size() > fast_.size() + 1 ? fast_.size() + 1 : 0);
+    Choice choice = Choose();
+    auto model = Fit(choice, kWorse);
+    if (!model && choice.terms.size() > fast_.size() + 1) {
+      choice.terms.resize(fast_.size() + 1);
+      model = Fit(choice, 1.0);
     }
     if (!model) return {};
     auto more = WithFurther(*model);
@@ -114,6 +112,13 @@ class TermChoice {
     beside_ = SearchTerms(best_, KnownSd(), fast_, options);
     if (const auto alone = InPlaceOfEffects()) return {&bare_, {}, Joined(fast_, alone->terms)};
     return {&best_, Effects(), Joined(fast_, beside_.terms)};
+  }
+
+  /// Null where the fit leaves more than `worse` times what was left.
+  std::unique_ptr<TermModel> Fit(const Choice& choice, double worse) const {
+    if (choice.terms.empty()) return {};
+    auto model = FitTerms(base_, *choice.from, selection_, choice.effects, choice.terms, options_);
+    return model && !LeavesMore(*model, best_, worse) ? std::move(model) : nullptr;
   }
 
   static bool LeavesMore(const TermModel& model, const Replay& before, double worse = kWorse) {

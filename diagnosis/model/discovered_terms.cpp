@@ -28,6 +28,8 @@ std::string WhatIsWrong(const Term& term) {
       return at[0] > 0.0 ? "" : fmt::format("found at[0] = {}, expected > 0", at[0]);
     case TermShape::kStep:
       return at[1] > 0.0 ? "" : fmt::format("found at[1] = {}, expected > 0", at[1]);
+    case TermShape::kRadial:
+      return Dimension(term.variable) > 1 ? "" : "expected a place or an orientation as variable";
     case TermShape::kSmooth:
       return at[1] > at[0] ? ""
                            : fmt::format("found at = [{}, {}], expected a range", at[0], at[1]);

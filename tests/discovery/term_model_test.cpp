@@ -62,6 +62,24 @@ TEST(TermModel, AStampDependsOnTimeAlone) {
   std::filesystem::remove(file);
 }
 
+TEST(TermModel, ALensBendsAVector) {
+  const auto file = std::filesystem::temp_directory_path() / "flextip_term_radial.yaml";
+  ExtendedModel model;
+  model.discovered = {{TermTarget::kVisionPosition,
+                       TermShape::kRadial,
+                       TermVariable::kImagePosition,
+                       {},
+                       Eigen::MatrixXd::Constant(3, 2, 0.01),
+                       {}}};
+  WriteModel(file, model);
+  EXPECT_EQ(ReadModel(file).discovered.at(0).amplitude, model.discovered[0].amplitude);
+  model.discovered[0].variable = TermVariable::kLoad;
+  model.discovered[0].amplitude = Eigen::MatrixXd::Constant(3, 1, 0.01);
+  WriteModel(file, model);
+  EXPECT_THROW(ReadModel(file), InputError);
+  std::filesystem::remove(file);
+}
+
 TEST(TermModel, ATermWithoutMeaningIsRefused) {
   const std::string text = ModelYaml(SteppingModel(SmallHidden(2.0, true, 3).recording));
   const auto file = std::filesystem::temp_directory_path() / "flextip_term_wrong.yaml";

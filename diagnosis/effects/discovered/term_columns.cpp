@@ -164,8 +164,11 @@ bool IsOfVector(TermShape shape) {
          shape == TermShape::kRadial;
 }
 
+/// Two or three numbers, without memory from the heap: loops come here every cycle.
+using Components = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+
 /// The columns of a shape of all components of a vector.
-void FillOfVector(const Term& term, const Eigen::VectorXd& v, TermColumns& columns) {
+void FillOfVector(const Term& term, const Components& v, TermColumns& columns) {
   const Eigen::Index n = v.size();
   if (term.shape == TermShape::kRadial) {
     columns.row(0) = v.squaredNorm() * v.transpose();
@@ -177,7 +180,7 @@ void FillOfVector(const Term& term, const Eigen::VectorXd& v, TermColumns& colum
     for (Eigen::Index j = i; j < n; ++j) columns(0, at++) = v[i] * v[j];
 }
 
-Eigen::VectorXd VectorOf(TermVariable variable, const TermState& state) {
+Components VectorOf(TermVariable variable, const TermState& state) {
   if (variable == TermVariable::kImagePosition) return state.image;
   return variable == TermVariable::kOrientation ? state.orientation : state.position;
 }
