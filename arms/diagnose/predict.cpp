@@ -26,21 +26,6 @@ std::vector<ArmParameter> Parameters(const EffectFit& fit) {
   return parameters;
 }
 
-/// How plays are replayed: through windows, else through widths, with what they carry.
-PlayHistory HistoryOf(const EffectFit& fit) {
-  std::map<std::string, std::vector<double>> lists;
-  for (const auto& p : fit.parameters) lists[p.name] = p.value;
-  const std::vector<double>& windows = lists.contains("window") ? lists["window"] : lists["width"];
-  const std::vector<double>& carried = lists["carried"];
-  const auto n = Eigen::Index(windows.size());
-  PlayHistory history{Eigen::Map<const Eigen::VectorXd>(windows.data(), n), {}};
-  if (!carried.empty()) {
-    history.carried =
-        Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(carried.data(), n, n);
-  }
-  return history;
-}
-
 /// Of each channel its first twentieth alone, of 20 rows or more.
 Noise FirstRows(Noise noise) {
   for (ChannelNoise& own : noise) {
@@ -85,7 +70,7 @@ ArmPrediction Predict(const ArmData& data, const ArmModel& model) {
     if (fit != nullptr && IsOfPlace(layout, block, *fit)) {
       theta.segment(block.first, block.size) = block.effect->FromReported(data, Parameters(*fit));
       if (!nuisance && !block.effect->OfWindow(data, 0).empty())
-        block.effect->SetHistory(HistoryOf(*fit));
+        block.effect->SetHistory(PlayHistoryOf(Parameters(*fit), data.Size()));
     }
     const EffectFit* base = FindFit(model.base_nuisances, block.effect->Name());
     if (nuisance && base != nullptr)

@@ -58,6 +58,10 @@ class JointStage {
   /// of their parameters among those of all effects.
   Eigen::VectorXd play_start;
   int first_play_start = 0;
+  /// By how many widths of its play a spring draws a joint back, per unit of the joint; and the
+  /// first of these parameters.
+  Eigen::VectorXd pull_back;
+  int first_pull_back = 0;
 
  private:
   int first_ = 0;
@@ -113,8 +117,8 @@ class ArmEffect {
 
   /// Acts on commands: what a perfect servo would make of them.
   virtual void ActOnCommand(const ArmData&, const double*, JointStage&) const {}
-  /// Says how plays stand when a recording begins, before any effect acts between encoders and
-  /// joints.
+  /// Says how plays stand when a recording begins and what pulls at them, before any effect acts
+  /// between encoders and joints.
   virtual void StartPlay(const ArmData&, const double*, JointStage&) const {}
   /// Acts between encoders and true joints.
   virtual void ActOnJoints(const ArmData&, const double*, JointStage&) const {}
@@ -180,6 +184,10 @@ class PlainEffect : public ArmEffect {
 /// is absent is empty.
 std::vector<double> ListOf(const std::string& effect, const std::vector<ArmParameter>& reported,
                            const std::string& name, int size);
+
+/// Returns how plays are replayed by what was reported of them: through windows, else through
+/// widths, with what they carry. Throws InputError where a list has another length.
+PlayHistory PlayHistoryOf(const std::vector<ArmParameter>& backlash, int joints);
 
 /// One parameter a joint: tolerance and typical size by the joint's unit; the recording's own
 /// tolerance for `effect.parameter` first.

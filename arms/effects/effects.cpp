@@ -30,6 +30,7 @@ Effects MakeNuisances() {
   nuisances.push_back(MakeEffortShape());
   nuisances.push_back(MakeServoInertia());
   nuisances.push_back(MakePlayStart());
+  nuisances.push_back(MakePlaySpring());
   return nuisances;
 }
 

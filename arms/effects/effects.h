@@ -25,13 +25,15 @@ std::unique_ptr<ArmEffect> MakeTorqueDrift();
 std::unique_ptr<ArmEffect> MakePayload(const Arm& arm, int place);
 
 /// Nuisances: the tracker's and the marker's place where they are unknown, all that efforts and
-/// servos need that no file states, and where plays stand when a recording begins.
+/// servos need that no file states, where plays stand when a recording begins, and what pulls at
+/// joints that drag each other.
 std::unique_ptr<ArmEffect> MakeTrackerPlace();
 std::unique_ptr<ArmEffect> MakeMarkerPlace();
 std::unique_ptr<ArmEffect> MakeMasses();
 std::unique_ptr<ArmEffect> MakeEffortShape();
 std::unique_ptr<ArmEffect> MakeServoInertia();
 std::unique_ptr<ArmEffect> MakePlayStart();
+std::unique_ptr<ArmEffect> MakePlaySpring();
 
 /// Effects of the catalogue, payloads at each place of `arm`.
 Effects MakeEffects(const Arm& arm);

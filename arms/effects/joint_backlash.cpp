@@ -3,7 +3,8 @@
 //   true_i = measured_i + sum over j of moved_ij s_j,
 // width_j = moved_jj, drag_ij = moved_ij / moved_jj. Without play all is zero whatever the window.
 // What is dragged may pass through the play of the joint that it drags (CarriedStates), as where
-// one cable pulls on another joint's. Then moved_ij says when joint i moves, too.
+// one cable pulls on another joint's. Then moved_ij says when joint i moves, too, and what gives
+// way to friction gives way to a spring that pulls a joint back (play_spring.cpp).
 #include "arms/effects/effects.h"
 #include "arms/effects/play.h"
 
@@ -39,16 +40,19 @@ class JointBacklash : public ArmEffect {
     for (int j = 0; j < data.Size() && stage.play_start.size() > 0; ++j)
       if (Begins(data, moved, j)) start[j] = stage.play_start[j];
     const PlayHistory history = HistoryAt(data, moved);
-    const Eigen::MatrixXd states = States(x, history, start);
+    const Eigen::MatrixXd drawn = Drawn(x, history, stage.pull_back);
+    const Eigen::MatrixXd states = States(drawn, history, start);
     const int n = data.Size();
     for (int j = 0; j < n; ++j) {
       const Eigen::VectorXd state = states.col(j);
       if (state.isZero(0.0)) continue;
       for (int i = 0; i < n; ++i) stage.Linear(IndexOf(n, i, j), i, moved(i, j), state);
     }
+    stage.output += drawn - x;
     if (!stage.WantsDerivatives()) return;
-    if (stage.play_start.size() > 0) DeriveByStart(data, x, history, start, moved, stage);
+    if (stage.play_start.size() > 0) DeriveByStart(data, drawn, history, start, moved, stage);
     if (history.by_parameters) DeriveByHistory(data, x, start, moved, stage);
+    if (stage.pull_back.size() > 0) DeriveByPull(x, history, start, moved, stage);
   }
 
   PlayHistory History() const override { return history_; }
@@ -143,10 +147,6 @@ class JointBacklash : public ArmEffect {
            std::abs(moved) > kShows * data.TypicalOf(i, 0.0005, 0.0002);
   }
 
-  static bool IsTied(const Eigen::MatrixXd& carried, int j) {
-    return !carried.row(j).isZero(0.0) || !carried.col(j).isZero(0.0);
-  }
-
   /// The history with what it takes from the parameters.
   PlayHistory HistoryAt(const ArmData& data, const Eigen::MatrixXd& moved) const {
     PlayHistory history = history_;
@@ -160,6 +160,13 @@ class JointBacklash : public ArmEffect {
     return history;
   }
 
+  /// Where joints would stand without friction: what their plays are about.
+  static Eigen::MatrixXd Drawn(const Eigen::MatrixXd& x, const PlayHistory& history,
+                               const Eigen::VectorXd& pull_back) {
+    if (history.carried.size() == 0 || pull_back.size() == 0) return x;
+    return x - x * DrawnBack(history, pull_back).transpose();
+  }
+
   static Eigen::MatrixXd States(const Eigen::MatrixXd& x, const PlayHistory& history,
                                 const Eigen::VectorXd& start) {
     const Eigen::Index n = x.cols();
@@ -170,6 +177,13 @@ class JointBacklash : public ArmEffect {
       states.col(j) =
           PlayState(x.col(j), history.windows.size() == n ? history.windows[j] : 0.0, start[j]);
     return states;
+  }
+
+  static Eigen::MatrixXd Followed(const Eigen::MatrixXd& x, const PlayHistory& history,
+                                  const Eigen::VectorXd& pull_back, const Eigen::VectorXd& start,
+                                  const Eigen::MatrixXd& moved) {
+    const Eigen::MatrixXd drawn = Drawn(x, history, pull_back);
+    return drawn + States(drawn, history, start) * moved.transpose();
   }
 
   static void DeriveByStart(const ArmData& data, const Eigen::MatrixXd& x,
@@ -187,7 +201,24 @@ class JointBacklash : public ArmEffect {
     }
   }
 
-  /// What tied parameters change by changing when a joint moves.
+  static void DeriveByPull(const Eigen::MatrixXd& x, const PlayHistory& history,
+                           const Eigen::VectorXd& start, const Eigen::MatrixXd& moved,
+                           JointStage& stage) {
+    if (history.carried.size() == 0) return;
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+      if (!IsTied(history.carried, j)) continue;
+      Eigen::VectorXd up = stage.pull_back, down = stage.pull_back;
+      up[j] += kStep;
+      down[j] -= kStep;
+      const Eigen::MatrixXd by =
+          (Followed(x, history, up, start, moved) - Followed(x, history, down, start, moved)) /
+          (2.0 * kStep);
+      for (Eigen::Index i = 0; i < x.cols(); ++i)
+        stage.DerivativeOfAny(stage.first_pull_back + int(j), int(i), by.col(i));
+    }
+  }
+
+  /// What tied parameters change by changing when a joint moves, and what springs draw it by.
   void DeriveByHistory(const ArmData& data, const Eigen::MatrixXd& x, const Eigen::VectorXd& start,
                        const Eigen::MatrixXd& moved, JointStage& stage) const {
     const int n = data.Size();
@@ -198,9 +229,10 @@ class JointBacklash : public ArmEffect {
         Eigen::MatrixXd up = moved, down = moved;
         up(i, j) += h;
         down(i, j) -= h;
-        const Eigen::MatrixXd by =
-            (States(x, HistoryAt(data, up), start) - States(x, HistoryAt(data, down), start)) /
-            (2.0 * h) * moved.transpose();
+        const auto at = [&](const Eigen::MatrixXd& there) {
+          return Followed(x, HistoryAt(data, there), stage.pull_back, start, moved);
+        };
+        const Eigen::MatrixXd by = (at(up) - at(down)) / (2.0 * h);
         for (int row = 0; row < n; ++row) stage.Derivative(IndexOf(n, i, j), row, by.col(row));
       }
   }

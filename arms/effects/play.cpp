@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace flextip::arms {
 namespace {
@@ -28,8 +29,15 @@ Eigen::VectorXd PlayState(const Eigen::VectorXd& x, double width, double start) 
   return state;
 }
 
-Eigen::MatrixXd CarriedStates(const Eigen::MatrixXd& x, const Eigen::VectorXd& widths,
-                              const Eigen::MatrixXd& carried, const Eigen::VectorXd& start) {
+bool IsTied(const Eigen::MatrixXd& carried, Eigen::Index j) {
+  return !carried.row(j).isZero(0.0) || !carried.col(j).isZero(0.0);
+}
+
+namespace {
+
+/// The states of joints that are all tied.
+Eigen::MatrixXd TiedStates(const Eigen::MatrixXd& x, const Eigen::VectorXd& widths,
+                           const Eigen::MatrixXd& carried, const Eigen::VectorXd& start) {
   const Eigen::Index n = x.cols();
   Eigen::MatrixXd states(x.rows(), n);
   Eigen::VectorXd state = start.cwiseMax(-0.5).cwiseMin(0.5);
@@ -66,6 +74,31 @@ Eigen::MatrixXd CarriedStates(const Eigen::MatrixXd& x, const Eigen::VectorXd& w
     states.row(k) = state.transpose();
   }
   return states;
+}
+
+}  // namespace
+
+Eigen::MatrixXd CarriedStates(const Eigen::MatrixXd& x, const Eigen::VectorXd& widths,
+                              const Eigen::MatrixXd& carried, const Eigen::VectorXd& start) {
+  std::vector<Eigen::Index> tied;
+  Eigen::MatrixXd states(x.rows(), x.cols());
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    if (IsTied(carried, j)) {
+      tied.push_back(j);
+    } else {
+      states.col(j) = PlayState(x.col(j), widths[j], start[j]);
+    }
+  }
+  states(Eigen::all, tied) =
+      TiedStates(x(Eigen::all, tied), widths(tied), carried(tied, tied), start(tied));
+  return states;
+}
+
+Eigen::MatrixXd DrawnBack(const PlayHistory& history, const Eigen::VectorXd& pull_back) {
+  Eigen::MatrixXd by = history.carried;
+  for (Eigen::Index j = 0; j < by.cols(); ++j)
+    by(j, j) = IsTied(history.carried, j) ? history.windows[j] : 0.0;
+  return by * pull_back.asDiagonal();
 }
 
 }  // namespace flextip::arms

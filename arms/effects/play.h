@@ -27,4 +27,11 @@ Eigen::VectorXd PlayState(const Eigen::VectorXd& x, double width, double start =
 Eigen::MatrixXd CarriedStates(const Eigen::MatrixXd& x, const Eigen::VectorXd& widths,
                               const Eigen::MatrixXd& carried, const Eigen::VectorXd& start);
 
+/// Whether joint j drags others through their plays, or is dragged.
+bool IsTied(const Eigen::MatrixXd& carried, Eigen::Index j);
+
+/// Returns how far springs draw tied joints back (rows) per unit of each joint (columns).
+/// `pull_back`: by how many widths of its play a spring draws a joint back, per unit of the joint.
+Eigen::MatrixXd DrawnBack(const PlayHistory& history, const Eigen::VectorXd& pull_back);
+
 }  // namespace flextip::arms

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 
@@ -24,6 +25,7 @@ constexpr int kMostFits = 14;  // a round
 constexpr int kFitRounds = 6;
 constexpr int kCarryRounds = 12;
 constexpr double kWorthCarrying = 0.98;  // of the squares that are left without it
+constexpr double kShorter = 0.7;         // of the last step: a fit that comes nearer
 constexpr int kNoiseRounds = 3;
 const std::vector<double> kScales{0.3, 3.0};
 
@@ -110,6 +112,7 @@ class Searcher {
   WeighedHypothesis Descend(const Hypothesis& hypothesis, int rounds) {
     WeighedHypothesis weighed{hypothesis, 0.0, std::vector<double>(hypothesis.effects.size(), 3.0),
                               0.0};
+    double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds; ++round) {
       const Problem problem = ProblemHere();
       const Evidence evidence = EvidenceHere(problem, false);
@@ -118,10 +121,14 @@ class Searcher {
       const Eigen::MatrixXd covariance = evidence.Covariance(weighed);
       const Eigen::VectorXd mode = layout_.WithinBounds(
           replay_.Theta(), evidence.Mode(weighed, covariance).head(layout_.Size()));
-      const Eigen::VectorXd step = mode - replay_.Theta();
       const Eigen::VectorXd sd =
           covariance.diagonal().head(layout_.Size()).cwiseMax(1e-300).cwiseSqrt();
-      replay_.Evaluate(mode);
+      Eigen::VectorXd step = mode - replay_.Theta();
+      // Plays have corners: about them full steps would go to and fro.
+      const double length = step.cwiseQuotient(sd).norm();
+      if (length > kShorter * last) step *= 0.5;
+      last = length;
+      replay_.Evaluate(replay_.Theta() + step);
       if (step.cwiseQuotient(sd).norm() < 0.1) break;
     }
     return weighed;
@@ -261,19 +268,35 @@ class Searcher {
                        });
   }
 
+  /// The same of one effect, with all others fitted again where plays drag each other: what these
+  /// take up is not linear.
+  double ImportanceByFit(int effect) {
+    GoTo(best_);
+    const double left = Misfit();
+    Hypothesis without = best_.hypothesis;
+    std::erase(without.effects, effect);
+    GoTo(FitPlay(without, best_));
+    return Misfit() / std::max(1e-300, left) - 1.0;
+  }
+
   /// Where much is left that nothing explains, an effect that takes away a hundredth of it is not
   /// claimed: any smooth form would. Returns whether there was one.
   bool ForbidWhatHardlyCounts() {
     // What hangs on a link or drives a joint has a form of its own; places of joints do not.
     for (const Channel& channel : replay_.Channels())
       if (channel.kind == Kind::kTorque || channel.kind == Kind::kFollowed) return false;
-    const std::vector<double> importance = Importance();
+    std::vector<double> importance = Importance();
     if (left_per_row_ < kMuchLeft) return false;
     int least = -1;
-    for (int i = 0; i < int(importance.size()); ++i)
-      if (importance[i] < kHardlyCounts && !HasTwin(best_.hypothesis.effects[i]) &&
-          (least < 0 || importance[i] < importance[least]))
+    for (int i = 0; i < int(importance.size()); ++i) {
+      const int effect = best_.hypothesis.effects[i];
+      if (HasTwin(effect)) continue;
+      if (importance[i] >= kHardlyCounts && best_.history.by_parameters &&
+          effect != layout_.WindowBlock())
+        importance[i] = ImportanceByFit(effect);
+      if (importance[i] < kHardlyCounts && (least < 0 || importance[i] < importance[least]))
         least = i;
+    }
     if (least < 0) return false;
     const int block = best_.hypothesis.effects[least];
     forbidden_.insert(block);

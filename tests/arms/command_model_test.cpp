@@ -53,6 +53,24 @@ TEST(CommandModel, TakesTheModelsNumbers) {
   EXPECT_THAT(found.not_corrected, ElementsAre(StartsWith("link_geometry: ")));
 }
 
+// Springs draw joints back that drag each other: by a width and half at joint 1, half of one at 2.
+TEST(CommandModel, TakesSpringsOfJointsThatDragEachOther) {
+  const ArmModel model{
+      {Fit("joint_backlash", {{"width", {0.2, 0.1, 0.0}},
+                              {"drag", {-0.5, 0.0, 0.0, 0.0, 0.0, 0.0}},
+                              {"window", {0.2, 0.1, 0.0}},
+                              {"carried", {0.0, -0.05, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}}})},
+      {},
+      {Fit("play_spring", {{"pull_back", {1.5, 0.5, 7.0}}})},
+      {}};
+  const JointModel joints = CommandModelOf(simulation::SmallArm(), model, kGravity).joints;
+  EXPECT_NEAR(joints.scale[0], 1.0 - 1.5 * 0.2, 1e-12);
+  EXPECT_NEAR(joints.scale[1], 1.0 - 0.5 * 0.1, 1e-12);
+  EXPECT_EQ(joints.scale[2], 1.0);  // alone it has no such spring
+  EXPECT_NEAR(joints.coupling(0, 1), 0.5 * 0.05, 1e-12);
+  EXPECT_EQ(joints.coupling(1, 0), 0.0);
+}
+
 TEST(CommandModel, RefusesAModelOfAnotherArm) {
   const ArmModel two{{Fit("joint_offset", {{"offset", {0.1, 0.2}}})}, {}, {}, {}};
   EXPECT_THROW(CommandModelOf(simulation::SmallArm(), two, kGravity), InputError);

@@ -100,33 +100,30 @@ TEST(DiagnoseArm, FindsAScaleAndACoupling) {
   EXPECT_NEAR(ValueOf(result, "joint_coupling", "matrix", 29), 0.1, 5e-3);
 }
 
-// By forces in time, one joint standing in a corner of its play as the recording begins; the model
-// predicts another motion.
+// One joint stands in a corner of its play as the recording begins; the model predicts another
+// motion.
 TEST(DiagnoseArm, FindsAWristWhoseJointsDragEachOther) {
   const WristOfCables wrist;
-  const auto recorded = [&](unsigned seed, double begins) {
-    Recording recording = ArmRecording(SixJoints());
-    recording.joints_command0 = SmoothMotion(*recording.arm, 900, 4.0, seed);
-    JointStream seen = *recording.joints_command0;
-    Eigen::MatrixXd motors(Eigen::Index(seen.q.size()), 2);
-    for (Eigen::Index k = 0; k < motors.rows(); ++k)
-      motors.row(k) << seen.q[k].value[4], seen.q[k].value[5];
-    const Eigen::Vector2d at =
-        motors.row(0).transpose() + wrist.Moved() * Eigen::Vector2d(begins, -begins);
-    const Eigen::MatrixXd joints = wrist.Follow(motors, at);
-    for (Eigen::Index k = 0; k < motors.rows(); ++k) {
-      seen.q[k].value[4] = joints(k, 0);
-      seen.q[k].value[5] = joints(k, 1);
-    }
-    recording.joints_seen0 = WithNoise(seen, kSeenNoise, seed);
-    return recording;
-  };
-  const ArmResult result = Diagnose({ArmData(recorded(21, 0.5), "wrist")});
+  const ArmResult result = Diagnose({ArmData(RecordedWrist(wrist, kSeenNoise, 21, 0.5), "wrist")});
   EXPECT_THAT(result.answer.verdict, ElementsAre("joint_backlash"));
   const Eigen::Matrix2d moved = wrist.Moved();
   EXPECT_NEAR(ValueOf(result, "joint_backlash", "width", 4), moved(0, 0), 0.02);
   EXPECT_NEAR(ValueOf(result, "joint_backlash", "width", 5), moved(1, 1), 0.02);
-  const ArmPrediction prediction = Predict(ArmData(recorded(22, -0.5), "other"), result.model);
+  const ArmPrediction prediction =
+      Predict(ArmData(RecordedWrist(wrist, kSeenNoise, 22, -0.5), "other"), result.model);
+  EXPECT_LT(prediction.ratio, 0.1);
+}
+
+// Joints that springs pull back stay short of their motors, and that is no gear's ratio.
+TEST(DiagnoseArm, AWristThatSpringsPullBackHasNoScale) {
+  const WristOfCables wrist{.spring_x = 0.1, .spring_y = 0.15};
+  const ArmResult result = Diagnose({ArmData(RecordedWrist(wrist, kSeenNoise, 23, 0.5), "wrist")});
+  EXPECT_THAT(result.answer.verdict, ElementsAre("joint_backlash"));
+  const Eigen::Matrix2d moved = wrist.Moved();
+  EXPECT_NEAR(ValueOf(result, "joint_backlash", "width", 4), moved(0, 0), 0.02);
+  EXPECT_NEAR(ValueOf(result, "joint_backlash", "width", 5), moved(1, 1), 0.02);
+  const ArmPrediction prediction =
+      Predict(ArmData(RecordedWrist(wrist, kSeenNoise, 24, -0.5), "other"), result.model);
   EXPECT_LT(prediction.ratio, 0.1);
 }
 

@@ -6,8 +6,10 @@
 
 #include "arms/diagnose/diagnose.h"
 #include "arms/feed_forward/joint_model.h"
+#include "arms/feed_forward/sampled_path.h"
 #include "simulation/closed_loop/joints/joint_loop.h"
 #include "simulation/joints/arm_recording.h"
+#include "tests/arms/wrist_of_cables.h"
 
 namespace flextip::arms {
 namespace {
@@ -169,6 +171,34 @@ TEST(FeedForward, PlayThatHangsByGravityIsNotKnown) {
   EXPECT_NEAR(gain.base.rms[0], 0.015, 0.001);
   EXPECT_GT(gain.Left(0), 1.0);
   EXPECT_LT(gain.Left(0), 1.5);
+}
+
+// A wrist by forces, found and led along another motion: its springs are taken away, its plays too
+// but for what one carries of the other.
+TEST(FeedForward, LeadsAWristThatSpringsPullBack) {
+  const WristOfCables wrist{.spring_x = 0.1, .spring_y = 0.15};
+  const std::vector<double> noise{3e-4, 2e-4, 5e-5, 1e-3, 4e-4, 6e-4};
+  const Recording recording = RecordedWrist(wrist, noise, 25, 0.5);
+  const ArmResult found = Diagnose({ArmData(recording, "wrist")});
+  const ArmData other(RecordedWrist(wrist, noise, 26, 0.0), "other");
+  const SampledPath path(other.joints);
+  const PathCommands commands =
+      CommandsFor(path, CommandModelOf(*recording.arm, found.model, {0.0, 0.0, -9.81}).joints,
+                  {.max_correction = Eigen::VectorXd::Constant(6, 1.5)});
+  const auto error = [&](const Eigen::MatrixXd& motors) {
+    const Eigen::MatrixXd two = motors.rightCols(2);
+    const Eigen::Vector2d at = wrist.HowFar() * two.row(0).transpose();
+    const Eigen::MatrixXd off = wrist.Follow(two, at) - path.Rows().values.rightCols(2);
+    return Eigen::Vector2d((off.array().square().colwise().sum() / double(off.rows())).sqrt());
+  };
+  const Eigen::Vector2d before = error(path.Rows().values), after = error(commands.q);
+  for (int i = 0; i < 2; ++i) {
+    const std::string joint = "wrist_q" + std::to_string(i + 5);
+    RecordProperty(joint + "_before", std::to_string(before[i]));
+    RecordProperty(joint + "_after", std::to_string(after[i]));
+    EXPECT_GT(before[i], 0.1);
+    EXPECT_LT(after[i], 0.5 * before[i]);
+  }
 }
 
 }  // namespace

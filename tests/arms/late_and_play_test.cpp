@@ -76,20 +76,28 @@ Eigen::MatrixXd TwoMotors() {
 
 // Plays that drag each other are springs and friction. The two agree as steps get
 // small: a row moves a motor by 3 mrad at most.
+void ExpectStatesAndForcesAgree(const WristOfCables& wrist) {
+  const Eigen::MatrixXd motors = TwoMotors(), moved = wrist.Moved();
+  PlayHistory history{moved.diagonal(), moved};
+  history.carried.diagonal().setZero();
+  const Eigen::MatrixXd drawn = motors - motors * DrawnBack(history, wrist.PullBack()).transpose();
+  const Eigen::Vector2d start{0.3, -0.5};
+  const Eigen::Vector2d at = drawn.row(0).transpose() + moved * start;
+  const Eigen::MatrixXd by_forces = wrist.Follow(motors, at);
+  const Eigen::MatrixXd by_states =
+      drawn + CarriedStates(drawn, history.windows, history.carried, start) * moved.transpose();
+  EXPECT_LT((by_forces - by_states).cwiseAbs().maxCoeff(), 1e-3) << wrist.over;
+  EXPECT_GT((by_states - motors).cwiseAbs().maxCoeff(), 0.1);
+}
+
 TEST(Play, JointsThatDragEachOtherAreWhereForcesLeadThem) {
-  for (const double over : {0.0, 0.4, 0.9}) {
-    const WristOfCables wrist{.over = over};
-    const Eigen::MatrixXd motors = TwoMotors(), moved = wrist.Moved();
-    Eigen::MatrixXd carried = moved;
-    carried.diagonal().setZero();
-    const Eigen::Vector2d start{0.3, -0.5};
-    const Eigen::Vector2d at = motors.row(0).transpose() + moved * start;
-    const Eigen::MatrixXd by_forces = wrist.Follow(motors, at);
-    const Eigen::MatrixXd by_states =
-        motors + CarriedStates(motors, moved.diagonal(), carried, start) * moved.transpose();
-    EXPECT_LT((by_forces - by_states).cwiseAbs().maxCoeff(), 1e-3) << over;
-    EXPECT_GT((by_states - motors).cwiseAbs().maxCoeff(), 0.1);
-  }
+  for (const double over : {0.0, 0.4, 0.9}) ExpectStatesAndForcesAgree({.over = over});
+}
+
+// What gives way to friction gives way to a spring.
+TEST(Play, SpringsThatPullJointsBackDrawThemByTheShapesOfTheirPlays) {
+  for (const double over : {0.4, 0.9})
+    ExpectStatesAndForcesAgree({.over = over, .spring_x = 0.2, .spring_y = 0.1});
 }
 
 }  // namespace
