@@ -57,6 +57,24 @@ LooseNumber MakeLoose(const Layout& layout, const Layout::Block& block, int j, i
   return loose;
 }
 
+/// Springs in plays that drag each other are believed before what looks like them.
+void AddWhatSpringsTakeUp(const Layout& layout, const diagnosis::Hypothesis& best,
+                          std::vector<std::string>& not_told) {
+  if (!Holds(best, layout.WindowBlock())) return;
+  const Eigen::MatrixXd carried = layout.Blocks()[layout.WindowBlock()].effect->History().carried;
+  std::vector<int> tied;
+  for (Eigen::Index j = 0; j < carried.cols(); ++j)
+    if (IsTied(carried, j)) tied.push_back(int(j) + 1);
+  if (tied.empty()) return;
+  for (int b = 0; b < layout.EffectCount(); ++b) {
+    const Layout::Block& block = layout.Blocks()[b];
+    if (!block.effect->IsLikeSprings() || block.change || Holds(best, b)) continue;
+    not_told.push_back(
+        fmt::format("{} of joints {} cannot be told from springs that pull them back",
+                    block.effect->Name(), fmt::join(tied, ", ")));
+  }
+}
+
 }  // namespace
 
 bool Holds(const diagnosis::Hypothesis& h, int block) {
@@ -108,6 +126,7 @@ std::vector<std::string> NotTold(const Layout& layout, const diagnosis::WeighedH
                                  : " cannot be told from " + names.second;
     not_told.push_back(std::move(text));
   }
+  AddWhatSpringsTakeUp(layout, weighed.hypothesis, not_told);
   return not_told;
 }
 

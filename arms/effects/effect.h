@@ -149,6 +149,8 @@ class ArmEffect {
   virtual bool OnlyChanges() const { return false; }
   /// Returns whether a change lasts for one recording, not for all after it.
   virtual bool ComesAndGoes() const { return false; }
+  /// Returns whether springs that pull at plays look like it (play_spring.cpp).
+  virtual bool IsLikeSprings() const { return false; }
   /// Returns whether it is an answer, not a nuisance that is always there.
   virtual bool IsAnswer() const { return true; }
   /// Returns how far from zero its numbers may be. At a bound they stay, and nothing moves with

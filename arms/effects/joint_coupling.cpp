@@ -22,6 +22,7 @@ class JointCoupling : public PlainEffect {
     }
     return parameters;
   }
+  bool IsLikeSprings() const override { return true; }
   void ActOnJoints(const ArmData& data, const double* theta, JointStage& stage) const override {
     const int n = data.Size();
     for (int m = 0; m < n * n - n; ++m) {

@@ -12,6 +12,7 @@ class JointScale : public PlainEffect {
   std::vector<FitParameter> Parameters(const ArmData& data) const override {
     return PerJoint(data, "joint_scale.scale", {0.0005, 0.0005, 0.01, 0.01});
   }
+  bool IsLikeSprings() const override { return true; }
   void ActOnJoints(const ArmData& data, const double* theta, JointStage& stage) const override {
     for (int i = 0; i < data.Size(); ++i) stage.Linear(i, i, theta[i], stage.input.values.col(i));
   }

@@ -268,8 +268,8 @@ class Searcher {
                        });
   }
 
-  /// The same of one effect, with all others fitted again where plays drag each other: what these
-  /// take up is not linear.
+  /// The same of one effect that springs in plays look like: all others are fitted again, as what
+  /// these take up is not linear.
   double ImportanceByFit(int effect) {
     GoTo(best_);
     const double left = Misfit();
@@ -291,8 +291,7 @@ class Searcher {
     for (int i = 0; i < int(importance.size()); ++i) {
       const int effect = best_.hypothesis.effects[i];
       if (HasTwin(effect)) continue;
-      if (importance[i] >= kHardlyCounts && best_.history.by_parameters &&
-          effect != layout_.WindowBlock())
+      if (best_.history.by_parameters && layout_.Blocks()[effect].effect->IsLikeSprings())
         importance[i] = ImportanceByFit(effect);
       if (importance[i] < kHardlyCounts && (least < 0 || importance[i] < importance[least]))
         least = i;

@@ -119,6 +119,9 @@ TEST(DiagnoseArm, AWristThatSpringsPullBackHasNoScale) {
   const WristOfCables wrist{.spring_x = 0.1, .spring_y = 0.15};
   const ArmResult result = Diagnose({ArmData(RecordedWrist(wrist, kSeenNoise, 23, 0.5), "wrist")});
   EXPECT_THAT(result.answer.verdict, ElementsAre("joint_backlash"));
+  EXPECT_THAT(
+      result.not_told,
+      Contains("joint_scale of joints 5, 6 cannot be told from springs that pull them back"));
   const Eigen::Matrix2d moved = wrist.Moved();
   EXPECT_NEAR(ValueOf(result, "joint_backlash", "width", 4), moved(0, 0), 0.02);
   EXPECT_NEAR(ValueOf(result, "joint_backlash", "width", 5), moved(1, 1), 0.02);
