@@ -147,6 +147,11 @@ Eigen::RowVectorXd At(const Eigen::MatrixXd& values, const Where& where) {
          where.fraction * values.row(where.row + 1);
 }
 
+double At(const Eigen::VectorXd& values, const Where& where) {
+  const double value = values[where.row];
+  return where.fraction > 0.0 ? value + where.fraction * (values[where.row + 1] - value) : value;
+}
+
 ArmData::ArmData(const Recording& recording, std::string recording_name)
     : name(std::move(recording_name)),
       arm(*recording.arm),

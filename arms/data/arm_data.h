@@ -72,5 +72,6 @@ struct ArmData {
 
 /// Returns row `where` of the track, between two rows linearly.
 Eigen::RowVectorXd At(const Eigen::MatrixXd& values, const Where& where);
+double At(const Eigen::VectorXd& values, const Where& where);
 
 }  // namespace flextip::arms

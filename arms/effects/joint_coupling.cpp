@@ -1,4 +1,6 @@
-// Cables of one joint pull another: true = measured + matrix * measured.
+// Cables of one joint pull another: true = measured + matrix * measured. What they pull pulls back:
+// the motors' efforts are those of the joints plus matrix^T times them.
+#include "arms/data/effort_slopes.h"
 #include "arms/effects/effects.h"
 
 namespace flextip::arms {
@@ -28,6 +30,18 @@ class JointCoupling : public PlainEffect {
     for (int m = 0; m < n * n - n; ++m) {
       const Entry entry = OffDiagonal(n, m);
       stage.Linear(m, entry.row, theta[m], stage.input.values.col(entry.column));
+    }
+  }
+  void ActOnEffort(const ArmData& data, EffortStage& stage) const override {
+    if (data.arm.links.empty()) return;
+    const Eigen::MatrixXd effort = StatedEffort(data);
+    const int n = data.Size();
+    for (int m = 0; m < n * n - n; ++m) {
+      const Entry entry = OffDiagonal(n, m);
+      if (entry.row >= effort.cols() || entry.column >= effort.cols()) continue;
+      Eigen::MatrixXd shape = Eigen::MatrixXd::Zero(effort.rows(), effort.cols());
+      shape.col(entry.column) = effort.col(entry.row);
+      stage.Add(m, std::move(shape));
     }
   }
 

@@ -60,11 +60,11 @@ class ShapesOfJoints : public WristEffect {
     const Eigen::VectorXd measured = wrist_.JointsAt(where);
     Eigen::VectorXd q = measured;
     for (const JointStage::Column& shape : shapes_)
-      q[shape.joint] += theta[shape.parameter] * arms::At(shape.values, where)[0];
+      q[shape.joint] += theta[shape.parameter] * arms::At(shape.values, where);
     const WristByJoints to(wrist_.Data(), q);
     WristMove move(WristByJoints(wrist_.Data(), measured), to, change);
     for (const JointStage::Column& shape : shapes_) {
-      move.Derivative(shape.parameter, to.J.col(shape.joint) * arms::At(shape.values, where)[0]);
+      move.Derivative(shape.parameter, to.J.col(shape.joint) * arms::At(shape.values, where));
     }
   }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "arms/effects/marker.h"
-#include "arms/model/dynamics.h"
 #include "arms/replay/registration.h"
 #include "core/linear_algebra.h"
 #include "core/rotation.h"
@@ -75,6 +74,7 @@ Replay::Replay(const Layout& layout)
   joints_.resize(recordings.size());
   efforts_.resize(recordings.size());
   base_effort_.resize(recordings.size());
+  effort_slopes_.resize(recordings.size());
   for (int r = 0; r < int(recordings.size()); ++r) {
     const ArmData& data = recordings[r];
     const int P = layout.Size(), n = data.Size();
@@ -94,17 +94,8 @@ Replay::Replay(const Layout& layout)
     });
     base_effort_[r].setZero(data.torque.track.Rows(), data.torque.track.values.cols());
     if (data.arm.links.empty()) continue;
-    Eigen::VectorXd numbers(kLinkNumbers * n);
-    for (int i = 0; i < n; ++i)
-      numbers.segment(kLinkNumbers * i, kLinkNumbers) = NumbersOf(data.arm.links[i]);
-    for (Eigen::Index k = 0; k < base_effort_[r].rows(); ++k) {
-      const Where& where = data.torque.where[k];
-      const Motion motion{At(data.smooth, where).transpose(), At(data.rate, where).transpose(),
-                          At(data.acceleration, where).transpose()};
-      base_effort_[r].row(k) = (EffortRegressor(data.nominal, motion, data.gravity_m_s2) * numbers)
-                                   .head(base_effort_[r].cols())
-                                   .transpose();
-    }
+    base_effort_[r] = StatedEffort(data);
+    effort_slopes_[r] = SlopesOf(data);
   }
 }
 
@@ -204,7 +195,7 @@ void Replay::EvaluateRecording(int r, bool with_derivatives) {
   if (Channel* channel = Find(r, Kind::kSeen))
     FillJoints(*channel, data.seen, stage.output, stage.columns);
   if (Channel* channel = Find(r, Kind::kPose)) FillPose(*channel, stage.columns);
-  if (Channel* channel = Find(r, Kind::kTorque)) FillTorque(*channel);
+  if (Channel* channel = Find(r, Kind::kTorque)) FillTorque(*channel, stage.columns);
 }
 
 void Replay::FillJoints(Channel& channel, const Measured& measured, const Eigen::MatrixXd& output,
@@ -215,37 +206,26 @@ void Replay::FillJoints(Channel& channel, const Measured& measured, const Eigen:
   if (!derivatives_) return;
   channel.derivative.setZero();
   for (const auto& column : columns) {
-    for (Eigen::Index k = 0; k < channel.Rows(); ++k) {
-      const Where& where = measured.where[k];
-      double value = column.values[where.row];
-      if (where.fraction > 0.0) value += where.fraction * (column.values[where.row + 1] - value);
-      channel.derivative(k * n + column.joint, column.parameter) += value;
-    }
+    for (Eigen::Index k = 0; k < channel.Rows(); ++k)
+      channel.derivative(k * n + column.joint, column.parameter) +=
+          At(column.values, measured.where[k]);
   }
 }
 
-void Replay::FillTorque(Channel& channel) const {
-  const int r = channel.recording;
-  const ArmData& data = layout_.Recordings()[r];
-  const Eigen::Index n = channel.Components();
-  Eigen::MatrixXd predicted = base_effort_[r];
-  if (derivatives_) channel.derivative.setZero();
-  for (const EffortStage::Column& column : efforts_[r].columns) {
-    if (theta_[column.parameter] != 0.0) predicted += theta_[column.parameter] * column.shape;
-    for (Eigen::Index k = 0; derivatives_ && k < channel.Rows(); ++k)
-      channel.derivative.block(k * n, column.parameter, n, 1) = column.shape.row(k).transpose();
-  }
-  channel.residual = data.torque.track.values - predicted;
-}
-
-void Replay::FillPose(Channel& channel, const std::vector<JointStage::Column>& columns) const {
-  const int r = channel.recording;
+PoseStage Replay::ActOnPose(int r) const {
   const ArmData& data = layout_.Recordings()[r];
   PoseStage stage(data.Size());
   EachEffect(r, [&](const Layout::Block& block) {
     stage.first = block.first;
     block.effect->ActOnPose(data, theta_.data() + block.first, stage);
   });
+  return stage;
+}
+
+void Replay::FillPose(Channel& channel, const std::vector<JointStage::Column>& columns) const {
+  const int r = channel.recording;
+  const ArmData& data = layout_.Recordings()[r];
+  const PoseStage stage = ActOnPose(r);
   const Eigen::VectorXd& v = stage.values;
   const Eigen::VectorXd geometry = v.tail(3 * data.Size());
   const Kinematics arm = geometry.isZero(0.0) ? data.nominal : Kinematics(data.arm, geometry);
@@ -280,11 +260,8 @@ void Replay::FillPose(Channel& channel, const std::vector<JointStage::Column>& c
     turn6 << T_TR.R, Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero(), T_TR.R;
     const Eigen::MatrixXd J = turn6 * arm.Jacobian(places, last, p_RK);
     auto rows = channel.derivative.middleRows(6 * k, 6);
-    for (const auto& column : columns) {
-      double value = column.values[where.row];
-      if (where.fraction > 0.0) value += where.fraction * (column.values[where.row + 1] - value);
-      rows.col(column.parameter) += value * J.col(column.joint);
-    }
+    for (const auto& column : columns)
+      rows.col(column.parameter) += At(column.values, where) * J.col(column.joint);
     Eigen::MatrixXd G;
     for (const PoseStage::Moved& moved : stage.moved) {
       Eigen::Matrix<double, 6, 1> by = Eigen::Matrix<double, 6, 1>::Zero();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "arms/data/effort_slopes.h"
 #include "arms/replay/layout.h"
 
 namespace flextip::arms {
@@ -62,7 +63,10 @@ class Replay {
   void FillJoints(Channel& channel, const Measured& measured, const Eigen::MatrixXd& output,
                   const std::vector<JointStage::Column>& columns) const;
   void FillPose(Channel& channel, const std::vector<JointStage::Column>& columns) const;
-  void FillTorque(Channel& channel) const;
+  void FillTorque(Channel& channel, const std::vector<JointStage::Column>& columns) const;
+  void AddEffortSlopes(Channel& channel, const std::vector<JointStage::Column>& columns,
+                       Eigen::MatrixXd& predicted) const;
+  PoseStage ActOnPose(int r) const;
   void EvaluateRecording(int r, bool with_derivatives);
   Channel* Find(int r, Kind kind);
   template <class Act>
@@ -75,6 +79,7 @@ class Replay {
   std::vector<Eigen::MatrixXd> joints_;
   std::vector<EffortStage> efforts_;          ///< shapes, a recording each
   std::vector<Eigen::MatrixXd> base_effort_;  ///< of stated masses
+  std::vector<EffortSlopes> effort_slopes_;   ///< of them where joints or links are moved
   bool derivatives_ = true;
 };
 

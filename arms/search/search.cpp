@@ -20,6 +20,7 @@ using diagnosis::WeighedHypothesis;
 constexpr double kRival = 3.0;          // log odds below the best that are worth a fit
 constexpr double kMuchLeft = 4.0;       // chi-squared per row, in stated noise
 constexpr double kHardlyCounts = 0.02;  // of what is left
+constexpr double kAsSprings = 0.05;     // the same beside springs, whose fits vary by 0.02
 constexpr int kMostDrops = 3;
 constexpr int kMostFits = 14;  // a round
 constexpr int kFitRounds = 6;
@@ -233,10 +234,23 @@ class Searcher {
     return sum;
   }
 
+  /// Squares, in stated noise, of what the step moves as the derivatives say.
+  double SquaresOf(const Eigen::VectorXd& step) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < noise_.size(); ++i) {
+      const Eigen::VectorXd by = replay_.Channels()[i].derivative * step;
+      const Eigen::Index C = noise_[i].keep.cols();
+      for (Eigen::Index k = 0; k < noise_[i].keep.rows(); ++k)
+        for (Eigen::Index c = 0; c < C; ++c)
+          if (noise_[i].keep(k, c)) sum += std::pow(by[k * C + c] / noise_[i].floor[c], 2);
+    }
+    return sum;
+  }
+
   double Misfit() const { return MisfitAfter(Eigen::VectorXd::Zero(layout_.Size())); }
 
   /// By how much of what is left the misfit rises without each effect of the best, with all that
-  /// recordings have of it.
+  /// recordings have of it; or how much of that another of them would have to take over.
   std::vector<double> Importance() {
     GoTo(best_);
     const Problem problem = ProblemHere();
@@ -251,7 +265,15 @@ class Searcher {
       const WeighedHypothesis weighed = evidence.Weigh(without);
       const Eigen::VectorXd mode =
           evidence.Mode(weighed, evidence.Covariance(weighed)).head(layout_.Size());
-      importance.push_back(MisfitAfter(mode - replay_.Theta()) / std::max(1e-300, left) - 1.0);
+      const Eigen::VectorXd step = mode - replay_.Theta();
+      double added = MisfitAfter(step) - left;
+      for (const int other : without.effects) {
+        const Layout::Block& block = layout_.Blocks()[other];
+        Eigen::VectorXd taken = Eigen::VectorXd::Zero(step.size());
+        taken.segment(block.first, block.size) = step.segment(block.first, block.size);
+        added = std::max(added, SquaresOf(taken));
+      }
+      importance.push_back(added / std::max(1e-300, left));
     }
     long count = 0;
     for (const ChannelNoise& noise : noise_) count += noise.keep.count();
@@ -291,9 +313,11 @@ class Searcher {
     for (int i = 0; i < int(importance.size()); ++i) {
       const int effect = best_.hypothesis.effects[i];
       if (HasTwin(effect)) continue;
-      if (best_.history.by_parameters && layout_.Blocks()[effect].effect->IsLikeSprings())
-        importance[i] = ImportanceByFit(effect);
-      if (importance[i] < kHardlyCounts && (least < 0 || importance[i] < importance[least]))
+      const bool as_springs =
+          best_.history.by_parameters && layout_.Blocks()[effect].effect->IsLikeSprings();
+      if (as_springs) importance[i] = ImportanceByFit(effect);
+      if (importance[i] < (as_springs ? kAsSprings : kHardlyCounts) &&
+          (least < 0 || importance[i] < importance[least]))
         least = i;
     }
     if (least < 0) return false;

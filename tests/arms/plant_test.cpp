@@ -20,6 +20,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
+using testing::UnorderedElementsAre;
 
 Eigen::Vector3d V(double a, double b, double c) { return {a, b, c}; }
 
@@ -138,6 +139,20 @@ TEST(ArmPlant, WhatTheCatalogueLacksIsUnknown) {
               ElementsAre("unknown"));
   EXPECT_THAT(DiagnosisOf(late, kCommand, {}, {.without = {"command_latency"}}).answer.verdict,
               ElementsAre("unknown"));
+}
+
+// Links that are not where they are said to be weigh elsewhere, and cables that pull a joint are
+// pulled by it: neither is a payload.
+TEST(ArmPlant, WhatMovesALinkIsNoPayload) {
+  const ArmSensors all{.command = true, .encoders = true, .pose = true, .torque = true};
+  const ArmResult moved =
+      DiagnosisOf({.encoder_offset = V(0.0, 0.027, 0.0), .a_change_m = V(0.0, 0.01, 0.0)}, all);
+  EXPECT_THAT(moved.answer.verdict, UnorderedElementsAre("joint_offset", "link_geometry"));
+  Eigen::MatrixXd routing = Eigen::Matrix3d::Identity();
+  routing(1, 0) = 0.054;
+  const ArmResult pulled =
+      DiagnosisOf({.routing = routing, .motor_coulomb = V(0.0, 0.4, 0.0)}, all);
+  EXPECT_THAT(pulled.answer.verdict, UnorderedElementsAre("joint_coupling", "joint_friction"));
 }
 
 TEST(ArmPlant, LateCommandsAreFound) {
