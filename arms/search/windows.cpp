@@ -10,6 +10,7 @@ namespace {
 // Widths of a window that are tried, in rad or 10 cm.
 constexpr double kWidths[] = {0.0,  0.002, 0.004, 0.008, 0.015, 0.025, 0.04,
                               0.06, 0.09,  0.13,  0.18,  0.25,  0.35,  0.5};
+constexpr double kMostOfRange = 0.5;  // a wider window is a line, as a scale is
 
 }  // namespace
 
@@ -79,6 +80,7 @@ void WindowSearch::Scan(const Noise& noise) {
     const double unit = data.TypicalOf(j, 1.0, 0.1);
     double best = 0.0, best_width = windows[j];
     const auto tell = [&](double width) {
+      if (width >= kMostOfRange * range && width > 0.0) return;
       windows[j] = width;
       Set(history);
       Eigen::VectorXd theta = replay_.Theta();
@@ -88,8 +90,7 @@ void WindowSearch::Scan(const Noise& noise) {
       best_width = width;
     };
     const Eigen::VectorXd theta = replay_.Theta();
-    for (const double width : kWidths)
-      if (width * unit < 0.7 * range || width == 0.0) tell(width * unit);
+    for (const double width : kWidths) tell(width * unit);
     for (const double by : {0.8, 0.9, 1.12, 1.25})
       if (best_width > 0.0) tell(best_width * by);
     windows[j] = best_width;
