@@ -70,7 +70,10 @@ class Replay {
   void EvaluateRecording(int r, bool with_derivatives);
   Channel* Find(int r, Kind kind);
   template <class Act>
-  void EachEffect(int r, Act act) const;
+  void EachEffect(int r, Act act) const {
+    for (const Layout::Block& block : layout_.Blocks())
+      if (block.in[r]) act(block);
+  }
 
   const Layout& layout_;
   Eigen::VectorXd theta_;

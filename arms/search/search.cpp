@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "arms/search/misfit.h"
 #include "arms/search/nuisances.h"
 #include "arms/search/windows.h"
 
@@ -219,35 +220,9 @@ class Searcher {
     }
   }
 
-  /// Squared misfit in stated noise, with the parameters moved by `step` as the derivatives say.
-  double MisfitAfter(const Eigen::VectorXd& step) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < noise_.size(); ++i) {
-      const Channel& channel = replay_.Channels()[i];
-      const Eigen::VectorXd by = channel.derivative * step;
-      const Eigen::Index C = channel.Components();
-      for (Eigen::Index k = 0; k < channel.Rows(); ++k)
-        for (Eigen::Index c = 0; c < C; ++c)
-          if (noise_[i].keep(k, c))
-            sum += std::pow((channel.residual(k, c) - by[k * C + c]) / noise_[i].floor[c], 2);
-    }
-    return sum;
+  double Misfit() const {
+    return SquaresAfter(replay_, noise_, Eigen::VectorXd::Zero(layout_.Size()));
   }
-
-  /// Squares, in stated noise, of what the step moves as the derivatives say.
-  double SquaresOf(const Eigen::VectorXd& step) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < noise_.size(); ++i) {
-      const Eigen::VectorXd by = replay_.Channels()[i].derivative * step;
-      const Eigen::Index C = noise_[i].keep.cols();
-      for (Eigen::Index k = 0; k < noise_[i].keep.rows(); ++k)
-        for (Eigen::Index c = 0; c < C; ++c)
-          if (noise_[i].keep(k, c)) sum += std::pow(by[k * C + c] / noise_[i].floor[c], 2);
-    }
-    return sum;
-  }
-
-  double Misfit() const { return MisfitAfter(Eigen::VectorXd::Zero(layout_.Size())); }
 
   /// By how much of what is left the misfit rises without each effect of the best, with all that
   /// recordings have of it; or how much of that another of them would have to take over.
@@ -266,12 +241,12 @@ class Searcher {
       const Eigen::VectorXd mode =
           evidence.Mode(weighed, evidence.Covariance(weighed)).head(layout_.Size());
       const Eigen::VectorXd step = mode - replay_.Theta();
-      double added = MisfitAfter(step) - left;
+      double added = SquaresAfter(replay_, noise_, step) - left;
       for (const int other : without.effects) {
         const Layout::Block& block = layout_.Blocks()[other];
         Eigen::VectorXd taken = Eigen::VectorXd::Zero(step.size());
         taken.segment(block.first, block.size) = step.segment(block.first, block.size);
-        added = std::max(added, SquaresOf(taken));
+        added = std::max(added, SquaresOf(replay_, noise_, taken));
       }
       importance.push_back(added / std::max(1e-300, left));
     }
