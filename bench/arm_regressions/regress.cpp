@@ -12,6 +12,7 @@ namespace {
 using arms::ArmData;
 
 constexpr int kWidths = 40;
+constexpr double kStandsStill = 1e-3;  // of the largest column
 constexpr double kLongest_s = 0.1, kDelay_s = 5e-4;
 
 /// Columns of a joint's regression on all rows of joints.
@@ -46,7 +47,11 @@ Fit FitJoint(const std::vector<ArmData>& fitted, int joint, const Columns& colum
     b.segment(at, own.rows()) = Behind(data, joint);
     at += own.rows();
   }
-  Fit fit{A.completeOrthogonalDecomposition().solve(b), 0.0};
+  // Joints that stand still in all of them get no weight of their own.
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  decomposition.setThreshold(kStandsStill);
+  decomposition.compute(A);
+  Fit fit{decomposition.solve(b), 0.0};
   fit.squares = (b - A * fit.weights).squaredNorm();
   return fit;
 }
