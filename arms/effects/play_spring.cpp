@@ -15,6 +15,7 @@ class PlaySpring : public PlainEffect {
   bool IsAnswer() const override { return false; }
   std::vector<FitParameter> Parameters(const ArmData& data) const override {
     std::vector<FitParameter> parameters;
+    parameters.reserve(std::size_t(data.Size()));
     for (int j = 0; j < data.Size(); ++j) parameters.push_back({data.TypicalOf(j, 0.5, 5.0), 0.0});
     return parameters;
   }

@@ -24,6 +24,7 @@ bool Has(const Fits& fits, const std::string& effect) {
 
 std::vector<ArmParameter> Reported(const EffectFit& fit) {
   std::vector<ArmParameter> reported;
+  reported.reserve(fit.parameters.size());
   for (const auto& p : fit.parameters) reported.push_back({p.name, p.value, p.sd});
   return reported;
 }
