@@ -144,6 +144,13 @@ void FillProbabilities(const std::map<Verdict, double>& probability,
 
 }  // namespace
 
+std::vector<ArmParameter> ParametersOf(const diagnosis::EffectFit& fit) {
+  std::vector<ArmParameter> parameters;
+  parameters.reserve(fit.parameters.size());
+  for (const auto& p : fit.parameters) parameters.push_back({p.name, p.value, p.sd});
+  return parameters;
+}
+
 ArmResult Diagnose(const std::vector<ArmData>& recordings, const ArmOptions& options) {
   FLEXTIP_CHECK(!recordings.empty(), "a recording");
   for (const ArmData& data : recordings) data.RequireJudged();

@@ -43,6 +43,9 @@ struct ArmModel {
   std::vector<diagnosis::EffectFit> effects, within_tolerance, nuisances, base_nuisances;
 };
 
+/// The parameters of an effect of the model, as effects of arms take them.
+std::vector<ArmParameter> ParametersOf(const diagnosis::EffectFit& fit);
+
 struct RecordingAnswer {
   std::string name;
   diagnosis::DiagnosisResult answer;

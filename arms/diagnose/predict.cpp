@@ -5,6 +5,7 @@
 
 #include "arms/diagnose/curves.h"
 #include "arms/diagnose/heldout.h"
+#include "arms/effects/effects.h"
 #include "arms/search/nuisances.h"
 
 namespace flextip::arms {
@@ -18,12 +19,6 @@ const EffectFit* FindFit(const std::vector<EffectFit>& fits, const std::string& 
   for (const EffectFit& fit : fits)
     if (fit.effect == effect) return &fit;
   return nullptr;
-}
-
-std::vector<ArmParameter> Parameters(const EffectFit& fit) {
-  std::vector<ArmParameter> parameters;
-  for (const auto& p : fit.parameters) parameters.push_back({p.name, p.value, p.sd});
-  return parameters;
 }
 
 /// Of each channel its first twentieth alone, of 20 rows or more.
@@ -40,7 +35,7 @@ Noise FirstRows(Noise noise) {
 bool IsOfPlace(const Layout& layout, const Layout::Block& block, const EffectFit& fit) {
   if (fit.effect != "payload") return true;
   double own = 0.0;
-  const double wanted = ListOf(fit.effect, Parameters(fit), "place", 1)[0];
+  const double wanted = ListOf(fit.effect, ParametersOf(fit), "place", 1)[0];
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(block.size);
   for (const auto& p : block.effect->Report(layout.DataOf(block), zero,
                                             Eigen::MatrixXd::Zero(block.size, block.size)))
@@ -68,14 +63,14 @@ ArmPrediction Predict(const ArmData& data, const ArmModel& model) {
     const bool nuisance = !block.effect->IsAnswer();
     const EffectFit* fit = FindFit(nuisance ? model.nuisances : given, block.effect->Name());
     if (fit != nullptr && IsOfPlace(layout, block, *fit)) {
-      theta.segment(block.first, block.size) = block.effect->FromReported(data, Parameters(*fit));
+      theta.segment(block.first, block.size) = block.effect->FromReported(data, ParametersOf(*fit));
       if (!nuisance && !block.effect->OfWindow(data, 0).empty())
-        block.effect->SetHistory(PlayHistoryOf(Parameters(*fit), data.Size()));
+        block.effect->SetHistory(PlayHistoryOf(ParametersOf(*fit), data.Size()));
     }
     const EffectFit* base = FindFit(model.base_nuisances, block.effect->Name());
     if (nuisance && base != nullptr)
       base_theta.segment(block.first, block.size) =
-          block.effect->FromReported(data, Parameters(*base));
+          block.effect->FromReported(data, ParametersOf(*base));
   }
   Replay replay(layout);
   const auto residuals = [&](const Eigen::VectorXd& at) {

@@ -1,6 +1,5 @@
 #include "arms/effects/effect.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -42,24 +41,6 @@ std::vector<double> ListOf(const std::string& effect, const std::vector<ArmParam
                                  found.size(), size));
   }
   return found;
-}
-
-PlayHistory PlayHistoryOf(const std::vector<ArmParameter>& backlash, int joints) {
-  const auto list = [&](const char* name, int size) {
-    return ListOf("joint_backlash", backlash, name, size);
-  };
-  const auto has = [&](const char* name) {
-    return std::any_of(backlash.begin(), backlash.end(),
-                       [&](const ArmParameter& p) { return p.name == name; });
-  };
-  const std::vector<double> windows = list(has("window") ? "window" : "width", joints);
-  PlayHistory history{Eigen::Map<const Eigen::VectorXd>(windows.data(), joints), {}};
-  if (has("carried")) {
-    const std::vector<double> carried = list("carried", joints * joints);
-    history.carried = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
-        carried.data(), joints, joints);
-  }
-  return history;
 }
 
 std::vector<double> ToleranceOf(const ArmData& data, const std::string& key, double fallback,

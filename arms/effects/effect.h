@@ -187,10 +187,6 @@ class PlainEffect : public ArmEffect {
 std::vector<double> ListOf(const std::string& effect, const std::vector<ArmParameter>& reported,
                            const std::string& name, int size);
 
-/// Returns how plays are replayed by what was reported of them: through windows, else through
-/// widths, with what they carry. Throws InputError where a list has another length.
-PlayHistory PlayHistoryOf(const std::vector<ArmParameter>& backlash, int joints);
-
 /// One parameter a joint: tolerance and typical size by the joint's unit; the recording's own
 /// tolerance for `effect.parameter` first.
 struct JointSizes {

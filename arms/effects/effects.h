@@ -35,6 +35,10 @@ std::unique_ptr<ArmEffect> MakeServoInertia();
 std::unique_ptr<ArmEffect> MakePlayStart();
 std::unique_ptr<ArmEffect> MakePlaySpring();
 
+/// Returns how plays are replayed by what joint_backlash reported: through windows, else through
+/// widths, with what they carry. Throws InputError where a list has another length.
+PlayHistory PlayHistoryOf(const std::vector<ArmParameter>& backlash, int joints);
+
 /// Effects of the catalogue, payloads at each place of `arm`.
 Effects MakeEffects(const Arm& arm);
 Effects MakeNuisances();

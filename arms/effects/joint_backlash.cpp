@@ -5,6 +5,8 @@
 // What is dragged may pass through the play of the joint that it drags (CarriedStates), as where
 // one cable pulls on another joint's. Then moved_ij says when joint i moves, too, and what gives
 // way to friction gives way to a spring that pulls a joint back (play_spring.cpp).
+#include <algorithm>
+
 #include "arms/effects/effects.h"
 #include "arms/effects/play.h"
 
@@ -246,6 +248,24 @@ class JointBacklash : public ArmEffect {
 };
 
 }  // namespace
+
+PlayHistory PlayHistoryOf(const std::vector<ArmParameter>& backlash, int joints) {
+  const auto list = [&](const char* name, int size) {
+    return ListOf("joint_backlash", backlash, name, size);
+  };
+  const auto has = [&](const char* name) {
+    return std::any_of(backlash.begin(), backlash.end(),
+                       [&](const ArmParameter& p) { return p.name == name; });
+  };
+  const std::vector<double> windows = list(has("window") ? "window" : "width", joints);
+  PlayHistory history{Eigen::Map<const Eigen::VectorXd>(windows.data(), joints), {}};
+  if (has("carried")) {
+    const std::vector<double> carried = list("carried", joints * joints);
+    history.carried = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
+        carried.data(), joints, joints);
+  }
+  return history;
+}
 
 std::unique_ptr<ArmEffect> MakeJointBacklash() { return std::make_unique<JointBacklash>(); }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "arms/effects/effects.h"
 #include "arms/model/dynamics.h"
 #include "core/error.h"
 
@@ -22,19 +23,12 @@ bool Has(const Fits& fits, const std::string& effect) {
                      [&](const EffectFit& fit) { return fit.effect == effect; });
 }
 
-std::vector<ArmParameter> Reported(const EffectFit& fit) {
-  std::vector<ArmParameter> reported;
-  reported.reserve(fit.parameters.size());
-  for (const auto& p : fit.parameters) reported.push_back({p.name, p.value, p.sd});
-  return reported;
-}
-
 /// The list of that name, or `fallback` everywhere where the model has no such effect.
 Eigen::VectorXd List(const Fits& fits, const std::string& effect, const std::string& name, int size,
                      double fallback) {
   for (const EffectFit& fit : fits) {
     if (fit.effect != effect) continue;
-    const std::vector<double> values = ListOf(effect, Reported(fit), name, size);
+    const std::vector<double> values = ListOf(effect, ParametersOf(fit), name, size);
     return Eigen::Map<const Eigen::VectorXd>(values.data(), size);
   }
   return Eigen::VectorXd::Constant(size, fallback);
@@ -153,6 +147,20 @@ std::vector<EffortJoint> EffortJoints(const Arm& arm, const ArmModel& model, con
   return joints;
 }
 
+/// Springs that draw joints back are a scale and a coupling to the feed-forward.
+void TakeSprings(const ArmModel& model, JointModel& joints) {
+  for (const EffectFit& fit : model.effects) {
+    if (fit.effect != "joint_backlash") continue;
+    const PlayHistory history = PlayHistoryOf(ParametersOf(fit), joints.size);
+    if (history.carried.size() == 0) continue;
+    const Eigen::MatrixXd drawn =
+        DrawnBack(history, List(model.nuisances, "play_spring", "pull_back", joints.size, 0.0));
+    joints.coupling -= drawn;
+    joints.scale -= drawn.diagonal();
+    joints.coupling.diagonal().setZero();
+  }
+}
+
 void SayWhatStays(const Fits& found, const JointModel& joints, std::vector<std::string>& lines) {
   const auto say = [&](const char* effect, const char* why) {
     if (Has(found, effect)) lines.push_back(fmt::format("{}: {}", effect, why));
@@ -192,16 +200,7 @@ CommandModel CommandModelOf(const Arm& arm, const ArmModel& model,
   const JointMatrix drag = Square(List(found, "joint_backlash", "drag", n * n - n, 0.0), n);
   joints.play = drag * width.asDiagonal();
   joints.play.diagonal() = width;
-  for (const EffectFit& fit : found) {
-    if (fit.effect != "joint_backlash") continue;
-    const PlayHistory history = PlayHistoryOf(Reported(fit), n);
-    if (history.carried.size() == 0) continue;
-    const Eigen::MatrixXd drawn =
-        DrawnBack(history, List(model.nuisances, "play_spring", "pull_back", n, 0.0));
-    joints.coupling -= drawn;
-    joints.scale -= drawn.diagonal();
-    joints.coupling.diagonal().setZero();
-  }
+  TakeSprings(model, joints);
   if (!arm.links.empty() || Has(model.nuisances, "masses")) {
     const auto chain = EffortJoints(arm, model, given, result.not_corrected);
     joints.effort.emplace(chain, arm.T_RB.R.transpose() * gravity_m_s2);

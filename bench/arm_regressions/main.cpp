@@ -25,7 +25,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.footer("Example:\n  flextip_arm_regressions wrist_a wrist_b --on random_motion");
 }
 
-/// Rows of every stream of joints within two parts of the recording's time.
+/// Rows of every stream of the arm within two parts of the recording's time.
 arms::ArmData PartOf(Recording recording, double from, double to, const std::string& name) {
   const auto& all = recording.joints_command0 ? recording.joints_command0 : recording.joints0;
   const TimeNs begin = all->q.front().t_ns;
@@ -39,6 +39,7 @@ arms::ArmData PartOf(Recording recording, double from, double to, const std::str
   for (auto* joints : {&recording.joints0, &recording.joints_seen0, &recording.joints_command0})
     if (*joints) cut((*joints)->q);
   if (recording.torque0) cut(recording.torque0->tau);
+  if (recording.pose0) cut(recording.pose0->samples);
   return {recording, name};
 }
 
@@ -46,9 +47,9 @@ void Compare(const std::vector<arms::ArmData>& fitted, const arms::ArmData& othe
   if (!other.seen.Any() && !other.followed.Any())
     throw InputError(
         fmt::format("{}: expected joints_seen0, or joints0 with commands", other.name));
+  const arms::ArmPrediction found = Predict(other, arms::Diagnose(fitted).model);
   std::vector<Left> all =
       other.seen.Any() ? RegressSeen(fitted, other) : RegressFollowed(fitted, other);
-  const arms::ArmPrediction found = Predict(other, arms::Diagnose(fitted).model);
   Left diagnosis{"diagnosis", found.extended_tip_rms_m, Eigen::VectorXd::Zero(other.Size())};
   for (int i = 0; i < other.Size(); ++i) {
     const bool turns = other.arm.joints[std::size_t(i)].type == JointType::kRevolute;
@@ -68,6 +69,8 @@ void Compare(const std::vector<arms::ArmData>& fitted, const arms::ArmData& othe
 }
 
 void Run(Arguments& arguments) {
+  if (arguments.other.empty() && !arguments.halves)
+    throw InputError("expected --on OTHER or --halves: what is to be predicted");
   std::vector<arms::ArmData> fitted;
   for (const auto& folder : arguments.fitted)
     fitted.emplace_back(ReadRecording(folder).recording, folder.filename().string());
